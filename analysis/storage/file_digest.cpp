@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/sha256.h"
 #include "core/parameters/input_error.h"
 
@@ -41,6 +42,18 @@ struct Superblock {
   }
 };
 
+// Copies the bytes from an offset on. Returns 0, or the errno of the call that failed.
+int copy_from(int from, off_t at, int to) {
+  std::vector<char> buffer(1 << 20);
+  std::size_t done = 0;
+  for (;; at += static_cast<off_t>(done)) {
+    const ssize_t size = read_all(from, buffer.data(), buffer.size(), at);
+    if (size <= 0) return size < 0 ? errno : 0;
+    if (const int error = write_all(to, buffer.data(), static_cast<std::size_t>(size), done); error != 0)
+      return error;
+  }
+}
+
 }  // namespace
 
 std::vector<char> with_seal(const std::vector<char>& image) {
@@ -52,6 +65,21 @@ std::vector<char> with_seal(const std::vector<char>& image) {
   sealed.insert(sealed.end(), text.begin(), text.end());
   sealed.insert(sealed.end(), image.begin(), image.end());
   return sealed;
+}
+
+void write_sealed_copy(const std::filesystem::path& image, const std::filesystem::path& sealed) {
+  constexpr std::size_t kOpenMark = 20, kOpenMarkSize = 4;  // of a superblock of version 0
+  std::string opening = opening_of(image, kOpenMark + kOpenMarkSize);
+  opening.replace(kOpenMark, kOpenMarkSize, kOpenMarkSize, '\0');
+  const std::string head = block(sha256_of_file(image, opening.size(), opening)) + opening;
+  const int from = ::open(image.c_str(), O_RDONLY | O_CLOEXEC);
+  const int to = ::open(sealed.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  std::size_t done = 0;
+  int error = from < 0 || to < 0 ? errno : write_all(to, head.data(), head.size(), done);
+  if (error == 0) error = copy_from(from, static_cast<off_t>(opening.size()), to);
+  if (from >= 0) ::close(from);
+  if (to >= 0 && ::close(to) != 0 && error == 0) error = errno;
+  if (error != 0) throw std::runtime_error(std::strerror(error));
 }
 
 void write_seal(const std::filesystem::path& file) {

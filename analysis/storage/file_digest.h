@@ -19,6 +19,10 @@ inline constexpr std::size_t kSealBlockSize = 512;  // the smallest user block t
 // finds the start of the HDF5 part and counts offsets from there.
 std::vector<char> with_seal(const std::vector<char>& image);
 
+// Writes a new file: the seal, then the image of an HDF5 file on the disk. The bytes are those of
+// with_seal(). Throws std::exception with the reason if a file cannot be read or written.
+void write_sealed_copy(const std::filesystem::path& image, const std::filesystem::path& sealed);
+
 // Seals a finished file in place. Throws std::exception with the reason if it cannot be read or written. pre:
 // the file has a user block of kSealBlockSize bytes.
 void write_seal(const std::filesystem::path& file);

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,14 +44,18 @@ std::string attribute(const TextAttributes& attributes, const std::string& name)
 // trace, sweep or figure adds itself.
 TextAttributes provenance_of(const TextAttributes& attributes);
 
-// Builds the file in memory; save() writes it to the disk. A full disk or a killed program therefore never
-// leaves a partial file. Equal contents are equal bytes (no time stamps). Not for use from several threads at
-// once.
+// Builds the file in memory, or on the disk beside its target; save() puts it in place. A full disk or a
+// killed program therefore never leaves a partial file. Equal contents are equal bytes (no time stamps),
+// wherever the file was built. Not for use from several threads at once.
 class Hdf5Writer {
  public:
   // A finished file is sealed (file_digest.h). A file that will be written in place later cannot be sealed.
   enum class Finished { yes, no };
   explicit Hdf5Writer(Finished finished = Finished::yes);
+  // Builds a finished file on the disk, because it may be larger than the memory. pre: no other process
+  // writes the target, to which save() puts it. Throws InputError, which names the target, if it cannot be
+  // written.
+  explicit Hdf5Writer(const std::filesystem::path& target);
   ~Hdf5Writer();
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
@@ -71,6 +76,13 @@ class Hdf5Writer {
   enum class Storage { compact, in_place };
   void array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
              Storage storage);
+  // Returns `count` values from the index `first` on, in the type of the column.
+  using Block = std::function<Values(std::size_t first, std::size_t count)>;
+  // Writes a compact array, with the bytes of array(), whose values are asked for in increasing blocks.
+  // column: has their type, but no values. longest_text: bytes of the longest text of a column of texts, at
+  // least 1.
+  void array_in_blocks(const std::string& group, const Column& column, const std::vector<std::string>& axes,
+                       const Block& values, std::size_t longest_text = 1);
   // Makes a dataset the scale of its own dimension.
   void scale(const std::string& path);
   std::size_t size();  // size of the file so far, bytes
@@ -78,12 +90,19 @@ class Hdf5Writer {
   void save(const std::filesystem::path& target);
 
  private:
-  void dataset(const std::string& path, const Column& column, std::vector<unsigned long long> extent,
-               Storage storage);
+  using Extent = std::vector<unsigned long long>;
+  void create();
+  void dataset(const std::string& path, const Column& column, Extent extent, Storage storage);
+  void block_dataset(const std::string& path, const Column& column, Extent extent, std::size_t longest_text,
+                     const Block& values);
+  void describe(const std::string& path, const Column& column, const Extent& extent);
+  Extent extent_over(const std::string& group, const std::vector<std::string>& axes) const;
+  void save_from_disk(const std::filesystem::path& target);
   std::string components(const std::string& group, int width, bool are_vectors);
   const Hdf5Work work_;
   bool sealed_;
-  std::int64_t file_;
+  std::filesystem::path on_disk_;  // where the file is built; empty: in memory
+  std::int64_t file_ = -1;
 };
 
 struct Hdf5Content {

@@ -6,11 +6,13 @@
 #include <functional>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_dimensions.h"
 #include "analysis/storage/hdf5_handle.h"
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
@@ -20,11 +22,16 @@ namespace {
 // dimensions have chunks of at most kMaxChunk values.
 constexpr hsize_t kMaxContiguous = 256, kChunk = 4096, kMaxChunk = 32768;
 
-// Length of the longest text, at least 1: a dimension of size 0 would hold no texts.
+// Returns the length of the longest text, at least 1: a dimension of size 0 would hold no texts.
 std::size_t max_length(const std::vector<std::string>& texts) {
   std::size_t length = 1;
   for (const std::string& text : texts) length = std::max(length, text.size());
   return length;
+}
+
+[[noreturn]] void refuse_target(const std::filesystem::path& target, const std::exception& error) {
+  throw InputError(target.string(), std::string("cannot be written (") + error.what() +
+                                        "): expected a writable folder with free space for the file");
 }
 
 Handle stored_type(hid_t file, const Column& column) {
@@ -41,20 +48,38 @@ Handle stored_type(hid_t file, const Column& column) {
 
 }  // namespace
 
-Hdf5Writer::Hdf5Writer(Finished finished) : sealed_(finished == Finished::yes), file_(-1) {
+Hdf5Writer::Hdf5Writer(Finished finished) : sealed_(finished == Finished::yes) {
+  create();
+}
+
+Hdf5Writer::Hdf5Writer(const std::filesystem::path& target)
+    : sealed_(true), on_disk_(temporary_of(target).string() + ".unsealed") {
+  require_writable(target);
+  require_no_device(target);
+  remove_leftovers(target);
+  try {
+    create();
+  } catch (const std::exception& error) {
+    refuse_target(target, error);
+  }
+}
+
+void Hdf5Writer::create() {
   use_hdf5();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  check(H5Pset_fapl_core(access, 1 << 20, false));
+  if (on_disk_.empty()) check(H5Pset_fapl_core(access, 1 << 20, false));
   const Handle creation = creation_list(H5P_FILE_CREATE);
   // Gives the root an object header that can hold attributes above 64 KiB: a configuration with many
   // waypoints.
   check(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED));
-  file_ = H5Fcreate("remote-touch", H5F_ACC_TRUNC, creation, access);
+  file_ = H5Fcreate(on_disk_.empty() ? "remote-touch" : on_disk_.c_str(), H5F_ACC_TRUNC, creation, access);
   if (file_ < 0) throw_refusal();
 }
 
 Hdf5Writer::~Hdf5Writer() {
-  H5Fclose(file_);
+  if (file_ >= 0) H5Fclose(file_);
+  std::error_code gone;
+  if (!on_disk_.empty()) std::filesystem::remove(on_disk_, gone);
 }
 
 void Hdf5Writer::group(const std::string& path) {
@@ -93,53 +118,124 @@ std::vector<hsize_t> chunk_of(std::vector<hsize_t> extent) {
   return extent;
 }
 
-void write_values(hid_t dataset, hid_t type, const Column& column) {
+// Where values are in memory, and where in the dataset.
+struct Spaces {
+  hid_t memory = H5S_ALL, file = H5S_ALL;
+};
+
+// length: bytes of a text.
+void write_values(hid_t dataset, hid_t type, const Values& values, std::size_t length,
+                  const Spaces& selected = {}) {
   // The machine is little-endian (asserted in digest.cpp), so the stored types are the native ones.
   const auto write = [&](const auto& v) {
-    check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, v.data()));
+    check(H5Dwrite(dataset, type, selected.memory, selected.file, H5P_DEFAULT, v.data()));
   };
-  if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) {
-    const std::size_t length = max_length(*texts);
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&values)) {
     std::string packed(length * texts->size(), '\0');
     for (std::size_t i = 0; i < texts->size(); ++i) (*texts)[i].copy(packed.data() + i * length, length);
     write(packed);
   } else {
-    std::visit(write, column.values);
+    std::visit(write, values);
   }
+}
+
+std::size_t size_of(const std::vector<hsize_t>& extent) {
+  return static_cast<std::size_t>(
+      std::accumulate(extent.begin(), extent.end(), hsize_t{1}, std::multiplies<>()));
+}
+
+// The chunks of an array in the order of their values. Each is a range of values, because only one dimension
+// is divided: those before it have one index in a chunk, and those after it are whole, see chunk_of().
+class ChunkWalk {
+ public:
+  ChunkWalk(std::vector<hsize_t> extent, const std::vector<hsize_t>& chunk)
+      : extent_(std::move(extent)), start_(extent_.size(), 0) {
+    while (divided_ + 1 < chunk.size() && chunk[divided_] == 1) ++divided_;
+    step_ = chunk[divided_];
+  }
+  bool ended() const { return extent_.front() <= start_.front(); }
+  const std::vector<hsize_t>& start() const { return start_; }
+  std::vector<hsize_t> count() const {
+    std::vector<hsize_t> count = extent_;
+    std::fill_n(count.begin(), divided_, 1);
+    count[divided_] = std::min(step_, extent_[divided_] - start_[divided_]);
+    return count;
+  }
+  void next() {
+    start_[divided_] += step_;
+    for (std::size_t i = divided_; i > 0 && start_[i] >= extent_[i]; --i) start_[i] = 0, ++start_[i - 1];
+  }
+
+ private:
+  std::vector<hsize_t> extent_, start_;
+  std::size_t divided_ = 0;
+  hsize_t step_ = 1;
+};
+
+Handle creation_of(const std::vector<hsize_t>& extent, std::size_t rows, Hdf5Writer::Storage storage) {
+  Handle creation = creation_list(H5P_DATASET_CREATE);
+  if (storage == Hdf5Writer::Storage::in_place) {
+    check(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY));
+  } else if (rows > kMaxContiguous) {
+    check(H5Pset_chunk(creation, static_cast<int>(extent.size()), chunk_of(extent).data()));
+    check(H5Pset_shuffle(creation));
+    check(H5Pset_deflate(creation, 1));
+    check(H5Pset_fletcher32(creation));
+  }
+  return creation;
 }
 
 }  // namespace
 
 // Texts have one more dimension, that of their characters, because the netCDF library crashes on texts of
 // fixed length, and Octave refuses a file with texts of variable length.
-void Hdf5Writer::dataset(const std::string& path, const Column& column, std::vector<hsize_t> extent,
-                         Storage storage) {
+void Hdf5Writer::dataset(const std::string& path, const Column& column, Extent extent, Storage storage) {
   const auto* const texts = std::get_if<std::vector<std::string>>(&column.values);
-  if (texts) extent.push_back(max_length(*texts));
-  const int rank = static_cast<int>(extent.size());
-  const Handle space = space_of(extent);
-  const Handle creation = creation_list(H5P_DATASET_CREATE);
-  const Handle type = stored_type(file_, column);
-  if (storage == Storage::in_place) {
-    check(H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY));
-  } else if (column.length() > kMaxContiguous) {
-    check(H5Pset_chunk(creation, rank, chunk_of(extent).data()));
-    check(H5Pset_shuffle(creation));
-    check(H5Pset_deflate(creation, 1));
-    check(H5Pset_fletcher32(creation));
-  }
+  const std::size_t length = texts ? max_length(*texts) : 1;
+  if (texts) extent.push_back(length);
   {
+    const Handle type = stored_type(file_, column), space = space_of(extent);
+    const Handle creation = creation_of(extent, column.length(), storage);
     const Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
                       H5Dclose);
-    write_values(made, type, column);
+    write_values(made, type, column.values, length);
   }
+  describe(path, column, extent);
+}
+
+void Hdf5Writer::block_dataset(const std::string& path, const Column& column, Extent extent,
+                               std::size_t longest_text, const Block& values) {
+  const bool are_texts = std::holds_alternative<std::vector<std::string>>(column.values);
+  const std::size_t rows = size_of(extent), length = are_texts ? longest_text : 1;
+  if (are_texts) extent.push_back(length);
+  {
+    const Handle type = stored_type(file_, column), space = space_of(extent);
+    const Handle creation = creation_of(extent, rows, Storage::compact);
+    const Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                      H5Dclose);
+    std::size_t first = 0;
+    for (ChunkWalk walk(extent, rows > kMaxContiguous ? chunk_of(extent) : extent); !walk.ended();
+         walk.next()) {
+      const std::vector<hsize_t> size = walk.count();
+      const std::size_t count = size_of(size) / length;
+      const Handle memory = space_of(size);
+      check(H5Sselect_hyperslab(space, H5S_SELECT_SET, walk.start().data(), nullptr, size.data(), nullptr));
+      write_values(made, type, values(first, count), length, {memory, space});
+      first += count;
+    }
+  }
+  describe(path, column, extent);
+}
+
+// Writes the attributes of a dataset, and the dimension of the characters of its texts.
+void Hdf5Writer::describe(const std::string& path, const Column& column, const Extent& extent) {
   attribute(path, "units", column.units);
   attribute(path, "long_name", column.long_name);
   if (!column.value_names.empty()) write_flags(file_, path, column.value_names);
-  if (!texts) return;
+  if (!std::holds_alternative<std::vector<std::string>>(column.values)) return;
   attribute(path, kEncoding, "utf-8");
   add_dimension(file_, path + "_length", extent.back());
-  attach_dimension(file_, path, path + "_length", static_cast<unsigned>(rank) - 1);
+  attach_dimension(file_, path, path + "_length", static_cast<unsigned>(extent.size()) - 1);
 }
 
 void Hdf5Writer::scale(const std::string& path) {
@@ -181,16 +277,29 @@ std::string Hdf5Writer::components(const std::string& group, int width, bool are
   return path;
 }
 
-void Hdf5Writer::array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
-                       Storage storage) {
-  std::vector<hsize_t> extent;
+Hdf5Writer::Extent Hdf5Writer::extent_over(const std::string& group,
+                                           const std::vector<std::string>& axes) const {
+  Extent extent;
   for (const std::string& axis : axes) {
     const Handle along(H5Dopen2(file_, (group + "/" + axis).c_str(), H5P_DEFAULT), H5Dclose);
     const Handle space(H5Dget_space(along), H5Sclose);
     extent.push_back(static_cast<hsize_t>(H5Sget_simple_extent_npoints(space)));
   }
+  return extent;
+}
+
+void Hdf5Writer::array(const std::string& group, const Column& column, const std::vector<std::string>& axes,
+                       Storage storage) {
   const std::string path = group + "/" + column.name;
-  dataset(path, column, extent, storage);
+  dataset(path, column, extent_over(group, axes), storage);
+  for (unsigned i = 0; i < axes.size(); ++i) attach_dimension(file_, path, group + "/" + axes[i], i);
+}
+
+void Hdf5Writer::array_in_blocks(const std::string& group, const Column& column,
+                                 const std::vector<std::string>& axes, const Block& values,
+                                 std::size_t longest_text) {
+  const std::string path = group + "/" + column.name;
+  block_dataset(path, column, extent_over(group, axes), longest_text, values);
   for (unsigned i = 0; i < axes.size(); ++i) attach_dimension(file_, path, group + "/" + axes[i], i);
 }
 
@@ -201,7 +310,24 @@ std::size_t Hdf5Writer::size() {
   return static_cast<std::size_t>(size);
 }
 
+// Writes the seal and the content to a second file, and moves that into place. The content is copied before
+// the file is closed, because the library then shortens it: the bytes would not be those of a file built in
+// memory.
+void Hdf5Writer::save_from_disk(const std::filesystem::path& target) {
+  const std::filesystem::path sealed = temporary_of(target);
+  try {
+    check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
+    write_sealed_copy(on_disk_, sealed);
+  } catch (const std::exception& error) {
+    std::error_code gone;
+    std::filesystem::remove(sealed, gone);
+    refuse_target(target, error);
+  }
+  move_into_place(sealed, target);
+}
+
 void Hdf5Writer::save(const std::filesystem::path& target) {
+  if (!on_disk_.empty()) return save_from_disk(target);
   std::vector<char> image(size());
   if (H5Fget_file_image(file_, image.data(), image.size()) != static_cast<ssize_t>(image.size()))
     throw_refusal();

@@ -1,8 +1,10 @@
 // A sweep in HDF5: group /sweep with the axes as dimension scales, one array for each measure, and arrays for
-// state, notes and error.
+// state, notes and error. The arrays of a part have one dimension, whose scale is the array `run` of its
+// runs.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,16 +13,26 @@
 
 namespace remote_touch {
 
-// Digest of axes, measures, states, errors and, with refinement, rounds. Notes are not part of it, because
-// they do not change the numbers.
+// Digest of axes, the runs of a part, measures, states, errors and, with refinement, rounds. Notes are not
+// part of it, because they do not change the numbers.
 std::string digest(const SweepResult& result);
-
-// Returns the state of each run as a column of an enumeration.
-Column state_column(const SweepResult& result);
 
 // Writes the finished file and returns its digest. Equal results are equal bytes. attributes: configuration,
 // provenance and shard; schema and digest are added. Throws InputError if the file cannot be written.
 std::string write_sweep(const std::filesystem::path& file, const SweepResult& result,
+                        const TextAttributes& attributes);
+
+// A sweep whose arrays are larger than the memory.
+struct SweepInBlocks {
+  SweepResult outline;  // without values in measures, state, round, error and notes
+  bool is_refined = false;
+  std::size_t longest_error = 1;  // bytes, at least 1
+  // Returns the values at `count` places from `first` on of an array, which is named as in the file: a
+  // measure, state, notes, error or round. They may be asked for several times.
+  std::function<Values(const std::string& array, std::size_t first, std::size_t count)> values;
+};
+// Writes the finished file as above, with the same bytes, and returns its digest.
+std::string write_sweep(const std::filesystem::path& file, const SweepInBlocks& sweep,
                         const TextAttributes& attributes);
 
 // The content of a file, finished or in progress. Runs that were written only in part are pending.
@@ -32,6 +44,8 @@ struct StoredSweep {
   std::string schema = {};
 };
 StoredSweep read_sweep(const Hdf5Reader& file);
+// Reads all but the values of the runs: axes, number of replicates, measures, kinds of notes and attributes.
+StoredSweep read_sweep_outline(const Hdf5Reader& file);
 // Reads the file again if a running sweep has replaced it.
 StoredSweep read_sweep(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
@@ -40,7 +54,7 @@ StoredSweep read_sweep(const std::filesystem::path& file, const RunInChild& run 
 // was written only in part.
 void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,
                              const TextAttributes& attributes);
-std::int32_t checksum(const SweepResult& result, std::size_t run);
+std::int32_t checksum(const SweepResult& result, std::size_t place);
 // Digest of what does not change while the sweep runs: axes, rounds, kinds of notes and attributes.
 std::string plan_digest(const SweepResult& result, TextAttributes attributes);
 // Size of that file, bytes. The finished one is usually smaller.

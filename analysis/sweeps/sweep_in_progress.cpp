@@ -39,16 +39,16 @@ SweepInProgress::~SweepInProgress() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void SweepInProgress::record(const SweepResult& result, std::size_t run) {
-  const auto place = static_cast<std::int64_t>(run);
+void SweepInProgress::record(const SweepResult& result, std::size_t at) {
+  const auto place = static_cast<std::int64_t>(at);
   for (std::size_t i = 0; i < measure_offsets_.size(); ++i) {
-    const double value = std::get<std::vector<double>>(result.measures[i].values)[run];
+    const double value = std::get<std::vector<double>>(result.measures[i].values)[at];
     put(measure_offsets_[i] + 8 * place, &value, sizeof value);
   }
-  const auto state = static_cast<std::int32_t>(result.state[run]);
-  const std::int32_t sum = checksum(result, run);
+  const auto state = static_cast<std::int32_t>(result.state[at]);
+  const std::int32_t sum = checksum(result, at);
   put(state_offset_ + 4 * place, &state, sizeof state);
-  if (!result.notes.empty()) put(notes_offset_ + 4 * place, &result.notes[run], sizeof result.notes[run]);
+  if (!result.notes.empty()) put(notes_offset_ + 4 * place, &result.notes[at], sizeof result.notes[at]);
   put(checksum_offset_ + 4 * place, &sum, sizeof sum);
 }
 

@@ -22,9 +22,9 @@ class SweepInProgress {
   SweepInProgress(const SweepInProgress&) = delete;
   SweepInProgress& operator=(const SweepInProgress&) = delete;
 
-  // Stores the values, the state and the notes of one run. One call at a time. Throws InputError if the file
-  // cannot be written.
-  void record(const SweepResult& result, std::size_t run);
+  // Stores the values, the state and the notes of the run at a place. One call at a time. Throws InputError
+  // if the file cannot be written.
+  void record(const SweepResult& result, std::size_t at);
   // Makes everything recorded survive a power cut. Throws InputError if that fails, and also if the file was
   // replaced or removed.
   void flush();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,14 +15,18 @@ enum class RunState : std::int32_t {
   pending = 1,
   done = 2,
   failed = 3,    // `error` has the reason
-  elsewhere = 4  // belongs to another shard
+  elsewhere = 4  // belongs to another shard, in a result that has an element for it
 };
 
 // Cells are the nodes of the axes' grid, numbered with the last axis running fastest; every cell has the same
-// number of replicates. A run is one replicate of one cell; all arrays are over runs.
+// number of replicates. A run is one replicate of one cell. The arrays have one element for each run that the
+// result holds; its index is the *place* of the run.
 struct SweepResult {
   std::vector<Column> axes;  // one row for each value; names are an enumeration
   int replicates = 1;
+  // The numbers of the runs that the result holds, increasing. Without them it is whole: it holds every run,
+  // and the place of a run is its number.
+  std::optional<std::vector<std::uint64_t>> part;
   std::vector<Column> measures;  // NaN if the run is not done
   std::vector<RunState> state;
   std::vector<std::int32_t> round;  // round of refinement that added the run; empty without refinement
@@ -32,12 +37,16 @@ struct SweepResult {
   std::vector<std::string> note_kinds;
   std::vector<std::int32_t> notes;
 
-  // Sizes the arrays and sets every run to not_sampled. pre: axes, replicates, measures and note_kinds are
-  // set.
+  // Sizes the arrays and sets every run to not_sampled. pre: axes, replicates, part, measures and note_kinds
+  // are set.
   void start(bool refined);
 
   std::size_t cell_count() const;
   std::size_t run_count() const { return cell_count() * static_cast<std::size_t>(replicates); }
+  std::size_t held_count() const { return part ? part->size() : run_count(); }
+  std::size_t run_at(std::size_t place) const { return part ? (*part)[place] : place; }
+  // Returns the place of a run; none if the result does not hold it.
+  std::optional<std::size_t> place_of(std::size_t run) const;
   std::size_t run(std::size_t cell, int replicate) const {
     return cell * static_cast<std::size_t>(replicates) + static_cast<std::size_t>(replicate);
   }
@@ -49,7 +58,8 @@ struct SweepResult {
   std::vector<std::size_t> axis_indices(std::size_t cell) const;
   std::size_t cell_at(const std::vector<std::size_t>& indices) const;
 
-  std::vector<std::size_t> runs_in(RunState requested) const;         // increasing
+  // Returns the places of the runs in that state, increasing.
+  std::vector<std::size_t> runs_in(RunState requested) const;
   const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range
 };
 
@@ -65,7 +75,14 @@ struct NoteCount {
 // Returns the counts in the order of note_kinds, without kinds that no finished run has.
 std::vector<NoteCount> note_counts(const SweepResult& result);
 
-// Count of an event in the finished runs of a cell.
+// Returns the whole result of a part: it has an element for each run, and the runs that the part does not
+// hold are `elsewhere`, or not_sampled with refinement. Returns a whole result unchanged.
+SweepResult whole_of(SweepResult result);
+// Returns a result without its runs that are `elsewhere`, as a part. Returns a result without such runs
+// unchanged.
+SweepResult without_others(SweepResult result);
+
+// Count of an event in the finished runs of a cell. pre: the result is whole.
 struct Tally {
   int events = 0, runs = 0;
 };

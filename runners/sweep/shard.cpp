@@ -1,6 +1,8 @@
 #include "runners/sweep/shard.h"
 
+#include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "core/parameters/input_error.h"
 
@@ -32,7 +34,42 @@ Shard checked(int index, int count, const std::string& source) {
   return {index, count};
 }
 
+// Returns the integers of "3" or "1-3" as a range; {0, 0} for other texts.
+std::pair<int, int> range_of(const std::string& text) {
+  const std::size_t dash = text.find('-');
+  const auto first = integer_value(text.substr(0, dash));
+  const auto last = dash == std::string::npos ? first : integer_value(text.substr(dash + 1));
+  return {first.value_or(0), last.value_or(0)};
+}
+
 }  // namespace
+
+std::string ShardSet::text() const {
+  std::string text;
+  for (auto at = indices.begin(); at != indices.end();) {
+    const int first = *at;
+    int last = first;
+    for (++at; at != indices.end() && *at == last + 1; ++at) last = *at;
+    text +=
+        (text.empty() ? "" : ",") + std::to_string(first) + (last > first ? "-" + std::to_string(last) : "");
+  }
+  return text + "/" + std::to_string(count);
+}
+
+ShardSet parse_shards(const std::string& text, const std::string& source) {
+  const std::string what = source + ": shard " + text;
+  const std::size_t slash = text.find('/');
+  ShardSet set;
+  set.count = slash == std::string::npos ? 0 : integer_value(text.substr(slash + 1)).value_or(0);
+  for (std::size_t at = 0; at <= std::min(slash, text.size());) {
+    const std::size_t end = std::min({text.find(',', at), slash, text.size()});
+    const auto [first, last] = range_of(text.substr(at, end - at));
+    checked(first, set.count, what), checked(last, set.count, what);
+    for (int i = first; i <= last; ++i) set.indices.insert(i);
+    at = end + 1;
+  }
+  return set;
+}
 
 Shard parse_shard(const std::string& text) {
   const auto slash = text.find('/');

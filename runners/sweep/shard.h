@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace remote_touch {
@@ -13,14 +14,27 @@ namespace remote_touch {
 struct Shard {
   int index = 1;
   int count = 1;
-  bool has(std::size_t cell) const {
-    return cell % static_cast<std::size_t>(count) + 1 == static_cast<std::size_t>(index);
+  // The number of its cells, of `all` in the first round; and its i-th cell.
+  std::size_t cells_of(std::size_t all) const {
+    return (all + static_cast<std::size_t>(count - index)) / static_cast<std::size_t>(count);
+  }
+  std::size_t cell(std::size_t i) const {
+    return i * static_cast<std::size_t>(count) + static_cast<std::size_t>(index) - 1;
   }
   std::string text() const { return std::to_string(index) + "/" + std::to_string(count); }
 };
 
 // "2/7". Throws InputError.
 Shard parse_shard(const std::string& text);
+
+// Some of the shards of a sweep, in a file that was merged from them.
+struct ShardSet {
+  std::set<int> indices;
+  int count = 1;
+  std::string text() const;  // "1-3,7/1000"; "2/7" for one shard
+};
+// Reads what text() returns. Throws InputError, which names the source.
+ShardSet parse_shards(const std::string& text, const std::string& source);
 
 // Returns the shard of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT, _MIN, _STEP) or of a program started
 // by mpirun (OMPI_COMM_WORLD_RANK, _SIZE); none if neither is set. value_of: returns the value of an

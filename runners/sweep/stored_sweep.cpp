@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/schema.h"
+#include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/text_files/json_text.h"
 
@@ -28,6 +29,8 @@ void rename_axis(const Json& axis, Column& column) {
   }
 }
 
+constexpr std::size_t kMaxRunsInMemory = 10'000'000;
+
 StoredSweep with_present_names(StoredSweep stored) {
   if (is_earlier_schema(stored.schema)) {
     stored.attributes.emplace_back(kTranslatedFrom, stored.schema);
@@ -49,11 +52,34 @@ StoredSweep with_present_names(StoredSweep stored) {
 
 }  // namespace
 
+namespace {
+
+// Throws InputError for a part of a sweep that has more runs than an array in memory should have.
+StoredSweep whole(StoredSweep stored, const std::string& file) {
+  if (stored.result.part && stored.result.run_count() > kMaxRunsInMemory)
+    throw InputError(file, "holds " + std::to_string(stored.result.held_count()) + " of the " +
+                               std::to_string(stored.result.run_count()) +
+                               " runs of its sweep: expected a whole sweep, or one of at most " +
+                               std::to_string(kMaxRunsInMemory) + " runs");
+  stored.result = whole_of(std::move(stored.result));
+  return with_present_names(std::move(stored));
+}
+
+}  // namespace
+
 StoredSweep read_stored_sweep(const Hdf5Reader& file) {
-  return with_present_names(read_sweep(file));
+  return whole(read_sweep(file), file.file());
 }
 
 StoredSweep read_stored_sweep(const std::filesystem::path& file) {
+  return whole(read_sweep(file), file.string());
+}
+
+StoredSweep read_stored_outline(const Hdf5Reader& file) {
+  return with_present_names(read_sweep_outline(file));
+}
+
+StoredSweep read_stored_part(const std::filesystem::path& file) {
   return with_present_names(read_sweep(file));
 }
 

@@ -17,13 +17,16 @@
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/sweep/refine_settings.h"
 #include "runners/sweep/sweep_axis.h"
+#include "runners/sweep/sweep_cells.h"
 #include "runners/sweep/sweep_statements.h"
 
 namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMaxRuns = 10000000;
+constexpr std::size_t kMaxRuns = 10'000'000;  // in one file
+constexpr std::size_t kMaxSweep =
+    1'000'000'000'000'000;  // in all files: a double holds their numbers exactly
 
 }  // namespace
 
@@ -46,6 +49,7 @@ struct Sweep::Definition {
   void check_axes(const std::string& label) const;
   void check_budget(const std::string& label) const;
   void check_cells(const std::string& label);
+  int all_replicates() const { return refine ? refine->max_replicates : replicates; }
 };
 
 namespace {
@@ -200,35 +204,34 @@ void Sweep::Definition::refuse_other_parameters(const SweepAxis& axis, const std
 }
 
 void Sweep::Definition::check_axes(const std::string& label) const {
-  std::set<std::string> names = {"replicate", "state", "notes", "round", "error", "checksum"};
+  std::set<std::string> names = {"replicate", "run", "state", "notes", "round", "error", "checksum"};
   for (const Measure& measure : measures) names.insert(measure.name);
-  std::size_t runs = static_cast<std::size_t>(refine ? refine->max_replicates : replicates);
+  auto runs = static_cast<std::size_t>(all_replicates());
   for (const SweepAxis& axis : axes) {
     refuse_other_parameters(axis, label);
     refuse_other_entry(axis, label);
     if (const std::string& name = axis.coordinate.name; !names.insert(name).second)
       throw InputError(label + ": axis " + axis.subject(),
                        "another axis or measure has the name " + name + ": expected different names");
-    runs *= axis.length();
-    if (runs > kMaxRuns)
+    if (__builtin_mul_overflow(runs, axis.length(), &runs) || runs > kMaxSweep)
       throw InputError(
-          label, "more than " + std::to_string(kMaxRuns) + " runs: expected fewer values or replicates");
+          label, "more than " + std::to_string(kMaxSweep) + " runs: expected fewer values or replicates");
   }
 }
 
 void Sweep::Definition::check_budget(const std::string& label) const {
   if (!refine) return;
-  auto first_round = static_cast<std::uint64_t>(replicates);
-  for (const SweepAxis& axis : axes) first_round *= (axis.length() - 1) / axis.stride + 1;
+  const auto first_round = static_cast<std::uint64_t>(replicates) * FirstRound(grid, axes).count();
   if (refine->budget < first_round)
     throw InputError(label + ": refine.budget = " + std::to_string(refine->budget),
                      "expected at least the " + std::to_string(first_round) + " runs of the first round");
 }
 
-// Checks all cells in parallel, because a large map has many. The error names the first wrong cell in order.
-// Collects the recordings that the cells read.
+// Checks the cells in parallel, because a large map has many. The error names the first wrong cell in order.
+// Collects the recordings that they read.
 void Sweep::Definition::check_cells(const std::string& label) {
-  const auto cells = static_cast<long>(grid.cell_count());
+  const std::vector<std::size_t> checked = checked_cells(grid);
+  const auto cells = static_cast<long>(checked.size());
   long first_wrong = cells;
   std::string problem;
   std::atomic<bool> lacks_memory{false};  // not a problem of a cell
@@ -236,7 +239,7 @@ void Sweep::Definition::check_cells(const std::string& label) {
 #pragma omp parallel for schedule(static, 64)
   for (long i = 0; i < cells; ++i) {
     try {
-      const auto read = run(static_cast<std::size_t>(i), 0).inputs();
+      const auto read = run(checked[static_cast<std::size_t>(i)], 0).inputs();
       if (read.empty()) continue;
 #pragma omp critical(sweep_inputs)
       parts.insert(read.begin(), read.end());
@@ -251,7 +254,7 @@ void Sweep::Definition::check_cells(const std::string& label) {
   inputs.assign(parts.begin(), parts.end());
   if (first_wrong == cells) return;
   std::string where;
-  for (const std::size_t k : grid.axis_indices(static_cast<std::size_t>(first_wrong)))
+  for (const std::size_t k : grid.axis_indices(checked[static_cast<std::size_t>(first_wrong)]))
     where.append(where.empty() ? "" : ",").append(std::to_string(k));
   throw InputError(label + ": cell " + where, problem);
 }
@@ -287,8 +290,8 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
                           : changed_title(definition->title, changes);
   if (definition->title.empty()) definition->title = label;
   definition->check_axes(label);
-  definition->check_budget(label);
   for (const SweepAxis& axis : definition->axes) definition->grid.axes.push_back(axis.coordinate);
+  definition->check_budget(label);
   definition->check_cells(label);
   Sweep sweep;
   sweep.definition_ = std::move(definition);
@@ -310,23 +313,27 @@ const std::string& Sweep::title() const {
 
 SweepResult Sweep::plan(const Shard& shard) const {
   SweepResult result = definition_->grid;
-  result.replicates = definition_->refine ? definition_->refine->max_replicates : definition_->replicates;
+  result.replicates = definition_->all_replicates();
   for (const Measure& measure : definition_->measures)
     result.measures.push_back({measure.name, measure.unit, measure.meaning, {}, 1, {}});
   result.note_kinds = note_kind_names();
+  const FirstRound first(result, definition_->axes);
+  const std::size_t held =
+      shard.count > 1 ? shard.cells_of(first.count()) * static_cast<std::size_t>(definition_->replicates)
+                      : result.run_count();
+  if (held > kMaxRuns)
+    throw InputError(title(), std::to_string(held) + " runs in one file: expected at most " +
+                                  std::to_string(kMaxRuns) + "; use more shards (--shard)");
+  std::vector<std::uint64_t> runs;
+  for (std::size_t i = 0; i < shard.cells_of(first.count()); ++i)
+    for (int replicate = 0; replicate < definition_->replicates; ++replicate)
+      runs.push_back(result.run(first.cell(shard.cell(i)), replicate));
+  if (shard.count > 1) result.part = runs;
   result.start(definition_->refine.has_value());
-  std::size_t number = 0;
-  for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
-    const std::vector<std::size_t> indices = result.axis_indices(cell);
-    bool is_first = true;
-    for (std::size_t i = 0; i < indices.size(); ++i)
-      is_first &= indices[i] % definition_->axes[i].stride == 0;
-    if (!is_first) continue;
-    const RunState state = shard.has(number++) ? RunState::pending : RunState::elsewhere;
-    for (int replicate = 0; replicate < definition_->replicates; ++replicate) {
-      result.state[result.run(cell, replicate)] = state;
-      if (!result.round.empty()) result.round[result.run(cell, replicate)] = 0;
-    }
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const std::size_t place = result.part ? i : static_cast<std::size_t>(runs[i]);
+    result.state[place] = RunState::pending;
+    if (!result.round.empty()) result.round[place] = 0;
   }
   return result;
 }
@@ -343,8 +350,9 @@ void Sweep::require_fits(const SweepResult& stored, const std::string& file) con
   const std::vector<Column>& axes = definition_->grid.axes;
   if (!std::equal(axes.begin(), axes.end(), stored.axes.begin(), stored.axes.end(), is_axis))
     throw InputError(file, "damaged (its axes are not those of its configuration)");
-  if (stored.replicates != plan().replicates || !std::equal(stored.measures.begin(), stored.measures.end(),
-                                                            measures().begin(), measures().end(), is_measure))
+  if (stored.replicates != definition_->all_replicates() ||
+      !std::equal(stored.measures.begin(), stored.measures.end(), measures().begin(), measures().end(),
+                  is_measure))
     throw InputError(file, "damaged (its arrays do not fit its configuration)");
 }
 

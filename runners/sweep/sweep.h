@@ -18,9 +18,10 @@ class Sweep {
  public:
   // Reads JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
   // the source in errors. Overrides "key=value" change the sweep if their path begins with one of its keys,
-  // otherwise its experiment; the title names them (changed_settings.h). Every cell is resolved and checked:
+  // otherwise its experiment; the title names them (changed_settings.h). Cells are resolved and checked:
   // throws InputError for the first cell that cannot be run, and for parts that overwrite each other
-  // (sweep_statements.h).
+  // (sweep_statements.h). Of more than 20000 cells, 20000 that are spread over the grid are checked, and
+  // those with each value of an axis and the first values of the others.
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});
   // Reads a sweep of data/sweeps by its name, or a JSON file. An error in the text of a file begins with the
@@ -28,8 +29,8 @@ class Sweep {
   static Sweep load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const std::string& title() const;
-  // Returns a result without values. The runs of the shard in the first round are pending, and those of other
-  // shards are `elsewhere`.
+  // Returns a result without values, whose runs of the first round are pending. That of a shard is a part
+  // with its runs of the first round. Throws InputError if it would have more than 1e7 runs.
   SweepResult plan(const Shard& shard = {}) const;
   // Returns the experiment of one run. It has the values that the result states for its cell; throws
   // InputError otherwise. The noise key contains cell and replicate, so each run has its own noise. For an
@@ -39,7 +40,7 @@ class Sweep {
   // Throws InputError, with the name of the file, for a stored result with other axes, measures or
   // replicates: none of its runs belongs to this sweep.
   void require_fits(const SweepResult& stored, const std::string& file) const;
-  // Returns the recordings that the cells read, each part once, as named in the configuration.
+  // Returns the recordings that the checked cells read, each part once, as named in the configuration.
   const std::vector<RecordingPart>& inputs() const;
   const std::vector<Measure>& measures() const;
   bool needs_true_contact() const;  // true if one of its measures does

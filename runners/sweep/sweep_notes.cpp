@@ -38,11 +38,15 @@ std::string option_of_run(const SweepResult& result, std::size_t run) {
 }
 
 std::vector<std::string> note_lines(const SweepResult& result) {
-  const std::string done = std::to_string(result.runs_in(RunState::done).size());
+  return note_lines(result, note_counts(result), result.runs_in(RunState::done).size());
+}
+
+std::vector<std::string> note_lines(const SweepResult& sweep, const std::vector<NoteCount>& counts,
+                                    std::size_t done) {
   std::vector<std::string> lines;
-  for (const NoteCount& count : note_counts(result))
-    lines.push_back(std::to_string(count.runs) + " of " + done + " runs: " + text_of_kind(count.kind) +
-                    " (the first: " + option_of_run(result, count.first) + ")");
+  for (const NoteCount& count : counts)
+    lines.push_back(std::to_string(count.runs) + " of " + std::to_string(done) + " runs: " +
+                    text_of_kind(count.kind) + " (the first: " + option_of_run(sweep, count.first) + ")");
   return lines;
 }
 
@@ -74,7 +78,7 @@ void NoteCounts::add(const std::vector<Note>& notes) {
 }
 
 void NoteCounts::add(const SweepResult& result) {
-  for (const std::size_t run : result.runs_in(RunState::done)) add_run(result.notes[run]);
+  for (const std::size_t place : result.runs_in(RunState::done)) add_run(result.notes[place]);
 }
 
 std::vector<std::string> NoteCounts::lines() const {

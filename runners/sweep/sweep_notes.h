@@ -23,6 +23,9 @@ std::string option_of_run(const SweepResult& result, std::size_t run);
 //   "12 of 210 runs: no contact: no point was touched and no force was felt (the first: --cell 0,3)"
 // Empty for a result that was stored without notes.
 std::vector<std::string> note_lines(const SweepResult& result);
+// The same for counts over several results of one sweep, of which `done` runs are finished.
+std::vector<std::string> note_lines(const SweepResult& sweep, const std::vector<NoteCount>& counts,
+                                    std::size_t done);
 
 // Throws InputError with all these lines, for --strict. Does nothing if there is none.
 void refuse_notes(const SweepResult& result);

@@ -10,6 +10,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_cells.h"
 #include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
@@ -26,9 +27,19 @@ std::string stored_error(const std::exception& error) {
   return text.substr(0, end);
 }
 
-// Does one run and writes its values, or its error, into its own elements of the result. Throws
+// Throws InputError if the experiment of a run reads a recording that no checked cell reads, so that no run
+// has an input that the result does not name.
+void require_known_inputs(const Sweep& sweep, const Experiment& experiment) {
+  for (const RecordingPart& part : experiment.inputs())
+    if (std::find(sweep.inputs().begin(), sweep.inputs().end(), part) == sweep.inputs().end())
+      throw InputError(part.path, "is read by a cell that was not checked: expected at most " +
+                                      std::to_string(kMaxChecked) + " cells, or recordings along one axis");
+}
+
+// Does the run at a place and writes its values, or its error, into its own elements of the result. Throws
 // std::bad_alloc, because lack of memory is not a result of the run, and Interrupted.
-void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run, SweepResult& result) {
+void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t place, SweepResult& result) {
+  const std::size_t run = result.run_at(place);
   try {
     SimulationOptions simulation;
     simulation.kernels = options.kernels;
@@ -36,35 +47,36 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t run,
     simulation.find_true_contact = sweep.needs_true_contact();
     RunReport report;
     simulation.report = &report;
-    const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), simulation);
+    const Experiment experiment = sweep.experiment(result.cell_of(run), result.replicate_of(run));
+    require_known_inputs(sweep, experiment);
+    const Trace trace = simulate(experiment, simulation);
     for (std::size_t i = 0; i < result.measures.size(); ++i)
-      std::get<std::vector<double>>(result.measures[i].values)[run] = value_of(sweep.measures()[i], trace);
+      std::get<std::vector<double>>(result.measures[i].values)[place] = value_of(sweep.measures()[i], trace);
     add_unknown_outcome(sweep.measures(), trace, report.notes);
-    result.notes[run] = note_bits(report.notes);
-    result.state[run] = RunState::done;
+    result.notes[place] = note_bits(report.notes);
+    result.state[place] = RunState::done;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    result.error[run] = stored_error(error);
-    result.state[run] = RunState::failed;
+    result.error[place] = stored_error(error);
+    result.state[place] = RunState::failed;
   }
 }
 
 }  // namespace
 
 std::size_t do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options) {
-  const std::vector<std::size_t> runs = result.runs_in(RunState::pending);
+  const std::vector<std::size_t> places = result.runs_in(RunState::pending);
   std::exception_ptr failure;
   std::mutex one_at_a_time;
   std::atomic<bool> ends{false};
   std::atomic<std::size_t> without_memory{0};
-  options.runs(runs.size(), [&](std::size_t i) {
+  options.runs(places.size(), [&](std::size_t i) {
     if (ends) return;
-    const std::size_t run = runs[i];
     try {
-      do_run(sweep, options, run, result);
+      do_run(sweep, options, places[i], result);
       const std::lock_guard lock(one_at_a_time);
-      if (options.finished) options.finished(run);
+      if (options.finished) options.finished(places[i]);
     } catch (const std::bad_alloc&) {
       ++without_memory;
     } catch (...) {

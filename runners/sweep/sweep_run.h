@@ -12,10 +12,11 @@
 namespace remote_touch {
 
 struct SweepRunOptions {
-  const Kernels* kernels = nullptr;                    // null: the machine's best
-  const std::atomic<bool>* stop = nullptr;             // when set, the sweep ends with Interrupted
-  std::function<void(std::size_t run)> finished = {};  // one call at a time; what it throws ends the sweep
-  SideBySide runs = side_by_side;                      // distributes the runs over threads
+  const Kernels* kernels = nullptr;         // null: the machine's best
+  const std::atomic<bool>* stop = nullptr;  // when set, the sweep ends with Interrupted
+  // Called with the place of each finished run, one call at a time; what it throws ends the sweep.
+  std::function<void(std::size_t place)> finished = {};
+  SideBySide runs = side_by_side;  // distributes the runs over threads
 };
 
 // Does every pending run, in parallel. The bits and the notes of a run do not depend on threads or order. A
@@ -25,7 +26,7 @@ struct SweepRunOptions {
 std::size_t do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options);
 
 // Adds the next round of refinement: its runs become pending. Returns false if there is none, see
-// next_round().
+// next_round(). pre: the result is whole.
 bool add_round(const Sweep& sweep, SweepResult& result);
 
 // Does all rounds in memory. Failed runs are in the result, with their errors. Throws std::bad_alloc.

@@ -48,8 +48,8 @@ void require_same(const std::filesystem::path& file, const TextAttributes& their
 void require_same_inputs(const std::filesystem::path& file, const Sweep& sweep, const SweepResult& result,
                          const std::vector<ChangedInput>& changed) {
   if (changed.empty()) return;
-  for (const std::size_t run : result.runs_in(RunState::done))
-    for (const RecordingPart& part : sweep.experiment(result.cell_of(run), 0).inputs())
+  for (const std::size_t place : result.runs_in(RunState::done))
+    for (const RecordingPart& part : sweep.experiment(result.cell_of(result.run_at(place)), 0).inputs())
       for (const ChangedInput& input : changed)
         if (input.path == in_one_line(part.path))
           throw InputError(file.string(), "has runs on another recording " + input.path + " (" +
@@ -65,13 +65,13 @@ void set_attribute(TextAttributes& attributes, const std::string& name, const st
 // Copies the values, states, rounds, errors and notes of the runs of the earlier call. Everything else is
 // known already.
 void take_over(SweepResult&& earlier, const std::filesystem::path& file, SweepResult& result) {
-  if (earlier.run_count() != result.run_count() || earlier.measures.size() != result.measures.size() ||
-      earlier.round.size() != result.round.size() || earlier.note_kinds != result.note_kinds)
+  if (earlier.run_count() != result.run_count() || earlier.part != result.part ||
+      earlier.measures.size() != result.measures.size() || earlier.round.size() != result.round.size() ||
+      earlier.note_kinds != result.note_kinds)
     throw InputError(file.string(), "damaged (its arrays do not fit its configuration): expected a new file");
   for (std::size_t i = 0; i < result.measures.size(); ++i)
     result.measures[i].values = std::move(earlier.measures[i].values);
-  for (std::size_t run = 0; run < result.run_count(); ++run)
-    if (result.state[run] != RunState::elsewhere) result.state[run] = earlier.state[run];
+  result.state = std::move(earlier.state);
   result.round = std::move(earlier.round);
   result.error = std::move(earlier.error);
   result.notes = std::move(earlier.notes);
@@ -92,13 +92,13 @@ SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttribu
   StoredSweep stored = read_sweep(file);
   require_present_schema(file, stored.schema);
   require_same(file, stored.attributes, attributes);
-  take_over(std::move(stored.result), file, plan.result);
+  take_over(without_others(std::move(stored.result)), file, plan.result);
   const std::string inputs = attribute(attributes, "input_digests");
   const auto changed = changed_inputs(attribute(stored.attributes, "input_digests"), inputs);
   require_same_inputs(file, sweep, plan.result, changed);
   const auto failed = plan.result.runs_in(RunState::failed);
-  for (const std::size_t run : failed)
-    plan.result.state[run] = RunState::pending, plan.result.error[run].clear();
+  for (const std::size_t place : failed)
+    plan.result.state[place] = RunState::pending, plan.result.error[place].clear();
   plan.attributes = std::move(stored.attributes);
   set_attribute(plan.attributes, "input_digests", inputs);
   const bool is_same = failed.empty() && changed.empty();
@@ -164,8 +164,8 @@ void SweepSession::do_round(const Kernels& kernels, const std::atomic<bool>* sto
   const std::size_t total = earlier + plan_.result.runs_in(RunState::pending).size();
   std::size_t done = earlier;
   auto flushed = Clock::now();
-  const auto finished = [&](std::size_t run) {
-    storage.record(plan_.result, run);
+  const auto finished = [&](std::size_t place) {
+    storage.record(plan_.result, place);
     progress(++done, total, earlier);
     if (Clock::now() - flushed < kBetweenFlushes) return;
     storage.flush();

@@ -99,11 +99,12 @@ struct ScorecardSummaryRequest {
 };
 int command_scorecard_summary(const CommandLine& line, const ScorecardSummaryRequest& request);
 
-struct MergeRequest {
+struct MergeCommand {
   std::vector<std::string> shards;
   std::string output;
+  bool partial = false;
 };
-int command_merge(const CommandLine& line, const MergeRequest& request);
+int command_merge(const CommandLine& line, const MergeCommand& command);
 
 // See SweepQuestion in runners/sweep/sweep_answer.h.
 struct AnalyseRequest {

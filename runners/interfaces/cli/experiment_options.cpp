@@ -108,6 +108,8 @@ void add_merge_and_replay(Subcommands& commands) {
       commands.add("merge", "merge the shards (parts) of a sweep into one file", command_merge);
   command->add_option("shards", merge->shards, "the files of all shards")->required();
   command->add_option("-o,--output", merge->output, "the HDF5 file to write")->required();
+  command->add_flag("--partial", merge->partial,
+                    "shards may be missing or unfinished; the file states which shards it has");
 
   auto [again, replay] =
       commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);

@@ -1,6 +1,7 @@
 #include <bit>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
@@ -20,11 +21,12 @@ namespace {
 
 // Prints each measure beside the stored one. Returns true if they agree bit for bit, or nothing is stored.
 bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
-  const bool stored = result.state[run] == RunState::done;
+  const std::optional<std::size_t> place = result.place_of(run);
+  const bool stored = place && result.state[*place] == RunState::done;
   bool same = true;
   for (std::size_t i = 0; i < result.measures.size(); ++i) {
     const double now = value_of(sweep.measures()[i], trace);
-    const double then = std::get<std::vector<double>>(result.measures[i].values)[run];
+    const double then = stored ? std::get<std::vector<double>>(result.measures[i].values)[*place] : 0;
     const bool equal = std::bit_cast<std::uint64_t>(now) == std::bit_cast<std::uint64_t>(then);
     same &= equal || !stored;
     std::printf("  %-20s %12.6g %-6s %s", result.measures[i].name.c_str(), now,
@@ -51,7 +53,7 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.map});
-  const StoredSweep stored = read_stored_sweep(request.map);
+  const StoredSweep stored = read_stored_part(request.map);
   const Sweep sweep = read_configuration(stored.attributes, request.map, [&] {
     return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
                             request.map + " config");

@@ -50,7 +50,7 @@ struct Sample {
   SweepResult tried;  // only these runs are done in it
 };
 Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandLine& line) {
-  const std::vector<std::size_t> runs = result.runs_in(RunState::pending);
+  const std::vector<std::size_t> places = result.runs_in(RunState::pending);
   SimulationOptions options;
   RunReport report;
   options.report = &report;
@@ -59,14 +59,16 @@ Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandL
   const auto start = Clock::now();
   constexpr std::size_t kSamples = 16;
   std::size_t done = 0;
-  Sample sample{std::nullopt, 0, sweep.plan()};
-  for (; done < std::min(kSamples, runs.size()) && seconds_since(start) < 2; ++done) {
+  Sample sample{std::nullopt, 0, result};
+  sample.tried.state.assign(result.state.size(), RunState::pending);
+  for (; done < std::min(kSamples, places.size()) && seconds_since(start) < 2; ++done) {
     // An odd multiplier visits the samples out of order, so that stopping early leaves a fair choice.
-    const std::size_t run = runs[(7 * done % kSamples) * runs.size() / kSamples];
+    const std::size_t place = places[(7 * done % kSamples) * places.size() / kSamples];
+    const std::size_t run = result.run_at(place);
     try {
       const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
       add_unknown_outcome(sweep.measures(), trace, report.notes);
-      sample.tried.notes[run] = note_bits(report.notes), sample.tried.state[run] = RunState::done;
+      sample.tried.notes[place] = note_bits(report.notes), sample.tried.state[place] = RunState::done;
     } catch (const std::exception&) {
       ++sample.failed;  // the sweep would record it
     }

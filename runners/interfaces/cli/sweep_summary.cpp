@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
@@ -15,36 +14,7 @@ namespace remote_touch {
 
 namespace {
 
-// "mean 0.25  0 .. 1 1, of 4 of 5 runs". Runs whose value is not finite are left out, because an unknown
-// outcome is neither 0 nor 1. The text then states the number of runs in the mean.
-std::string summary_of(const std::vector<double>& values, const std::vector<std::size_t>& done,
-                       const std::string& units) {
-  double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
-  std::size_t count = 0;
-  for (const std::size_t run : done) {
-    if (!std::isfinite(values[run])) continue;
-    low = std::min(low, values[run]), high = std::max(high, values[run]), sum += values[run];
-    ++count;
-  }
-  if (count == 0) return "no value in any run";
-  char text[160];
-  std::snprintf(text, sizeof text, "mean %-10.6g %.6g .. %.6g %s", sum / static_cast<double>(count), low,
-                high, units.c_str());
-  if (count == done.size()) return text;
-  return text + (", of " + std::to_string(count)) + " of " + std::to_string(done.size()) + " runs";
-}
-
-// Prints which runs failed and why, each with the options by which `replay` selects it; at most 20 runs.
-void print_failures(const SweepResult& result, const std::vector<std::size_t>& failed) {
-  constexpr std::size_t kMax = 20;
-  for (std::size_t i = 0; i < std::min(kMax, failed.size()); ++i) {
-    const std::size_t run = failed[i];
-    std::printf("  failed: --cell %s --replicate %d: %s\n", cell_text(result, result.cell_of(run)).c_str(),
-                result.replicate_of(run), result.error[run].c_str());
-  }
-  if (failed.size() > kMax)
-    std::printf("  and %zu more, in the dataset /sweep/error\n", failed.size() - kMax);
-}
+constexpr std::size_t kMaxFailures = 20;  // that are printed
 
 }  // namespace
 
@@ -54,24 +24,82 @@ std::string extent_text(const SweepResult& result) {
   return text;
 }
 
+SweepSummary::SweepSummary(const SweepResult& outline) : ranges_(outline.measures.size()) {
+  outline_.axes = outline.axes, outline_.replicates = outline.replicates;
+  for (const Column& measure : outline.measures)
+    outline_.measures.push_back({measure.name, measure.units, measure.long_name, {}});
+}
+
+// Counts that were there come from lower runs.
+void SweepSummary::add_notes(const std::vector<NoteCount>& counts) {
+  for (const NoteCount& count : counts) {
+    const auto same = std::find_if(notes_.begin(), notes_.end(),
+                                   [&](const NoteCount& each) { return each.kind == count.kind; });
+    if (same == notes_.end())
+      notes_.push_back(count);
+    else
+      same->runs += count.runs;
+  }
+}
+
+void SweepSummary::add(const SweepResult& block) {
+  const std::vector<std::size_t> done = block.runs_in(RunState::done);
+  const std::vector<std::size_t> failed = block.runs_in(RunState::failed);
+  held_ += block.held_count(), done_ += done.size(), failed_ += failed.size();
+  elsewhere_ += block.runs_in(RunState::elsewhere).size();
+  for (const std::int32_t round : block.round) rounds_ = std::max(rounds_, round + 1);
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    const auto& values = std::get<std::vector<double>>(block.measures[i].values);
+    Range& range = ranges_[i];
+    for (const std::size_t place : done) {
+      const double value = values[place];
+      if (!std::isfinite(value)) continue;
+      range.low = std::min(range.low, value), range.high = std::max(range.high, value), range.sum += value;
+      ++range.count;
+    }
+  }
+  for (std::size_t i = 0; i < failed.size() && failures_.size() < kMaxFailures; ++i) {
+    const std::size_t run = block.run_at(failed[i]);
+    failures_.push_back("--cell " + cell_text(block, block.cell_of(run)) + " --replicate " +
+                        std::to_string(block.replicate_of(run)) + ": " + block.error[failed[i]]);
+  }
+  add_notes(note_counts(block));
+}
+
+// "mean 0.25  0 .. 1 1, of 4 of 5 runs". Runs whose value is not finite are left out, because an unknown
+// outcome is neither 0 nor 1. The text then states the number of runs in the mean.
+std::string SweepSummary::text_of(const Range& range, const std::string& units) const {
+  if (range.count == 0) return "no value in any run";
+  char text[160];
+  std::snprintf(text, sizeof text, "mean %-10.6g %.6g .. %.6g %s",
+                range.sum / static_cast<double>(range.count), range.low, range.high, units.c_str());
+  if (range.count == done_) return text;
+  return text + (", of " + std::to_string(range.count)) + " of " + std::to_string(done_) + " runs";
+}
+
+int SweepSummary::print(const std::string& file, const std::string& digest) const {
+  std::printf("%s: %s cells, %zu runs done, %zu failed", printable(file).c_str(),
+              extent_text(outline_).c_str(), done_, failed_);
+  if (rounds_ > 0) std::printf(" in %d rounds", rounds_);
+  const std::size_t elsewhere = elsewhere_ + (rounds_ == 0 ? outline_.run_count() - held_ : 0);
+  if (elsewhere > 0) std::printf(", %zu in other shards", elsewhere);
+  std::printf(", digest %s\n", digest.c_str());
+  for (std::size_t i = 0; done_ > 0 && i < ranges_.size(); ++i) {
+    const Column& measure = outline_.measures[i];
+    std::printf("  %-20s %s\n", measure.name.c_str(), text_of(ranges_[i], measure.units).c_str());
+  }
+  for (const std::string& line : note_lines(outline_, notes_, done_))
+    std::printf("  note: %s\n", line.c_str());
+  for (const std::string& failure : failures_) std::printf("  failed: %s\n", failure.c_str());
+  if (failed_ > failures_.size())
+    std::printf("  and %zu more, in the dataset /sweep/error\n", failed_ - failures_.size());
+  return failed_ == 0 ? kDone : kCheckFailed;
+}
+
 int print_summary(const std::string& file, const SweepResult& result) {
-  const auto failed = result.runs_in(RunState::failed);
-  const std::vector<std::size_t> done = result.runs_in(RunState::done);
-  std::printf("%s: %s cells, %zu runs done, %zu failed", printable(file).c_str(), extent_text(result).c_str(),
-              done.size(), failed.size());
-  if (!result.round.empty())
-    std::printf(" in %d rounds", 1 + *std::max_element(result.round.begin(), result.round.end()));
-  if (const auto elsewhere = result.runs_in(RunState::elsewhere).size(); elsewhere > 0)
-    std::printf(", %zu in other shards", elsewhere);
-  std::printf(", digest %s\n", digest(result).c_str());
-  if (!done.empty())
-    for (const Column& measure : result.measures)
-      std::printf("  %-20s %s\n", measure.name.c_str(),
-                  summary_of(result.measure(measure.name), done, measure.units).c_str());
-  for (const std::string& line : note_lines(result)) std::printf("  note: %s\n", line.c_str());
-  if (failed.empty()) return kDone;
-  print_failures(result, failed);
-  return kCheckFailed;
+  SweepSummary summary(result);
+  summary.add(result);
+  return summary.print(file, digest(result));
 }
 
 }  // namespace remote_touch

@@ -1,7 +1,10 @@
 // The texts that the commands about sweeps print.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
 
@@ -12,5 +15,29 @@ std::string extent_text(const SweepResult& result);  // "76 x 71"
 // Prints the cells, the runs, the mean and range of each measure, and the number of runs with each kind of
 // note. Returns kDone, or kCheckFailed if a run failed.
 int print_summary(const std::string& file, const SweepResult& result);
+
+// The same of a sweep whose runs come in blocks.
+class SweepSummary {
+ public:
+  explicit SweepSummary(const SweepResult& outline);
+  // block: a part of the sweep, or all of it. The blocks come in increasing order of their runs.
+  void add(const SweepResult& block);
+  int print(const std::string& file, const std::string& digest) const;
+
+ private:
+  // Of the finite values of a measure.
+  struct Range {
+    double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
+    std::size_t count = 0;
+  };
+  std::string text_of(const Range& range, const std::string& units) const;
+  void add_notes(const std::vector<NoteCount>& counts);
+  SweepResult outline_;  // without values
+  std::size_t held_ = 0, done_ = 0, failed_ = 0, elsewhere_ = 0;
+  int rounds_ = 0;                     // 0 without refinement
+  std::vector<Range> ranges_;          // of the measures
+  std::vector<std::string> failures_;  // the first of them
+  std::vector<NoteCount> notes_;
+};
 
 }  // namespace remote_touch

@@ -7,6 +7,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/schema.h"
+#include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"

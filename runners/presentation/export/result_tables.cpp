@@ -4,6 +4,7 @@
 
 #include "analysis/comparison/column_source.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/trace/trace.h"
 #include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 
@@ -23,32 +22,73 @@ Sweep twelve(const std::vector<std::string>& overrides = {}) {
                           "twelve.json", overrides);
 }
 
-// Every cell of the first round has one shard, all its replicates in it, and shards differ by one cell at
-// most.
+// Every run of the first round is in one shard, with all replicates of its cell, and shards differ by one
+// cell at most. A shard holds no other run.
 TEST(Shards, ShareTheCells) {
   for (const Sweep& sweep : {twelve(), twelve({"refine.budget=99", "refine.levels=1"})})
-    for (const int count : {1, 2, 3, 7, 20}) {
+    for (const int count : {2, 3, 7, 20}) {
       const SweepResult whole = sweep.plan();
       std::vector<int> owners(whole.run_count(), 0);
       std::size_t min_count = whole.run_count(), max = 0;
       for (int index = 1; index <= count; ++index) {
         const SweepResult part = sweep.plan({index, count});
-        for (std::size_t run = 0; run < part.run_count(); ++run) {
-          owners[run] += part.state[run] == RunState::pending;
-          // All replicates of a cell belong together. Runs that no shard does are not sampled in any.
-          const bool owned = part.state[part.run(part.cell_of(run), 0)] == RunState::pending;
-          const RunState expected = whole.state[run] != RunState::pending ? RunState::not_sampled
-                                    : owned                               ? RunState::pending
-                                                                          : RunState::elsewhere;
-          EXPECT_EQ(part.state[run], expected);
+        ASSERT_TRUE(part.part);
+        EXPECT_EQ(part.run_count(), whole.run_count());
+        EXPECT_EQ(part.runs_in(RunState::pending).size(), part.held_count());
+        for (std::size_t place = 0; place < part.held_count(); ++place) {
+          const std::size_t run = part.run_at(place);
+          ++owners[run];
+          EXPECT_EQ(part.place_of(run), place);
+          for (int replicate = 0; replicate < 2; ++replicate)
+            EXPECT_TRUE(part.place_of(part.run(part.cell_of(run), replicate)));
         }
-        min_count = std::min(min_count, part.runs_in(RunState::pending).size());
-        max = std::max(max, part.runs_in(RunState::pending).size());
+        min_count = std::min(min_count, part.held_count()), max = std::max(max, part.held_count());
       }
       for (std::size_t run = 0; run < owners.size(); ++run)
         EXPECT_EQ(owners[run], whole.state[run] == RunState::pending ? 1 : 0);
       EXPECT_LE(max - min_count, 2u);  // replicates of one cell
     }
+}
+
+TEST(Shards, TheOnlyOneIsWhole) {
+  const SweepResult whole = twelve().plan({1, 1});
+  EXPECT_FALSE(whole.part);
+  EXPECT_EQ(whole.runs_in(RunState::pending).size(), 24u);
+}
+
+// All 1e11 runs would need 6 TB; a shard needs what its own runs need.
+TEST(Shards, OfALargeSweepHoldTheirOwnRunsOnly) {
+  const std::string noise =
+      R"(axes=[{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.01, "count": 100000})";
+  const std::string steps =
+      R"(, {"parameter": "renderer.steps_per_tick", "from": 1, "to": 100, "count": 100}])";
+  const Sweep sweep = twelve({noise + steps, "replicates=10000"});
+  const SweepResult part = sweep.plan({3, 1000000});
+  EXPECT_EQ(part.run_count(), 100000000000u);
+  EXPECT_EQ(part.held_count(), 100000u);
+  EXPECT_EQ(part.run_at(0), 20000u) << "cell 2";
+  EXPECT_EQ(part.run_at(99999), 90000029999u) << "cell 9 * 1000000 + 2";
+  EXPECT_HAS(refusal([&] {
+               sweep.plan({1, 1000});
+             }),
+             "100000000 runs in one file: expected at most 10000000");
+  EXPECT_HAS(refusal([&] { sweep.plan(); }), "100000000000 runs in one file: expected at most 10000000");
+  const std::string seeds = R"(, {"parameter": "seed", "from": 1, "to": 100000, "count": 100000})";
+  EXPECT_HAS(refusal([&] {
+               twelve({noise + seeds + steps, "replicates=10000"});
+             }),
+             "more than 1000000000000000 runs");
+}
+
+TEST(Shards, OfAMergedFileAreWrittenAsRanges) {
+  const auto text_of = [](const std::string& text) { return parse_shards(text, "a.h5").text(); };
+  EXPECT_EQ(text_of("2/7"), "2/7");
+  EXPECT_EQ(text_of("1-3,7/1000"), "1-3,7/1000");
+  EXPECT_EQ(text_of("7,2,1,3/9"), "1-3,7/9");
+  EXPECT_EQ(text_of("1-4/4"), "1-4/4");
+  for (const char* text : {"", "/", "3", "1-/3", "-2/3", "0-2/3", "2-4/3", "1,,2/3", "1-2", "a-b/3", "1/3/5"})
+    EXPECT_HAS(refusal([&] { parse_shards(text, "a.h5"); }),
+               std::string("a.h5: shard ") + text + ": expected i/N");
 }
 
 TEST(Shards, AreWrittenAsIndexOfCount) {

@@ -9,6 +9,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/schema.h"
+#include "analysis/sweeps/sweep_columns.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"

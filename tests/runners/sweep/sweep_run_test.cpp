@@ -40,7 +40,7 @@ void expect_same(const SweepResult& a, const SweepResult& b) {
   EXPECT_EQ(a.notes, b.notes);
   ASSERT_EQ(a.measures.size(), b.measures.size());
   for (const Column& measure : a.measures)
-    for (std::size_t run = 0; run < a.run_count(); ++run)
+    for (std::size_t run = 0; run < a.held_count(); ++run)
       EXPECT_EQ(std::bit_cast<std::uint64_t>(a.measure(measure.name)[run]),
                 std::bit_cast<std::uint64_t>(b.measure(measure.name)[run]))
           << measure.name << " of run " << run;
@@ -105,19 +105,42 @@ TEST(SweepRuns, DoNotDependOnThreads) {
 
 TEST(SweepRuns, OnlyPendingRunsAreDoneAndEachIsReportedOnce) {
   const Sweep sweep = quick();
-  SweepResult result = sweep.plan({2, 3});
+  SweepResult result = sweep.plan();
+  for (std::size_t run = 0; run < result.run_count(); run += 3) result.state[run] = RunState::not_sampled;
   std::vector<int> reported(result.run_count(), 0);
   SweepRunOptions options;
-  options.finished = [&](std::size_t run) {
-    EXPECT_EQ(result.state[run], RunState::done);
-    ++reported[run];
+  options.finished = [&](std::size_t place) {
+    EXPECT_EQ(result.state[place], RunState::done);
+    ++reported[place];
   };
   do_pending_runs(sweep, result, options);
   for (std::size_t run = 0; run < reported.size(); ++run) {
-    const bool mine = result.cell_of(run) % 3 == 1;
-    EXPECT_EQ(reported[run], mine ? 1 : 0);
-    EXPECT_EQ(result.state[run], mine ? RunState::done : RunState::elsewhere);
-    EXPECT_EQ(std::isnan(result.measure("popped_through")[run]), !mine);
+    const bool was_pending = run % 3 != 0;
+    EXPECT_EQ(reported[run], was_pending ? 1 : 0);
+    EXPECT_EQ(result.state[run], was_pending ? RunState::done : RunState::not_sampled);
+    EXPECT_EQ(std::isnan(result.measure("popped_through")[run]), !was_pending);
+  }
+}
+
+TEST(SweepRuns, OfAShardHaveTheBitsOfTheWholeSweep) {
+  const Sweep sweep = quick();
+  const SweepResult whole = run_sweep(sweep, {});
+  for (const int index : {1, 2, 3}) {
+    SweepResult part = sweep.plan({index, 3});
+    EXPECT_EQ(part.held_count(), 8u);
+    do_pending_runs(sweep, part, {});
+    for (std::size_t place = 0; place < part.held_count(); ++place) {
+      const std::size_t run = part.run_at(place);
+      EXPECT_EQ(part.state[place], RunState::done);
+      EXPECT_EQ(part.notes[place], whole.notes[run]);
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(part.measure("max_penetration")[place]),
+                std::bit_cast<std::uint64_t>(whole.measure("max_penetration")[run]));
+    }
+    const SweepResult expanded = whole_of(part);
+    EXPECT_EQ(expanded.runs_in(RunState::done).size(), 8u);
+    EXPECT_EQ(expanded.runs_in(RunState::elsewhere).size(), 16u);
+    expect_same(without_others(expanded), part);
+    EXPECT_EQ(without_others(expanded).part, part.part);
   }
 }
 

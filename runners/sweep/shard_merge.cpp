@@ -1,0 +1,231 @@
+#include "runners/sweep/shard_merge.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "analysis/storage/hdf5_reader.h"
+#include "analysis/sweeps/run_spool.h"
+#include "analysis/sweeps/sweep_columns.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/recipe.h"
+#include "runners/sweep/shard.h"
+#include "runners/sweep/stored_sweep.h"
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr std::size_t kBlock = 1 << 17;  // runs
+
+// A file of some shards, without its runs.
+struct ShardFile {
+  std::string file;
+  ShardSet shards;
+  StoredSweep outline;
+};
+
+ShardFile outline_of(const std::string& file, const Hdf5Reader& hdf5) {
+  ShardFile part{file, {}, read_stored_outline(hdf5)};
+  auto& attributes = part.outline.attributes;
+  const auto shard =
+      std::find_if(attributes.begin(), attributes.end(), [](const auto& a) { return a.first == "shard"; });
+  if (shard == attributes.end())
+    throw InputError(file, "is the result of a whole sweep: expected the shards of a sweep");
+  part.shards = parse_shards(shard->second, file);
+  attributes.erase(shard);
+  return part;
+}
+
+// The array `round` does not tell: an empty shard has none.
+bool is_refined(const ShardFile& part) {
+  return parse_json(attribute(part.outline.attributes, "config"), part.file + " config").contains("refine");
+}
+
+// Throws InputError unless both files are of one sweep, one build and the same recordings.
+void require_same_origin(const ShardFile& part, const ShardFile& first) {
+  const TextAttributes &ours = part.outline.attributes, &theirs = first.outline.attributes;
+  for (const auto* attributes : {&ours, &theirs})  // either may have one that the other has not
+    for (const auto& [name, value] : *attributes)
+      // The path of the same file may be written differently.
+      if (name != "input_digests" && name != "command" && name != kRecipe &&
+          attribute(ours, name) != attribute(theirs, name))
+        throw InputError(part.file, "has another " + name + " than " + first.file +
+                                        ": expected shards of one sweep, made by one build");
+  for (const auto& input :
+       changed_inputs(attribute(theirs, "input_digests"), attribute(ours, "input_digests")))
+    throw InputError(part.file, "has runs on another recording " + input.path + " (" + input.now + "; " +
+                                    first.file + ": " + input.before + "): expected shards of one sweep");
+  const SweepResult &own = part.outline.result, &other = first.outline.result;
+  if (own.run_count() != other.run_count()) throw InputError(part.file, "damaged (another number of runs)");
+  if (own.note_kinds != other.note_kinds)
+    throw InputError(part.file, "damaged (other kinds of notes than " + first.file + ")");
+}
+
+// The shards of the files so far, each with its file.
+class SeenShards {
+ public:
+  // Throws InputError if one was there already, or the sweep has another number of them.
+  void add(const ShardFile& part, const ShardFile& first) {
+    if (part.shards.count != first.shards.count)
+      throw InputError(part.file, "is shard " + part.shards.text() + ": expected shards of " +
+                                      std::to_string(first.shards.count) + ", as " + first.file);
+    for (const int index : part.shards.indices)
+      if (const auto [twin, is_new] = file_of_.emplace(index, part.file); !is_new)
+        throw InputError(part.file, "is shard " + Shard{index, part.shards.count}.text() + ", as is " +
+                                        twin->second + ": expected once");
+    all_.count = part.shards.count;
+    all_.indices.insert(part.shards.indices.begin(), part.shards.indices.end());
+  }
+  const ShardSet& all() const { return all_; }
+  bool are_complete() const { return all_.indices.size() == static_cast<std::size_t>(all_.count); }
+  void require_complete() const {
+    if (are_complete()) return;
+    ShardSet missing{{}, all_.count};
+    for (int i = 1; i <= all_.count; ++i)
+      if (!all_.indices.contains(i)) missing.indices.insert(i);
+    const bool is_one = missing.indices.size() == 1;
+    throw InputError("merge", std::string(is_one ? "shard " : "shards ") + missing.text() +
+                                  (is_one ? " is" : " are") + " missing: expected all of them, or --partial");
+  }
+
+ private:
+  std::map<int, std::string> file_of_;
+  ShardSet all_;
+};
+
+// Returns the values of a part in memory.
+RunSpool::PartValues values_in(const SweepResult& part) {
+  return [&part](const std::string& array, std::size_t first, std::size_t count) -> Values {
+    const auto slice = [&](const auto& all) -> Values {
+      const auto from = all.begin() + static_cast<std::ptrdiff_t>(first);
+      return std::decay_t<decltype(all)>(from, from + static_cast<std::ptrdiff_t>(count));
+    };
+    if (array == "run") return slice(*part.part);
+    if (array == "notes") return slice(part.notes);
+    if (array == "round") return slice(part.round);
+    if (array == "error") return slice(part.error);
+    if (array != "state") return slice(part.measure(array));
+    std::vector<std::int32_t> states;
+    for (std::size_t i = first; i < first + count; ++i)
+      states.push_back(static_cast<std::int32_t>(part.state[i]));
+    return states;
+  };
+}
+
+// Copies the runs of a file. A finished part is read block by block. An unfinished one, and one of an earlier
+// version, which has an element for each run of the sweep, is read as a whole.
+void add_runs(const std::string& file, const Hdf5Reader& hdf5, Partial partial, RunSpool& spool) {
+  if (hdf5.has("/sweep/run") && !hdf5.has("/sweep/checksum")) {
+    const std::size_t held = hdf5.column("/sweep/run").length();
+    spool.add(file, held, [&](const std::string& array, std::size_t first, std::size_t count) {
+      return hdf5.rows("/sweep/" + array, first, count).values;
+    });
+    return;
+  }
+  const SweepResult part = without_others(read_sweep(hdf5).result);
+  const std::size_t pending = part.runs_in(RunState::pending).size();
+  if (partial == Partial::no)
+    throw InputError(file, "not finished (" + std::to_string(pending) +
+                               " runs are left): expected once its sweep command has ended, or --partial");
+  spool.add(file, part.held_count(), values_in(part));
+}
+
+// Calls `each` with the runs of the spool, in blocks.
+void for_each_block(RunSpool& spool, const SweepInBlocks& sweep, const EachBlock& each) {
+  for (std::size_t first = 0; first < spool.count(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, spool.count() - first);
+    SweepResult block = sweep.outline;
+    std::vector<std::uint64_t> runs(count);
+    for (std::size_t i = 0; i < count; ++i) runs[i] = block.part ? spool.held()[first + i] : first + i;
+    block.part = std::move(runs);
+    for (Column& measure : block.measures) measure.values = spool.values(measure.name, first, count);
+    const auto states = std::get<std::vector<std::int32_t>>(spool.values("state", first, count));
+    for (const std::int32_t state : states) block.state.push_back(static_cast<RunState>(state));
+    block.error = std::get<std::vector<std::string>>(spool.values("error", first, count));
+    if (!block.note_kinds.empty())
+      block.notes = std::get<std::vector<std::int32_t>>(spool.values("notes", first, count));
+    if (sweep.is_refined)
+      block.round = std::get<std::vector<std::int32_t>>(spool.values("round", first, count));
+    each(block);
+  }
+}
+
+// Returns the sweep in the file; nothing if the file is absent or empty, or if --force lets another file be
+// replaced. Throws InputError for another file.
+std::optional<SweepResult> sweep_in(const std::string& file, bool force) {
+  std::error_code unreachable;
+  if (!std::filesystem::is_regular_file(file, unreachable) ||
+      std::filesystem::file_size(file, unreachable) == 0)
+    return std::nullopt;
+  try {
+    return without_others(read_sweep(file).result);
+  } catch (const InputError&) {
+    if (!force) throw;
+    return std::nullopt;
+  }
+}
+
+// Throws InputError if the file holds runs that the shards do not, because its sweep was refined or
+// continued. Such a file is not replaced, not even with --force.
+void require_nothing_more(const MergeRequest& request, const SweepInBlocks& whole) {
+  const std::optional<SweepResult> there = sweep_in(request.output, request.force);
+  if (!there) return;
+  const auto place_of = [&](std::uint64_t run) { return whole.outline.place_of(run); };
+  const std::size_t count = whole.outline.held_count();
+  for (const std::size_t place : there->runs_in(RunState::done)) {
+    const auto at = place_of(there->run_at(place));
+    const bool is_done = at && *at < count &&
+                         std::get<std::vector<std::int32_t>>(whole.values("state", *at, 1)).front() ==
+                             static_cast<std::int32_t>(RunState::done);
+    if (!is_done)
+      throw InputError(request.output, "holds runs that the shards do not: expected another file");
+  }
+}
+
+}  // namespace
+
+std::string merge_shards(const MergeRequest& request, const EachBlock& each_block) {
+  std::optional<ShardFile> first;
+  std::optional<RunSpool> spool;
+  SeenShards seen;
+  SweepInBlocks sweep;
+  for (const std::string& file : request.shards) {
+    std::error_code absent;
+    if (std::filesystem::equivalent(file, request.output, absent))
+      throw InputError(request.output, "is one of the shards: expected another file");
+    const Hdf5Reader hdf5(file);
+    ShardFile part = outline_of(file, hdf5);
+    if (!first) {
+      sweep.outline = part.outline.result;
+      sweep.is_refined = is_refined(part);
+      spool.emplace(sweep.outline, sweep.is_refined, request.output);
+      first = std::move(part);
+      seen.add(*first, *first);
+    } else {
+      require_same_origin(part, *first);
+      seen.add(part, *first);
+    }
+    add_runs(file, hdf5, request.partial, *spool);
+  }
+  if (request.partial == Partial::no) seen.require_complete();
+  const bool is_whole = seen.are_complete();
+  spool->complete(is_whole);
+  if (!is_whole) {
+    sweep.outline.part = spool->held();
+    first->outline.attributes.emplace_back("shard", seen.all().text());
+  }
+  sweep.longest_error = spool->longest_error();
+  sweep.values = [&](const std::string& array, std::size_t at, std::size_t count) {
+    return spool->values(array, at, count);
+  };
+  require_nothing_more(request, sweep);
+  for_each_block(*spool, sweep, each_block);
+  return write_sweep(request.output, sweep, first->outline.attributes);
+}
+
+}  // namespace remote_touch

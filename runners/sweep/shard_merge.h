@@ -1,0 +1,34 @@
+// Merges the shards of a sweep into one file, block by block: their runs may be more than the memory holds.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/column.h"
+
+namespace remote_touch {
+
+// yes: shards may be missing or unfinished. The merged file then is a part of the sweep: it states its
+// shards, and can be merged with others unless some of its runs are pending.
+enum class Partial { no, yes };
+
+struct MergeRequest {
+  std::vector<std::string> shards;  // files of shards, or of parts that were merged from some
+  std::string output;
+  Partial partial = Partial::no;
+  bool force = false;  // an output that is no sweep may be replaced
+};
+
+// Called before the file is written, with the runs in increasing order; each block is a part of the result.
+using EachBlock = std::function<void(const SweepResult& block)>;
+
+// Writes the merged file and returns its digest. A whole sweep has the bytes that one process would have
+// written. pre: the caller holds the lock of the output. Throws InputError, which names the file, for a shard
+// that is missing, doubled, damaged, unfinished or of another sweep, build or recording, and for an output
+// that holds runs that the shards do not.
+std::string merge_shards(const MergeRequest& request, const EachBlock& each_block);
+
+}  // namespace remote_touch

@@ -1,0 +1,144 @@
+// Merging shards: the bytes of a whole sweep, some shards only, and what is refused.
+#include "runners/sweep/shard_merge.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "analysis/sweeps/sweep_file.h"
+#include "core/kernels/isa.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_session.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::shard_merge_test {
+namespace {
+
+// A run takes a millisecond.
+constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
+  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1, "duration_s": 0.05},
+  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3},
+           {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 7, "count": 4}],
+  "replicates": 2, "measures": ["max_penetration", "popped_through"]})";
+
+class ShardMerge : public testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  // Writes a shard, or with "1/1" the whole sweep. Returns its file.
+  std::string shard(const std::string& text, const std::vector<std::string>& overrides = {},
+                    const std::atomic<bool>* stop = nullptr) const {
+    std::string name = text + (overrides.empty() ? "" : overrides.front()) + ".h5";
+    for (char& c : name)
+      if (c == '/') c = 'o';
+    const Sweep sweep = Sweep::from_json(kQuick, "quick.json", overrides);
+    const Shard which = parse_shard(text);
+    TextAttributes attributes = {{"config", sweep.to_json()}, {"version", "1"}};
+    if (which.count > 1) attributes.emplace_back("shard", which.text());
+    SweepSession session(sweep, which, attributes, file(name));
+    refusal([&] {  // Interrupted, if it was stopped
+      try {
+        session.run(kernels_for(best_isa()), stop, [](auto...) {});
+      } catch (const Interrupted&) {
+      }
+    });
+    return file(name);
+  }
+  std::string merged(const std::vector<std::string>& shards, Partial partial = Partial::no) {
+    const std::string output = file("merged" + std::to_string(++merges_) + ".h5");
+    merge_shards({shards, output, partial}, [](const SweepResult&) {});
+    return output;
+  }
+  std::string why(const std::vector<std::string>& shards, Partial partial = Partial::no) {
+    return refusal([&] { merged(shards, partial); });
+  }
+
+  const TestFolder folder_{"shard_merge_test"};
+  int merges_ = 0;
+};
+
+// Also with more shards than cells, so that some shards are empty.
+TEST_F(ShardMerge, HasTheBytesOfTheWholeSweep) {
+  for (const std::vector<std::string>& overrides :
+       {std::vector<std::string>{},
+        {"replicates=300"},
+        {"refine.budget=70", "refine.levels=1", "refine.max_replicates=5"}}) {
+    const bool is_refined = overrides.size() == 3;
+    for (const int count : {2, 5, 15}) {
+      std::vector<std::string> shards;
+      for (int i = count; i >= 1; --i) shards.push_back(shard(Shard{i, count}.text(), overrides));
+      const std::string output = merged(shards);
+      // Refinement goes on from the merged first round; the whole sweep has all rounds.
+      if (is_refined) {
+        const Sweep sweep = Sweep::from_json(kQuick, "quick.json", overrides);
+        SweepSession(sweep, {}, {{"config", sweep.to_json()}, {"version", "1"}}, output)
+            .run(kernels_for(best_isa()), nullptr, [](auto...) {});
+      }
+      EXPECT_TRUE(bytes_of(output) == bytes_of(shard("1/1", overrides))) << count;
+    }
+  }
+}
+
+TEST_F(ShardMerge, OfSomeShardsIsAPartThatCanBeMergedAgain) {
+  std::vector<std::string> all;
+  for (int i = 1; i <= 5; ++i) all.push_back(shard(Shard{i, 5}.text()));
+  EXPECT_HAS(why({all[0], all[1], all[3]}), "shards 3,5/5 are missing: expected all of them, or --partial");
+  const std::string three = merged({all[3], all[0], all[1]}, Partial::yes),
+                    two = merged({all[2], all[4]}, Partial::yes);
+  const StoredSweep part = read_sweep(three);
+  EXPECT_EQ(attribute(part.attributes, "shard"), "1-2,4/5");
+  EXPECT_EQ(part.result.runs_in(RunState::done).size(), 16u) << "8 of 12 cells";
+  EXPECT_EQ(read_stored_sweep(three).result.runs_in(RunState::elsewhere).size(), 8u);
+  EXPECT_EQ(bytes_of(merged({two, three})), bytes_of(shard("1/1")));
+  EXPECT_HAS(why({three, all[1], two}), "is shard 2/5, as is " + three + ": expected once");
+}
+
+TEST_F(ShardMerge, TakesAnUnfinishedShardOnlyAsAPart) {
+  const std::atomic<bool> stop{true};
+  const std::string one = shard("1/2"), two = shard("2/2", {}, &stop);
+  EXPECT_HAS(why({one, two}), "2o2.h5: not finished (12 runs are left)");
+  const StoredSweep early = read_sweep(merged({one, two}, Partial::yes));
+  EXPECT_EQ(early.result.runs_in(RunState::done).size(), 12u);
+  EXPECT_EQ(early.result.runs_in(RunState::pending).size(), 12u);
+}
+
+TEST_F(ShardMerge, RefusesWhatDoesNotBelongTogether) {
+  const std::string one = shard("1/2"), two = shard("2/2");
+  EXPECT_HAS(why({one}), "merge: shard 2/2 is missing");
+  EXPECT_HAS(why({one, one}), "is shard 1/2, as is");
+  EXPECT_HAS(why({one, shard("2/3")}), "is shard 2/3: expected shards of 2, as " + one);
+  EXPECT_HAS(why({one, shard("2/2", {"replicates=3"})}), "has another config than");
+  EXPECT_HAS(why({one, shard("1/1")}), "is the result of a whole sweep");
+  EXPECT_HAS(why({one, file("absent.h5")}), "absent.h5: no such file");
+  EXPECT_HAS(refusal([&] {
+               merge_shards({{one, two}, two}, [](const SweepResult&) {});
+             }),
+             "is one of the shards");
+  std::string bytes = bytes_of(two);
+  bytes[bytes.size() / 2] ^= 1;
+  EXPECT_HAS(why({one, folder_.write("flipped.h5", bytes)}), "flipped.h5: damaged or modified");
+}
+
+// A forged shard, with the seal of this program: its runs are those of another shard, or are not all there.
+TEST_F(ShardMerge, NamesAShardThatHoldsOtherRuns) {
+  const std::string one = shard("1/2");
+  StoredSweep two = read_sweep(shard("2/2"));
+  two.result.part->front() = 0;
+  write_sweep(file("twin.h5"), two.result, two.attributes);
+  EXPECT_HAS(why({one, file("twin.h5")}), "twin.h5: holds run 0, as another part does: expected once");
+  two.result.part->front() = 99;
+  write_sweep(file("far.h5"), two.result, two.attributes);
+  EXPECT_HAS(why({one, file("far.h5")}), "far.h5: damaged (");
+  const SweepResult few = Sweep::from_json(kQuick, "quick.json").plan({2, 4});
+  write_sweep(file("few.h5"), few, two.attributes);
+  EXPECT_HAS(why({one, file("few.h5")}), "no part holds run 6");
+}
+
+TEST_F(ShardMerge, LeavesNoOtherFile) {
+  merged({shard("1/2"), shard("2/2")});
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "."))
+    EXPECT_TRUE(entry.path().extension() == ".h5") << entry.path();
+}
+
+}  // namespace
+}  // namespace remote_touch::shard_merge_test
