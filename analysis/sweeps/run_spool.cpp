@@ -133,19 +133,22 @@ std::size_t RunSpool::longest_error() const {
 }
 
 void RunSpool::find_held() {
+  std::vector<std::uint64_t>& held = outline_.part.emplace();
+  std::size_t all = 0;
+  for (const Part& part : parts_) all += part.held;
+  held.reserve(all);
   for (const Part& part : parts_)
     for (std::size_t first = 0; first < part.held; first += kBlock) {
       const Words runs = get(part, 0, first, std::min(kBlock, part.held - first));
-      held_.insert(held_.end(), runs.begin(), runs.end());
+      held.insert(held.end(), runs.begin(), runs.end());
     }
-  std::sort(held_.begin(), held_.end());
-  held_.erase(std::unique(held_.begin(), held_.end()),
-              held_.end());  // load() finds runs that were there twice
+  std::sort(held.begin(), held.end());
+  held.erase(std::unique(held.begin(), held.end()), held.end());  // load() finds runs that were there twice
 }
 
+// pre: a part holds the run.
 std::size_t RunSpool::place_of(std::uint64_t run) const {
-  if (is_whole_) return static_cast<std::size_t>(run);
-  return static_cast<std::size_t>(std::lower_bound(held_.begin(), held_.end(), run) - held_.begin());
+  return outline_.place_of(static_cast<std::size_t>(run)).value();
 }
 
 void RunSpool::find_starts(std::size_t number) {
@@ -156,15 +159,14 @@ void RunSpool::find_starts(std::size_t number) {
     for (std::size_t i = 0; i < runs.size(); ++i)
       while (starts.size() <= place_of(runs[i]) / kWindow) starts.push_back(first + i);
   }
-  starts.resize(count() / kWindow + 2, part.held);
+  starts.resize(outline_.held_count() / kWindow + 2, part.held);
 }
 
 void RunSpool::complete(bool is_whole) {
-  is_whole_ = is_whole;
   if (!is_whole) find_held();
   starts_.resize(parts_.size());
   for (std::size_t part = 0; part < parts_.size(); ++part) find_starts(part);
-  for (std::size_t window = 0; window * kWindow < count(); ++window) {
+  for (std::size_t window = 0; window * kWindow < outline_.held_count(); ++window) {
     load(0, window);
     require_each_run_once(window);
   }
@@ -176,7 +178,7 @@ void RunSpool::require_each_run_once(std::size_t window) {
   for (std::size_t i = 0; i < loaded_.size(); ++i)
     if (loaded_[i] == kUnset)
       throw InputError(parts_.front().name, "damaged, or another part is (no part holds run " +
-                                                std::to_string(run_at(window * kWindow + i)) + ")");
+                                                std::to_string(outline_.run_at(window * kWindow + i)) + ")");
 }
 
 // Loads the values of an array at all places of a window. A place of no part has the value of a run that is
@@ -189,7 +191,7 @@ void RunSpool::load(std::size_t array, std::size_t window) {
                              : name == "state" || name == "notes"
                                  ? 0
                                  : bits(std::numeric_limits<double>::quiet_NaN());
-  loaded_.assign(std::min(kWindow, count() - window * kWindow), none);
+  loaded_.assign(std::min(kWindow, outline_.held_count() - window * kWindow), none);
   loaded_array_ = array, loaded_window_ = window, is_loaded_ = true;
   for (std::size_t part = 0; part < parts_.size(); ++part) scatter(array, part);
 }
@@ -219,8 +221,8 @@ std::uint64_t RunSpool::word(std::size_t array, std::size_t place) {
 std::vector<std::string> RunSpool::errors(std::size_t first, std::size_t count) const {
   std::vector<std::string> texts(count);
   if (count == 0) return texts;
-  const std::uint64_t last = run_at(first + count - 1);
-  for (auto at = errors_.lower_bound(run_at(first)); at != errors_.end() && at->first <= last; ++at)
+  const std::uint64_t last = outline_.run_at(first + count - 1);
+  for (auto at = errors_.lower_bound(outline_.run_at(first)); at != errors_.end() && at->first <= last; ++at)
     texts[place_of(at->first) - first] = at->second;
   return texts;
 }

@@ -37,9 +37,10 @@ class RunSpool {
   // if a run is missing.
   void complete(bool is_whole);
 
-  std::size_t count() const { return is_whole_ ? outline_.run_count() : held_.size(); }
-  const std::vector<std::uint64_t>& held() const { return held_; }  // the runs; empty for a whole sweep
-  std::size_t longest_error() const;                                // bytes, at least 1
+  // The sweep without values, after complete() with the runs that the places have.
+  const SweepResult& outline() const { return outline_; }
+  bool is_refined() const { return is_refined_; }
+  std::size_t longest_error() const;  // bytes, at least 1
   // The values of an array at places that complete() defined. With refinement there is also the array round.
   Values values(const std::string& array, std::size_t first, std::size_t count);
 
@@ -51,7 +52,6 @@ class RunSpool {
   };
   using Words = std::vector<std::uint64_t>;  // the bits of values of any type
   std::size_t array_number(const std::string& array) const;
-  std::uint64_t run_at(std::size_t place) const { return is_whole_ ? place : held_[place]; }
   std::size_t place_of(std::uint64_t run) const;
   void put(const Words& words);
   Words get(const Part& part, std::size_t array, std::size_t first, std::size_t count) const;
@@ -64,15 +64,13 @@ class RunSpool {
   std::vector<std::string> errors(std::size_t first, std::size_t count) const;
   std::uint64_t word(std::size_t array, std::size_t place);
 
-  const SweepResult outline_;
+  SweepResult outline_;
   const bool is_refined_;
   const std::filesystem::path beside_;
   std::vector<std::string> arrays_;  // the names of those in the temporary file; the first is run
   int file_ = -1;
   std::uint64_t size_ = 0;
   std::vector<Part> parts_;
-  bool is_whole_ = true;
-  std::vector<std::uint64_t> held_;
   std::map<std::uint64_t, std::string> errors_;  // of the failed runs
   std::vector<Words> starts_;  // for each part the first of its places in each window, and their number
   std::size_t loaded_array_ = 0, loaded_window_ = 0;

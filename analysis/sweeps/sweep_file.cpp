@@ -57,7 +57,9 @@ void build(Hdf5Writer& hdf5, const SweepResult& result, TextAttributes attribute
   std::vector<std::string> axes;
   for (const Column& scale : scales) hdf5.columns("/sweep", {scale}, axes.emplace_back(scale.name));
   if (result.part) {
-    hdf5.columns("/sweep", {run_column(result)}, "run");
+    std::vector<Column> runs;  // no list in braces: that would be copied
+    runs.push_back(run_column(result));
+    hdf5.columns("/sweep", runs, "run");
     axes = {"run"};
   }
   for (const Column& measure : result.measures) put(measure, axes);
@@ -128,9 +130,11 @@ std::string write_sweep(const std::filesystem::path& file, const SweepInBlocks& 
   const SweepResult& outline = sweep.outline;
   Hdf5Writer hdf5(file);
   ColumnDigest sum;
-  std::vector<Column> before = outline.axes;
-  if (outline.part) before.push_back(run_column(outline));
-  for (const Column& column : before) sum.begin(column.name, column.width), sum.add(column.values);
+  const auto add = [&sum](const Column& column) {
+    sum.begin(column.name, column.width), sum.add(column.values);
+  };
+  for (const Column& axis : outline.axes) add(axis);
+  if (outline.part) add(run_column(outline));
   const auto put = [&](const Column& column, const std::vector<std::string>& axes) {
     const bool is_in_digest = column.name != "notes";
     if (is_in_digest) sum.begin(column.name, column.width);

@@ -136,34 +136,46 @@ void add_runs(const std::string& file, const Hdf5Reader& hdf5, Partial partial, 
 }
 
 // Calls `each` with the runs of the spool, in blocks.
-void for_each_block(RunSpool& spool, const SweepInBlocks& sweep, const EachBlock& each) {
-  for (std::size_t first = 0; first < spool.count(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, spool.count() - first);
-    SweepResult block = sweep.outline;
-    std::vector<std::uint64_t> runs(count);
-    for (std::size_t i = 0; i < count; ++i) runs[i] = block.part ? spool.held()[first + i] : first + i;
-    block.part = std::move(runs);
+void for_each_block(RunSpool& spool, const EachBlock& each) {
+  const SweepResult& outline = spool.outline();
+  SweepResult block;
+  block.axes = outline.axes, block.replicates = outline.replicates;
+  block.measures = outline.measures, block.note_kinds = outline.note_kinds;
+  for (std::size_t first = 0; first < outline.held_count(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, outline.held_count() - first);
+    const auto numbers = [&](const char* array) {
+      return std::get<std::vector<std::int32_t>>(spool.values(array, first, count));
+    };
+    block.part.emplace(count);
+    for (std::size_t i = 0; i < count; ++i) (*block.part)[i] = outline.run_at(first + i);
     for (Column& measure : block.measures) measure.values = spool.values(measure.name, first, count);
-    const auto states = std::get<std::vector<std::int32_t>>(spool.values("state", first, count));
+    block.state.clear();
+    const std::vector<std::int32_t> states = numbers("state");
     for (const std::int32_t state : states) block.state.push_back(static_cast<RunState>(state));
     block.error = std::get<std::vector<std::string>>(spool.values("error", first, count));
-    if (!block.note_kinds.empty())
-      block.notes = std::get<std::vector<std::int32_t>>(spool.values("notes", first, count));
-    if (sweep.is_refined)
-      block.round = std::get<std::vector<std::int32_t>>(spool.values("round", first, count));
+    if (!block.note_kinds.empty()) block.notes = numbers("notes");
+    if (spool.is_refined()) block.round = numbers("round");
     each(block);
   }
 }
 
-// Returns the sweep in the file; nothing if the file is absent or empty, or if --force lets another file be
-// replaced. Throws InputError for another file.
-std::optional<SweepResult> sweep_in(const std::string& file, bool force) {
+// Returns the states of the sweep in the file; nothing if the file is absent or empty, or if --force lets
+// another file be replaced. The other arrays of a finished sweep may be larger than the memory. Throws
+// InputError for another file.
+std::optional<SweepResult> states_in(const std::string& file, bool force) {
   std::error_code unreachable;
   if (!std::filesystem::is_regular_file(file, unreachable) ||
       std::filesystem::file_size(file, unreachable) == 0)
     return std::nullopt;
   try {
-    return without_others(read_sweep(file).result);
+    const Hdf5Reader hdf5(file);
+    if (hdf5.has("/sweep/checksum")) return read_sweep(hdf5).result;
+    SweepResult there = read_sweep_outline(hdf5).result;
+    if (hdf5.has("/sweep/run")) there.part = hdf5.values<std::uint64_t>("/sweep/run");
+    const Column states = hdf5.column("/sweep/state");
+    for (const std::int32_t state : std::get<std::vector<std::int32_t>>(states.values))
+      there.state.push_back(static_cast<RunState>(state));
+    return there;
   } catch (const InputError&) {
     if (!force) throw;
     return std::nullopt;
@@ -172,15 +184,15 @@ std::optional<SweepResult> sweep_in(const std::string& file, bool force) {
 
 // Throws InputError if the file holds runs that the shards do not, because its sweep was refined or
 // continued. Such a file is not replaced, not even with --force.
-void require_nothing_more(const MergeRequest& request, const SweepInBlocks& whole) {
-  const std::optional<SweepResult> there = sweep_in(request.output, request.force);
+void require_nothing_more(const MergeRequest& request, RunSpool& spool) {
+  const std::optional<SweepResult> there = states_in(request.output, request.force);
   if (!there) return;
-  const auto place_of = [&](std::uint64_t run) { return whole.outline.place_of(run); };
-  const std::size_t count = whole.outline.held_count();
-  for (const std::size_t place : there->runs_in(RunState::done)) {
-    const auto at = place_of(there->run_at(place));
-    const bool is_done = at && *at < count &&
-                         std::get<std::vector<std::int32_t>>(whole.values("state", *at, 1)).front() ==
+  const SweepResult& outline = spool.outline();
+  for (std::size_t at = 0; at < there->state.size(); ++at) {
+    if (there->state[at] != RunState::done) continue;
+    const auto place = outline.place_of(there->run_at(at));
+    const bool is_done = place && *place < outline.held_count() &&
+                         std::get<std::vector<std::int32_t>>(spool.values("state", *place, 1)).front() ==
                              static_cast<std::int32_t>(RunState::done);
     if (!is_done)
       throw InputError(request.output, "holds runs that the shards do not: expected another file");
@@ -193,7 +205,6 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
   std::optional<ShardFile> first;
   std::optional<RunSpool> spool;
   SeenShards seen;
-  SweepInBlocks sweep;
   for (const std::string& file : request.shards) {
     std::error_code absent;
     if (std::filesystem::equivalent(file, request.output, absent))
@@ -201,9 +212,7 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
     const Hdf5Reader hdf5(file);
     ShardFile part = outline_of(file, hdf5);
     if (!first) {
-      sweep.outline = part.outline.result;
-      sweep.is_refined = is_refined(part);
-      spool.emplace(sweep.outline, sweep.is_refined, request.output);
+      spool.emplace(part.outline.result, is_refined(part), request.output);
       first = std::move(part);
       seen.add(*first, *first);
     } else {
@@ -213,19 +222,17 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
     add_runs(file, hdf5, request.partial, *spool);
   }
   if (request.partial == Partial::no) seen.require_complete();
-  const bool is_whole = seen.are_complete();
-  spool->complete(is_whole);
-  if (!is_whole) {
-    sweep.outline.part = spool->held();
-    first->outline.attributes.emplace_back("shard", seen.all().text());
-  }
-  sweep.longest_error = spool->longest_error();
-  sweep.values = [&](const std::string& array, std::size_t at, std::size_t count) {
+  TextAttributes attributes = first->outline.attributes;
+  if (!seen.are_complete()) attributes.emplace_back("shard", seen.all().text());
+  spool->complete(seen.are_complete());
+  require_nothing_more(request, *spool);
+  for_each_block(*spool, each_block);
+  const auto values = [&](const std::string& array, std::size_t at, std::size_t count) {
     return spool->values(array, at, count);
   };
-  require_nothing_more(request, sweep);
-  for_each_block(*spool, sweep, each_block);
-  return write_sweep(request.output, sweep, first->outline.attributes);
+  return write_sweep(request.output,
+                     SweepInBlocks{spool->outline(), spool->is_refined(), spool->longest_error(), values},
+                     attributes);
 }
 
 }  // namespace remote_touch

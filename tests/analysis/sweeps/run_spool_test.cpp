@@ -55,7 +55,7 @@ TEST(RunSpool, ReturnsTheRunsOfAllPartsInOrder) {
   RunSpool spool(outline(), false, folder / "out.h5");
   for (const std::size_t p : {2, 0, 1}) spool.add("part", held(p), part_values(p));
   spool.complete(true);
-  ASSERT_EQ(spool.count(), kCells);
+  ASSERT_EQ(spool.outline().held_count(), kCells);
   EXPECT_EQ(spool.longest_error(), 11u) << "run 1000000";
   // Blocks over the boundary of the windows, and in any order.
   for (const std::size_t first : {1'048'570u, 0u, 1'099'990u}) {
@@ -78,13 +78,15 @@ TEST(RunSpool, OfSomePartsHoldsTheirRunsOnly) {
   RunSpool spool(outline(), false, folder / "out.h5");
   spool.add("c", held(2), part_values(2)), spool.add("a", held(0), part_values(0));
   spool.complete(false);
-  ASSERT_EQ(spool.count(), held(0) + held(2));
-  EXPECT_EQ(spool.held()[0], 0u);
-  EXPECT_EQ(spool.held()[1], 2u);
-  EXPECT_EQ(spool.held()[2], 3u);
-  const auto forces = std::get<std::vector<double>>(spool.values("force", spool.count() - 3, 3));
+  ASSERT_EQ(spool.outline().held_count(), held(0) + held(2));
+  EXPECT_EQ((*spool.outline().part)[0], 0u);
+  EXPECT_EQ((*spool.outline().part)[1], 2u);
+  EXPECT_EQ((*spool.outline().part)[2], 3u);
+  const auto forces =
+      std::get<std::vector<double>>(spool.values("force", spool.outline().held_count() - 3, 3));
   for (std::size_t i = 0; i < 3; ++i)
-    EXPECT_EQ(forces[i], 0.5 * static_cast<double>(spool.held()[spool.count() - 3 + i]));
+    EXPECT_EQ(forces[i],
+              0.5 * static_cast<double>((*spool.outline().part)[spool.outline().held_count() - 3 + i]));
   EXPECT_EQ(std::get<std::vector<std::string>>(spool.values("error", 0, 2)),
             (std::vector<std::string>{"run 0", ""}));
 }
