@@ -2,10 +2,15 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <utility>
 
@@ -74,6 +79,22 @@ void FileLock::release() {
 
 FileLock::~FileLock() {
   release();
+}
+
+// /proc/locks has a line for each lock: "1: FLOCK  ADVISORY  WRITE 712 fe:00:1835069 0 EOF". The sixth word
+// is the device, in hexadecimal digits, and the number of the file.
+bool is_being_written(const std::filesystem::path& target) {
+  struct stat there = {};
+  if (::stat((resolved(target).string() + ".lock").c_str(), &there) != 0) return false;
+  char name[64];
+  std::snprintf(name, sizeof name, "%02x:%02x:%ju", ::major(there.st_dev), ::minor(there.st_dev),
+                static_cast<std::uintmax_t>(there.st_ino));
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);)
+    if (line.find(" FLOCK ") != std::string::npos &&
+        line.find(std::string(" ") + name + " ") != std::string::npos)
+      return true;
+  return false;
 }
 
 FolderLock::FolderLock(const std::filesystem::path& folder)

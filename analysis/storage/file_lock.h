@@ -30,6 +30,10 @@ class FileLock {
   int descriptor_ = -1;
 };
 
+// True if a process of this machine holds the lock of a file. The lock itself is not touched. False where the
+// system does not list its locks.
+bool is_being_written(const std::filesystem::path& target);
+
 // The right to write files in a folder, held from construction to destruction; it leaves no file, whatever
 // ends the process. Throws InputError, which names the folder, if another process holds it, and if the lock
 // fails for another reason. No lock is taken if the folder cannot be opened, or on a file system without

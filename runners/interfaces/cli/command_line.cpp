@@ -7,6 +7,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/provenance/provenance.h"
+#include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/plugins/plugin_library.h"
 #include "runners/sweep/enough_threads.h"
@@ -55,6 +56,8 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   });
   app.fallthrough();
   app.add_flag("-q,--quiet", line.quiet, "do not show progress");
+  app.add_flag_callback("--progress-json", Progress::use_json,
+                        "show progress as JSON for other programs, one object in a line");
   app.add_flag(
       "--force", line.force,
       "also overwrite files that are not results of this program; an input file is never overwritten");

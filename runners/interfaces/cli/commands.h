@@ -228,5 +228,7 @@ struct InspectRequest {
   std::string file;
 };
 int command_inspect(const CommandLine& line, const InspectRequest& request);
+// Prints how far the shards of a sweep in a folder are.
+int inspect_folder(const std::string& folder);
 
 }  // namespace remote_touch

@@ -68,7 +68,8 @@ void add_lists(Subcommands& commands) {
                    "the file to write; its ending is the format: " + known_formats())
       ->required();
   auto [inspect, inspected] = commands.add("inspect", "show what a result file contains", command_inspect);
-  inspect->add_option("file", inspected->file, "an HDF5 file")->required();
+  inspect->add_option("file", inspected->file, "an HDF5 file, or a folder with the shards of a sweep")
+      ->required();
 }
 
 void add_run(Subcommands& commands) {

@@ -196,6 +196,8 @@ void print_unfinished(const std::string& file) {
 
 int command_inspect(const CommandLine&, const InspectRequest& request) {
   const std::string& file = request.file;
+  std::error_code unreachable;
+  if (std::filesystem::is_directory(file, unreachable)) return inspect_folder(file);
   if (is_journal(file)) {
     print_unfinished(file);
     return kDone;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace remote_touch {
@@ -14,6 +15,15 @@ std::string filled(const char* form, Values... values) {
   char text[160];
   std::snprintf(text, sizeof text, form, values...);
   return text;
+}
+
+// left_s: the time left, relative to the time since the program began; missing if nothing was done since.
+template <class Number>
+nlohmann::ordered_json counted_json(const std::string& what, Number done, Number total, Number earlier) {
+  nlohmann::ordered_json json = {{"what", what}, {"done", done}, {"total", total}, {"elapsed_s", 0.0}};
+  if (done > earlier)
+    json["left_s"] = static_cast<double>(total - done) / static_cast<double>(done - earlier);
+  return json;
 }
 
 }  // namespace
@@ -52,7 +62,8 @@ void Progress::clear() {
 bool Progress::is_due() {
   if (quiet_) return false;
   const auto now = std::chrono::steady_clock::now();
-  if (std::chrono::duration<double>(now - last_).count() < (terminal_ ? 0.2 : 10.0)) return false;
+  const double least_s = is_json_ ? 1.0 : terminal_ ? 0.2 : 10.0;
+  if (std::chrono::duration<double>(now - last_).count() < least_s) return false;
   last_ = now;
   return true;
 }
@@ -64,16 +75,30 @@ void Progress::show(const std::string& text) {
   std::fflush(stderr);
 }
 
+// json: an object with what is done.
+void Progress::print_json(nlohmann::ordered_json json) const {
+  json["elapsed_s"] = elapsed_s();
+  if (json.contains("left_s")) json["left_s"] = json["left_s"].get<double>() * elapsed_s();
+  std::fprintf(stderr, "%s\n",
+               json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
 void Progress::update(const std::string& text) {
-  if (is_due()) show(text);
+  if (!is_due()) return;
+  if (is_json_) return print_json({{"what", what_}, {"text", text}});
+  show(text);
 }
 
 void Progress::update(double fraction) {
-  if (is_due()) show(progress_text(fraction, elapsed_s()));
+  if (!is_due()) return;
+  if (is_json_) return print_json(counted_json(what_, fraction, 1.0, 0.0));
+  show(progress_text(fraction, elapsed_s()));
 }
 
 void Progress::update(std::size_t done, std::size_t total, std::size_t earlier, const char* things) {
-  if (is_due()) show(progress_text(done, total, earlier, things, elapsed_s()));
+  if (!is_due()) return;
+  if (is_json_) return print_json(counted_json(what_, done, total, earlier));
+  show(progress_text(done, total, earlier, things, elapsed_s()));
 }
 
 }  // namespace remote_touch

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace remote_touch {
@@ -18,6 +19,11 @@ std::string progress_text(std::size_t done, std::size_t total, std::size_t earli
 // may use it.
 class Progress {
  public:
+  // From now on all progress is printed as JSON for other programs, one object in a line, at most once a
+  // second:
+  //   {"what": "map.json", "done": 30, "total": 100, "elapsed_s": 15.2, "left_s": 35.4}
+  // done and total are missing where there is only a text, left_s where it is not known.
+  static void use_json() { is_json_ = true; }
   Progress(std::string what, bool quiet);
   ~Progress();
   void update(double fraction);  // 0 to 1
@@ -27,8 +33,10 @@ class Progress {
 
  private:
   bool is_due();
+  void print_json(nlohmann::ordered_json json) const;
   double elapsed_s() const { return std::chrono::duration<double>(last_ - start_).count(); }
   void show(const std::string& text);
+  static inline bool is_json_ = false;
   std::string what_;
   bool quiet_, terminal_, shown_ = false;
   std::chrono::steady_clock::time_point start_, last_;

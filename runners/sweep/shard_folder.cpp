@@ -1,0 +1,164 @@
+#include "runners/sweep/shard_folder.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "analysis/storage/file_lock.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "core/parameters/input_error.h"
+#include "runners/sweep/stored_sweep.h"
+#include "scenarios/text_files/json_text.h"
+
+namespace remote_touch {
+
+namespace {
+
+constexpr double kRecent_s = 60;
+
+double seconds_of(const statx_timestamp& time) {
+  return static_cast<double>(time.tv_sec) + 1e-9 * time.tv_nsec;
+}
+
+double now_s() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
+}
+
+// Fills in the times of the file. Its birth is not known on every file system.
+void read_times(const std::filesystem::path& file, ShardProgress& shard) {
+  struct statx there = {};
+  if (::statx(AT_FDCWD, file.c_str(), 0, STATX_MTIME | STATX_BTIME, &there) != 0) return;
+  const double written_s = seconds_of(there.stx_mtime);
+  shard.written_s_ago = std::max(0.0, now_s() - written_s);
+  if ((there.stx_mask & STATX_BTIME) == 0) return;
+  const double took_s = written_s - seconds_of(there.stx_btime);
+  if (took_s > 0) shard.runs_per_s = static_cast<double>(shard.done + shard.failed) / took_s;
+}
+
+void count_states(const Hdf5Reader& hdf5, ShardProgress& shard) {
+  const Column states = hdf5.column("/sweep/state");
+  for (const std::int32_t state : std::get<std::vector<std::int32_t>>(states.values)) {
+    shard.runs += state != static_cast<std::int32_t>(RunState::elsewhere) &&
+                  state != static_cast<std::int32_t>(RunState::not_sampled);
+    shard.done += state == static_cast<std::int32_t>(RunState::done);
+    shard.failed += state == static_cast<std::int32_t>(RunState::failed);
+  }
+}
+
+// What a file of a shard says of itself.
+struct ReadShard {
+  ShardProgress progress;
+  std::string config, title;
+  std::size_t runs_of_sweep = 0;
+};
+
+// Returns nothing for a file that is no shard. Throws InputError for a file that cannot be read.
+std::optional<ReadShard> read_shard(const std::filesystem::path& file) {
+  const Hdf5Reader hdf5(file);
+  const std::string shards = attribute(hdf5.attributes(), "shard");
+  if (shards.empty()) return std::nullopt;
+  const StoredSweep outline = read_stored_outline(hdf5);
+  ReadShard read;
+  read.config = attribute(outline.attributes, "config");
+  read.title = parse_json(read.config, file.string() + " config").value("title", std::string());
+  read.runs_of_sweep = outline.result.run_count();
+  ShardProgress& shard = read.progress;
+  shard.shards = parse_shards(shards, file.string());
+  shard.file = file.filename().string();
+  count_states(hdf5, shard);
+  read_times(file, shard);
+  const bool is_recent = is_being_written(file) || shard.written_s_ago < kRecent_s;
+  shard.state = !outline.in_progress ? ShardState::finished
+                : is_recent          ? ShardState::running
+                                     : ShardState::stopped;
+  return read;
+}
+
+// Reads the file again if its sweep has just replaced it.
+std::optional<ReadShard> read_shard_now(const std::filesystem::path& file) {
+  try {
+    return read_shard(file);
+  } catch (const ReplacedFile&) {
+    return read_shard(file);
+  }
+}
+
+// Adds a shard. config: that of the sweep, empty before the first shard. Throws InputError for another sweep.
+void add(const ReadShard& read, const std::filesystem::path& file, std::string& config, SweepProgress& all) {
+  if (all.files.empty()) {
+    config = read.config;
+    all.title = read.title, all.runs = read.runs_of_sweep, all.shard_count = read.progress.shards.count;
+  }
+  if (config != read.config || all.shard_count != read.progress.shards.count)
+    throw InputError(file.string(), "is a shard of another sweep than " + all.files.front().file +
+                                        ": expected the shards of one sweep in a folder");
+  all.files.push_back(read.progress);
+}
+
+std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code unreachable;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, unreachable))
+    if (entry.path().extension() == ".h5" && entry.is_regular_file(unreachable))
+      files.push_back(entry.path());
+  if (unreachable) throw InputError(folder.string(), "cannot be read (" + unreachable.message() + ")");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+std::size_t SweepProgress::count(ShardState state) const {
+  std::size_t found = 0, seen = 0;
+  for (const ShardProgress& shard : files) {
+    seen += shard.shards.indices.size();
+    if (shard.state == state) found += shard.shards.indices.size();
+  }
+  const auto all = static_cast<std::size_t>(shard_count);
+  return state == ShardState::absent ? all - std::min(all, seen) : found;
+}
+
+std::size_t SweepProgress::done() const {
+  std::size_t sum = 0;
+  for (const ShardProgress& shard : files) sum += shard.done;
+  return sum;
+}
+
+std::size_t SweepProgress::failed() const {
+  std::size_t sum = 0;
+  for (const ShardProgress& shard : files) sum += shard.failed;
+  return sum;
+}
+
+std::optional<double> SweepProgress::left_s() const {
+  double runs_per_s = 0;
+  for (const ShardProgress& shard : files)
+    if (shard.state == ShardState::running) runs_per_s += shard.runs_per_s;
+  if (!(runs_per_s > 0)) return std::nullopt;
+  return static_cast<double>(runs - std::min(runs, done() + failed())) / runs_per_s;
+}
+
+SweepProgress progress_of_shards(const std::filesystem::path& folder) {
+  SweepProgress all;
+  std::string config;
+  for (const std::filesystem::path& file : results_in(folder)) {
+    std::optional<ReadShard> read;
+    try {
+      read = read_shard_now(file);
+    } catch (const InputError& error) {
+      all.unread.push_back(error.what());
+    }
+    if (read) add(*read, file, config, all);
+  }
+  if (all.files.empty())
+    throw InputError(folder.string(), "has no shards of a sweep: expected files of sweep --shard");
+  const auto first = [](const ShardProgress& shard) { return *shard.shards.indices.begin(); };
+  std::sort(all.files.begin(), all.files.end(),
+            [&](const ShardProgress& a, const ShardProgress& b) { return first(a) < first(b); });
+  return all;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,95 @@
+// How far the shards of a folder are: finished, running, stopped, absent.
+#include "runners/sweep/shard_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "analysis/storage/file_lock.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "runners/sweep/sweep.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::shard_folder_test {
+namespace {
+
+class ShardFolder : public testing::Test {
+ protected:
+  // Writes a shard of six runs, of which `done` are done, as its session would.
+  std::filesystem::path write(const std::string& shard, int done, const std::string& title = "six") const {
+    const Sweep sweep =
+        Sweep::from_json(R"({"experiment": "fig4.12", "replicates": 6, "measures": ["max_force"],
+      "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.01, "count": 4}]})",
+                         "six.json", {"title=" + title});
+    const Shard which = parse_shard(shard);
+    SweepResult part = sweep.plan(which);
+    for (int i = 0; i < done; ++i) part.state[static_cast<std::size_t>(i)] = RunState::done;
+    const std::filesystem::path file = folder_ / (std::to_string(which.index) + ".h5");
+    const TextAttributes attributes = {{"config", sweep.to_json()}, {"shard", shard}};
+    if (done == 6)
+      write_sweep(file, part, attributes);
+    else
+      write_sweep_in_progress(file, part, attributes);
+    return file;
+  }
+  // Sets the time of the last change into the past.
+  static void make_old(const std::filesystem::path& file) {
+    std::filesystem::last_write_time(file,
+                                     std::filesystem::file_time_type::clock::now() - std::chrono::minutes(5));
+  }
+  SweepProgress progress() const { return progress_of_shards(folder_ / "."); }
+  const TestFolder folder_{"shard_folder_test"};
+};
+
+TEST_F(ShardFolder, HasFinishedRunningStoppedAndAbsentShards) {
+  write("1/4", 6);
+  write("2/4", 2);  // it was written just now
+  const auto held = write("3/4", 3), left = write("4/4", 1);
+  make_old(held), make_old(left);
+  const FileLock lock(held);
+  std::filesystem::remove(folder_ / "1.h5.lock");  // what a killed process leaves does not count
+  const SweepProgress all = progress();
+  EXPECT_EQ(all.title, "six");
+  EXPECT_EQ(all.shard_count, 4);
+  EXPECT_EQ(all.runs, 24u);
+  EXPECT_EQ(all.done(), 12u);
+  ASSERT_EQ(all.files.size(), 4u);
+  EXPECT_EQ(all.files[0].state, ShardState::finished);
+  EXPECT_EQ(all.files[1].state, ShardState::running);
+  EXPECT_EQ(all.files[2].state, ShardState::running) << "its lock is held";
+  EXPECT_EQ(all.files[3].state, ShardState::stopped);
+  EXPECT_EQ(all.files[3].runs, 6u);
+  EXPECT_NEAR(all.files[3].written_s_ago, 300, 30);
+  std::filesystem::remove(left);
+  EXPECT_EQ(progress().count(ShardState::absent), 1u);
+}
+
+TEST_F(ShardFolder, TheTimeLeftIsThatOfTheRunningShards) {
+  SweepProgress all;
+  all.runs = 1000;
+  all.files = {{{{1}, 4}, "a", ShardState::running, 250, 100, 0, 0, 2.0},
+               {{{2}, 4}, "b", ShardState::running, 250, 40, 10, 0, 3.0},
+               {{{3}, 4}, "c", ShardState::stopped, 250, 50, 0, 900, 9.0}};
+  EXPECT_DOUBLE_EQ(*all.left_s(), 800 / 5.0);
+  all.files.pop_back(), all.files.clear();
+  EXPECT_FALSE(all.left_s());
+}
+
+TEST_F(ShardFolder, NamesWhatCannotBeReadAndLeavesOutWhatIsNoShard) {
+  write("1/4", 6);
+  folder_.write("junk.h5", "junk"), folder_.write("notes.txt", "notes");
+  const SweepProgress all = progress();
+  EXPECT_EQ(all.files.size(), 1u);
+  ASSERT_EQ(all.unread.size(), 1u);
+  EXPECT_HAS(all.unread.front(), "junk.h5: not a readable HDF5 file");
+}
+
+TEST_F(ShardFolder, RefusesSeveralSweepsAndNone) {
+  EXPECT_HAS(refusal([&] { progress(); }), "has no shards of a sweep");
+  write("1/4", 6), write("2/4", 6, "other");
+  EXPECT_HAS(refusal([&] { progress(); }), "2.h5: is a shard of another sweep than 1.h5");
+}
+
+}  // namespace
+}  // namespace remote_touch::shard_folder_test
