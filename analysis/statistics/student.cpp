@@ -17,22 +17,8 @@ double hall_t(const Moments& m) {
   return std::sqrt(m.count) * (u * (1 + y / 3 + y * y / 27) + skewness / (6 * m.count));
 }
 
-// Returns the numbers of each group without NaNs. The first list has the numbers that are alone in their
-// group, except those of groups without scatter.
-std::vector<std::vector<double>> with_lone_numbers_together(const std::vector<std::vector<double>>& groups,
-                                                            const std::vector<bool>& without_scatter) {
-  std::vector<std::vector<double>> known(1);
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    std::vector<double> numbers;
-    std::copy_if(groups[i].begin(), groups[i].end(), std::back_inserter(numbers),
-                 [](double value) { return !std::isnan(value); });
-    if (numbers.size() == 1 && !(i < without_scatter.size() && without_scatter[i]))
-      known.front().push_back(numbers.front());
-    else
-      known.push_back(numbers);
-  }
-  return known;
-}
+constexpr double kMostDegrees =
+    1e5;  // with more, the critical value differs from the normal one by 1e-5 at most
 
 }  // namespace
 
@@ -56,10 +42,27 @@ double student_quantile(double probability, int degrees) {
 
 MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
                             const std::vector<bool>& without_scatter) {
+  std::vector<Moments> moments;
+  for (const std::vector<double>& group : groups) moments.push_back(moments_of(group));
+  return student_mean_of_moments(moments, without_scatter);
+}
+
+MeanDifference student_mean_of_moments(const std::vector<Moments>& groups,
+                                       const std::vector<bool>& without_scatter) {
+  std::vector<double> lone;
+  std::vector<Moments> all_groups(1);  // the first is that of the lone numbers
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const bool is_lone = groups[i].count == 1 && !(i < without_scatter.size() && without_scatter[i]);
+    if (is_lone)
+      lone.push_back(groups[i].mean);
+    else
+      all_groups.push_back(groups[i]);
+  }
+  all_groups.front() = moments_of(lone);
   double all = 0, sum = 0, scatter = 0, squares = 0;
   bool has_scatter = false;
-  for (const auto& group : with_lone_numbers_together(groups, without_scatter)) {
-    const Moments m = moments_of(group);
+  for (const Moments& m : all_groups) {
+    if (m.count == 0) continue;
     all += m.count, sum += m.count * m.mean;
     if (m.count < 2) continue;
     const double part = m.count * m.variance;
@@ -67,7 +70,8 @@ MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
   }
   const auto pairs = static_cast<std::int64_t>(all);
   if (!has_scatter) return mean_of_sum(sum, pairs);
-  const int degrees = scatter > 0 ? std::max(1, static_cast<int>(scatter * scatter / squares)) : 1;
+  const int degrees =
+      scatter > 0 ? static_cast<int>(std::clamp(scatter * scatter / squares, 1.0, kMostDegrees)) : 1;
   return mean_of_sum(sum, pairs,
                      scatter > 0 ? student_quantile(0.05, degrees) * std::sqrt(scatter) / all : 0);
 }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "analysis/statistics/mean.h"
 #include "analysis/statistics/paired_test.h"
 
 namespace remote_touch {
@@ -21,6 +22,9 @@ double student_quantile(double probability, int degrees);
 // numbers; the interval is NaN if no group then has two numbers.
 MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
                             const std::vector<bool>& without_scatter = {});
+// The same for groups of which only the moments are known; `third` is not used.
+MeanDifference student_mean_of_moments(const std::vector<Moments>& groups,
+                                       const std::vector<bool>& without_scatter = {});
 
 // Tests that the mean of n paired differences is 0. Returns the largest of three p values: the two-sided p of
 // Student's t, that of Student's t corrected for skewness (P. Hall, J. R. Stat. Soc. B 54 (1992), 221-228),

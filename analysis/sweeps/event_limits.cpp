@@ -31,15 +31,15 @@ std::vector<std::size_t> other_axes(const SweepResult& result, std::size_t along
   return others;
 }
 
-Counts counts_of(const SweepResult& result, const LimitQuestion& question, const CellGroup& group) {
-  const auto& x = std::get<std::vector<double>>(result.axes[question.along].values);
-  const std::vector<double>& measure = result.measure(question.measure);
+Counts counts_of(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question,
+                 const CellGroup& group) {
+  const auto& x = std::get<std::vector<double>>(outline.axes[question.along].values);
   std::vector<std::size_t> order(group.cells.size());  // the cells of a group follow the axis
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
   Counts counts;
   for (const std::size_t i : order) {
-    const Tally t = tally(result, measure, group.cells[i], question.threshold);
+    const Tally t = cells.events(group.cells[i]);
     if (t.runs == 0) continue;
     counts.x.push_back(x[i]), counts.runs.push_back(t.runs), counts.tallies.push_back(t);
   }
@@ -98,12 +98,11 @@ void enclose(const Counts& counts, const std::vector<double>& low, const std::ve
     if (to[i] < level) limit.at_most = counts.x[i];
 }
 
-// Returns the number of finished runs of a group that have a note.
-std::int32_t noted_runs(const SweepResult& result, const CellGroup& group) {
+// Returns the number of finished runs of a cell that have a note.
+std::int32_t noted_runs(const SweepResult& result, std::size_t cell) {
   std::int32_t count = 0;
-  for (const std::size_t cell : group.cells)
-    for (int replicate = 0; replicate < result.replicates; ++replicate)
-      if (result.notes[result.run(cell, replicate)] != 0) ++count;
+  for (int replicate = 0; replicate < result.replicates; ++replicate)
+    if (result.notes[result.run(cell, replicate)] != 0) ++count;
   return count;
 }
 
@@ -126,11 +125,19 @@ Limit limit_of(const Counts& counts, bool rises, double level) {
 }  // namespace
 
 EventLimits event_limits(const SweepResult& result, const LimitQuestion& question) {
+  const std::vector<double>& measure = result.measure(question.measure);
+  CellCounts cells{[&](std::size_t cell) { return tally(result, measure, cell, question.threshold); }};
+  if (!result.notes.empty()) cells.noted = [&](std::size_t cell) { return noted_runs(result, cell); };
+  return event_limits(result, cells, question);
+}
+
+EventLimits event_limits(const SweepResult& result, const CellCounts& cells, const LimitQuestion& question) {
   const std::vector<std::size_t> others = other_axes(result, question.along);
   const std::vector<CellGroup> groups = cell_groups(result, others);
   std::vector<Counts> all;
   double sum = 0;
-  for (const CellGroup& group : groups) sum += slope(all.emplace_back(counts_of(result, question, group)));
+  for (const CellGroup& group : groups)
+    sum += slope(all.emplace_back(counts_of(result, cells, question, group)));
   const bool rises = sum >= 0;
   std::vector<double> limits, low, high, at_least, at_most;
   std::vector<std::int32_t> places, runs, noted;
@@ -161,8 +168,11 @@ EventLimits event_limits(const SweepResult& result, const LimitQuestion& questio
   table.columns.push_back({"place", "1", "where the limit is, relative to the values of the axis",
                            std::move(places), 1, kPlaceNames});
   table.add("runs", "1", "number of finished runs", std::move(runs));
-  if (!result.notes.empty()) {
-    for (const CellGroup& group : groups) noted.push_back(noted_runs(result, group));
+  if (cells.noted) {
+    for (const CellGroup& group : groups) {
+      noted.push_back(0);
+      for (const std::size_t cell : group.cells) noted.back() += cells.noted(cell);
+    }
     table.add("noted_runs", "1", "number of finished runs with a note", std::move(noted));
   }
   return {std::move(table), rises};

@@ -1,6 +1,7 @@
 // Finds the value on an axis of a sweep at which an event has a given probability, for example 0.5.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -41,5 +42,13 @@ struct EventLimits {
 // one end of the axis its interval is on the wrong side of that at the other end. Values without a finished
 // run are left out; a run whose measure is NaN counts as a run without the event, as in tally().
 EventLimits event_limits(const SweepResult& result, const LimitQuestion& question);
+
+// The counts of each cell, for a sweep that does not keep its runs.
+struct CellCounts {
+  std::function<Tally(std::size_t cell)> events;             // of the finished runs
+  std::function<std::int32_t(std::size_t cell)> noted = {};  // finished runs with a note; empty: not known
+};
+// The same with these counts. Only the axes of the outline are used.
+EventLimits event_limits(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question);
 
 }  // namespace remote_touch

@@ -118,22 +118,6 @@ std::vector<std::size_t> pooled(const std::vector<std::size_t>& common_noise,
   return axes;
 }
 
-// Adds the columns of the means. count: what was counted, "runs" or "pairs".
-void add_means(Table& table, const std::vector<MeanDifference>& means, const std::string& unit,
-               const std::string& mean_meaning, const std::string& count) {
-  std::vector<double> mean, low, high;
-  std::vector<std::int32_t> counts;
-  for (const MeanDifference& m : means) {
-    mean.push_back(m.mean), low.push_back(m.low), high.push_back(m.high);
-    counts.push_back(static_cast<std::int32_t>(m.pairs));
-  }
-  table.add("mean", unit, mean_meaning, std::move(mean));
-  table.add("low", unit, "lower end of its 95 % interval", std::move(low));
-  table.add("high", unit, "upper end of its 95 % interval", std::move(high));
-  table.add(count, "1", "number of " + count + " with a value; those with the same noise count as one",
-            std::move(counts));
-}
-
 const Column& measure_column(const SweepResult& result, const std::string& measure) {
   return *std::find_if(result.measures.begin(), result.measures.end(),
                        [&](const Column& column) { return column.name == measure; });
@@ -147,6 +131,21 @@ std::size_t moved(const SweepResult& result, std::size_t cell, std::size_t axis,
 }
 
 }  // namespace
+
+void add_mean_columns(Table& table, const std::vector<MeanDifference>& means, const std::string& unit,
+                      const std::string& mean_meaning, const std::string& count) {
+  std::vector<double> mean, low, high;
+  std::vector<std::int32_t> counts;
+  for (const MeanDifference& m : means) {
+    mean.push_back(m.mean), low.push_back(m.low), high.push_back(m.high);
+    counts.push_back(static_cast<std::int32_t>(m.pairs));
+  }
+  table.add("mean", unit, mean_meaning, std::move(mean));
+  table.add("low", unit, "lower end of its 95 % interval", std::move(low));
+  table.add("high", unit, "upper end of its 95 % interval", std::move(high));
+  table.add(count, "1", "number of " + count + " with a value; those with the same noise count as one",
+            std::move(counts));
+}
 
 Table sweep_means(const SweepResult& result, const std::string& measure, const TableAxes& axes) {
   const std::vector<double> values = finished_values(result, measure);
@@ -163,7 +162,7 @@ Table sweep_means(const SweepResult& result, const std::string& measure, const T
     means.push_back(is_event(column) && !all.is_merged ? share_of(all.cells) : student_mean(all.cells));
   }
   Table table{"mean_" + measure, "mean of " + measure, axes_of(result, axes.by, groups)};
-  add_means(table, means, column.units, "mean: " + column.long_name, "runs");
+  add_mean_columns(table, means, column.units, "mean: " + column.long_name, "runs");
   return table;
 }
 
@@ -194,7 +193,7 @@ Table sweep_differences(const SweepResult& result, const std::string& measure, s
   Table table{"difference_" + measure,
               "difference of " + measure + " from the first value of " + result.axes[between].name,
               axes_of(result, kept, groups)};
-  add_means(table, means, column.units, "mean difference: " + column.long_name, "pairs");
+  add_mean_columns(table, means, column.units, "mean difference: " + column.long_name, "pairs");
   table.add("p", "1", "p value of the null hypothesis that there is no difference", p);
   table.add("adjusted_p", "1", "p value after Holm's adjustment over the rows", adjusted(p));
   return table;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/statistics/paired_test.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
@@ -32,5 +33,9 @@ Table sweep_means(const SweepResult& result, const std::string& measure, const T
 // not contain `between`.
 Table sweep_differences(const SweepResult& result, const std::string& measure, std::size_t between,
                         const TableAxes& axes);
+
+// Adds the columns mean, low, high and `count`, "runs" or "pairs". mean_meaning: the long name of the means.
+void add_mean_columns(Table& table, const std::vector<MeanDifference>& means, const std::string& unit,
+                      const std::string& mean_meaning, const std::string& count);
 
 }  // namespace remote_touch

@@ -57,12 +57,10 @@ std::string table_text(const Table& table) {
 
 }  // namespace
 
-std::string answer_text(const Figure& answer, const SweepResult& sweep) {
+std::string answer_text(const Figure& answer, std::size_t done, std::size_t asked) {
   std::string text = answer.caption.empty() ? "" : answer.caption + "\n";
   for (const Table& table : answer.tables)
     if (!is_of_curve(answer, table)) text += table_text(table);
-  const std::size_t done = sweep.runs_in(RunState::done).size();
-  const std::size_t asked = sweep.run_count() - sweep.runs_in(RunState::not_sampled).size();
   if (done < asked)
     text += "  note: " + std::to_string(asked - done) + " of " + std::to_string(asked) +
             " runs are not finished and are left out\n";

@@ -8,6 +8,8 @@
 
 #include "analysis/storage/file_lock.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/schema.h"
+#include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/stored_sweep.h"
 #include "scenarios/text_files/json_text.h"
@@ -53,27 +55,51 @@ struct ReadShard {
   ShardProgress progress;
   std::string config, title;
   std::size_t runs_of_sweep = 0;
+  bool is_finished = false;
 };
+
+void read_runs_of(const Hdf5Reader& hdf5, ReadShard& read) {
+  const StoredSweep outline = read_stored_outline(hdf5);
+  read.config = attribute(outline.attributes, "config");
+  read.runs_of_sweep = outline.result.run_count();
+  read.is_finished = !outline.in_progress;
+  count_states(hdf5, read.progress);
+}
+
+void read_tally_of(const Hdf5Reader& hdf5, ReadShard& read) {
+  const StoredTally stored = read_tally(hdf5);
+  read.config = attribute(stored.attributes, "config");
+  read.runs_of_sweep = static_cast<std::size_t>(stored.tally.run_count());
+  ShardProgress& shard = read.progress;
+  for (const CellTally& cell : stored.tally.tallies)
+    shard.done += static_cast<std::size_t>(cell.done), shard.failed += static_cast<std::size_t>(cell.failed);
+  for (const int index : shard.shards.indices)
+    shard.runs +=
+        Shard{index, shard.shards.count}.cells_of(static_cast<std::size_t>(stored.tally.cell_count())) *
+        static_cast<std::size_t>(stored.tally.replicates);
+  read.is_finished = shard.done + shard.failed == shard.runs;
+}
 
 // Returns nothing for a file that is no shard. Throws InputError for a file that cannot be read.
 std::optional<ReadShard> read_shard(const std::filesystem::path& file) {
   const Hdf5Reader hdf5(file);
   const std::string shards = attribute(hdf5.attributes(), "shard");
   if (shards.empty()) return std::nullopt;
-  const StoredSweep outline = read_stored_outline(hdf5);
   ReadShard read;
-  read.config = attribute(outline.attributes, "config");
-  read.title = parse_json(read.config, file.string() + " config").value("title", std::string());
-  read.runs_of_sweep = outline.result.run_count();
   ShardProgress& shard = read.progress;
   shard.shards = parse_shards(shards, file.string());
   shard.file = file.filename().string();
-  count_states(hdf5, shard);
+  const bool is_tally = is_schema_of(attribute(hdf5.attributes(), "schema"), "tally");
+  if (is_tally)
+    read_tally_of(hdf5, read);
+  else
+    read_runs_of(hdf5, read);
+  read.title = parse_json(read.config, file.string() + " config").value("title", std::string());
   read_times(file, shard);
   const bool is_recent = is_being_written(file) || shard.written_s_ago < kRecent_s;
-  shard.state = !outline.in_progress ? ShardState::finished
-                : is_recent          ? ShardState::running
-                                     : ShardState::stopped;
+  shard.state = read.is_finished ? ShardState::finished
+                : is_recent      ? ShardState::running
+                                 : ShardState::stopped;
   return read;
 }
 

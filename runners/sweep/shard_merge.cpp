@@ -10,10 +10,9 @@
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/input_hashes.h"
-#include "runners/experiment/provenance/recipe.h"
-#include "runners/sweep/shard.h"
+#include "runners/sweep/seen_shards.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_origin.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
@@ -31,13 +30,7 @@ struct ShardFile {
 
 ShardFile outline_of(const std::string& file, const Hdf5Reader& hdf5) {
   ShardFile part{file, {}, read_stored_outline(hdf5)};
-  auto& attributes = part.outline.attributes;
-  const auto shard =
-      std::find_if(attributes.begin(), attributes.end(), [](const auto& a) { return a.first == "shard"; });
-  if (shard == attributes.end())
-    throw InputError(file, "is the result of a whole sweep: expected the shards of a sweep");
-  part.shards = parse_shards(shard->second, file);
-  attributes.erase(shard);
+  part.shards = take_shards(part.outline.attributes, file);
   return part;
 }
 
@@ -46,57 +39,13 @@ bool is_refined(const ShardFile& part) {
   return parse_json(attribute(part.outline.attributes, "config"), part.file + " config").contains("refine");
 }
 
-// Throws InputError unless both files are of one sweep, one build and the same recordings.
-void require_same_origin(const ShardFile& part, const ShardFile& first) {
-  const TextAttributes &ours = part.outline.attributes, &theirs = first.outline.attributes;
-  for (const auto* attributes : {&ours, &theirs})  // either may have one that the other has not
-    for (const auto& [name, value] : *attributes)
-      // The path of the same file may be written differently.
-      if (name != "input_digests" && name != "command" && name != kRecipe &&
-          attribute(ours, name) != attribute(theirs, name))
-        throw InputError(part.file, "has another " + name + " than " + first.file +
-                                        ": expected shards of one sweep, made by one build");
-  for (const auto& input :
-       changed_inputs(attribute(theirs, "input_digests"), attribute(ours, "input_digests")))
-    throw InputError(part.file, "has runs on another recording " + input.path + " (" + input.now + "; " +
-                                    first.file + ": " + input.before + "): expected shards of one sweep");
+// Throws InputError unless the files have the same runs and kinds of notes.
+void require_same_extent(const ShardFile& part, const ShardFile& first) {
   const SweepResult &own = part.outline.result, &other = first.outline.result;
   if (own.run_count() != other.run_count()) throw InputError(part.file, "damaged (another number of runs)");
   if (own.note_kinds != other.note_kinds)
     throw InputError(part.file, "damaged (other kinds of notes than " + first.file + ")");
 }
-
-// The shards of the files so far, each with its file.
-class SeenShards {
- public:
-  // Throws InputError if one was there already, or the sweep has another number of them.
-  void add(const ShardFile& part, const ShardFile& first) {
-    if (part.shards.count != first.shards.count)
-      throw InputError(part.file, "is shard " + part.shards.text() + ": expected shards of " +
-                                      std::to_string(first.shards.count) + ", as " + first.file);
-    for (const int index : part.shards.indices)
-      if (const auto [twin, is_new] = file_of_.emplace(index, part.file); !is_new)
-        throw InputError(part.file, "is shard " + Shard{index, part.shards.count}.text() + ", as is " +
-                                        twin->second + ": expected once");
-    all_.count = part.shards.count;
-    all_.indices.insert(part.shards.indices.begin(), part.shards.indices.end());
-  }
-  const ShardSet& all() const { return all_; }
-  bool are_complete() const { return all_.indices.size() == static_cast<std::size_t>(all_.count); }
-  void require_complete() const {
-    if (are_complete()) return;
-    ShardSet missing{{}, all_.count};
-    for (int i = 1; i <= all_.count; ++i)
-      if (!all_.indices.contains(i)) missing.indices.insert(i);
-    const bool is_one = missing.indices.size() == 1;
-    throw InputError("merge", std::string(is_one ? "shard " : "shards ") + missing.text() +
-                                  (is_one ? " is" : " are") + " missing: expected all of them, or --partial");
-  }
-
- private:
-  std::map<int, std::string> file_of_;
-  ShardSet all_;
-};
 
 // Returns the values of a part in memory.
 RunSpool::PartValues values_in(const SweepResult& part) {
@@ -214,10 +163,11 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
     if (!first) {
       spool.emplace(part.outline.result, is_refined(part), request.output);
       first = std::move(part);
-      seen.add(*first, *first);
+      seen.add(file, first->shards);
     } else {
-      require_same_origin(part, *first);
-      seen.add(part, *first);
+      require_same_origin({file, part.outline.attributes}, {first->file, first->outline.attributes});
+      require_same_extent(part, *first);
+      seen.add(file, part.shards);
     }
     add_runs(file, hdf5, request.partial, *spool);
   }

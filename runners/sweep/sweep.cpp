@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "analysis/tally/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/changed_settings.h"
@@ -18,6 +19,7 @@
 #include "runners/sweep/refine_settings.h"
 #include "runners/sweep/sweep_axis.h"
 #include "runners/sweep/sweep_cells.h"
+#include "runners/sweep/sweep_reading.h"
 #include "runners/sweep/sweep_statements.h"
 
 namespace remote_touch {
@@ -38,6 +40,7 @@ struct Sweep::Definition {
   int replicates = 1;
   std::vector<Measure> measures;
   std::optional<RefineSettings> refine;
+  Keep keep = Keep::runs;
   std::vector<RecordingPart> inputs;  // recordings that the cells read
 
   // Returns the experiment of one run. It has the values that the result states for its cell.
@@ -57,94 +60,6 @@ namespace {
 Parameters parameters(std::string& title, int& replicates) {
   return {{"title", &title, 0, 0, "one line that says what this is; shown by list"},
           {"replicates", &replicates, 1, 1e6, "runs of each cell, each with its own noise"}};
-}
-
-const std::vector<std::string> kParts = {"title",      "experiment", "set",   "axes",
-                                         "replicates", "measures",   "refine"};
-
-bool is_of_sweep(const std::string& assignment) {
-  const std::string key = assignment.substr(0, assignment.find_first_of(".="));
-  return std::find(kParts.begin(), kParts.end(), key) != kParts.end();
-}
-
-void refuse_unknown_part(const Json& json, const std::string& label) {
-  for (const auto& item : json.items())
-    if (!is_of_sweep(item.key()))
-      throw InputError(label + ": " + item.key(), "unknown: expected " + joined(kParts, ", "));
-}
-
-// Returns the path of an experiment that a sweep file names. A file in the folder of the sweep file comes
-// first.
-std::string beside(const std::string& sweep_file, const std::string& experiment) {
-  const auto there = std::filesystem::path(sweep_file).parent_path() / experiment;
-  std::error_code unreachable;
-  return std::filesystem::is_regular_file(there, unreachable) ? there.string() : experiment;
-}
-
-Json read_experiment(const Json& json, const std::string& label, const std::vector<std::string>& overrides) {
-  const auto found = json.find("experiment");
-  if (found == json.end() || !(found->is_string() || found->is_object()))
-    throw InputError(label + ": experiment", "missing: expected a name, a file or an experiment itself");
-  std::vector<std::string> settings;
-  if (const auto set = json.find("set"); set != json.end()) {
-    if (!set->is_object()) throw InputError(label + ": set", "expected {\"path\": value, ...}");
-    for (const auto& item : set->items()) settings.push_back(item.key() + "=" + item.value().dump());
-  }
-  settings.insert(settings.end(), overrides.begin(), overrides.end());
-  const Experiment experiment = found->is_string()
-                                    ? Experiment::load(beside(label, found->get<std::string>()), settings)
-                                    : Experiment::from_json(found->dump(), label + ": experiment", settings);
-  if (experiment.settings().key.cell != 0 || experiment.settings().key.replicate != 0)
-    throw InputError(label + ": experiment", "cell and replicate are set by the sweep: expected 0");
-  return parse_json(experiment.to_json(), label);
-}
-
-// Returns a title for a sweep that has none: the title of its experiment, with the axes. That title already
-// names the changes of the experiment, so only the changes of the sweep itself are added.
-std::string title_over(const Json& experiment, const std::vector<ChangedSetting>& changes,
-                       const std::vector<SweepAxis>& axes) {
-  const std::string title = experiment.value("title", std::string());
-  if (title.empty()) return title;
-  std::vector<ChangedSetting> of_sweep;
-  for (const ChangedSetting& change : changes)
-    if (is_of_sweep(change.first)) of_sweep.push_back(change);
-  std::string over;
-  for (const SweepAxis& axis : axes) over += (over.empty() ? ", over " : " and ") + axis.subject();
-  return changed_title(title, of_sweep) + over;
-}
-
-std::vector<SweepAxis> read_axes(const Json& json, const std::string& label, int levels) {
-  const auto found = json.find("axes");
-  if (found == json.end() || !found->is_array() || found->empty() || found->size() > 8)
-    throw InputError(label + ": axes", "expected a list of 1 to 8 axes");
-  std::vector<SweepAxis> axes;
-  for (std::size_t i = 0; i < found->size(); ++i)
-    axes.push_back(read_axis((*found)[i], label + ": axes." + std::to_string(i), levels));
-  return axes;
-}
-
-std::vector<Measure> read_measures(const Json& json, const std::string& label) {
-  const auto found = json.find("measures");
-  if (found == json.end()) return {measures().begin(), measures().end()};
-  std::vector<Measure> chosen;
-  std::vector<std::string> names;
-  for (const Measure& measure : measures()) names.push_back(measure.name);
-  const auto refuse = [&](const std::string& what) {
-    throw InputError(label + ": measures",
-                     what + ": expected a list of different names of " + joined(names, ", "));
-  };
-  if (!found->is_array() || found->empty()) refuse("not a list");
-  for (const Json& name : *found) {
-    const auto is_it = [&](const Measure& measure) { return name == measure.name; };
-    const auto measure = std::find_if(measures().begin(), measures().end(), is_it);
-    if (measure == measures().end()) {
-      const auto renamed = new_name(name.is_string() ? name.get<std::string>() : "", names);
-      refuse(name.dump() + " is unknown" + (renamed ? "; it is now " + *renamed : ""));
-    }
-    if (std::any_of(chosen.begin(), chosen.end(), is_it)) refuse(name.dump() + " appears twice");
-    chosen.push_back(*measure);
-  }
-  return chosen;
 }
 
 }  // namespace
@@ -206,11 +121,14 @@ void Sweep::Definition::refuse_other_parameters(const SweepAxis& axis, const std
 void Sweep::Definition::check_axes(const std::string& label) const {
   std::set<std::string> names = {"replicate", "run", "state", "notes", "round", "error", "checksum"};
   for (const Measure& measure : measures) names.insert(measure.name);
+  const auto is_taken = [&](const std::string& name) {
+    return !names.insert(name).second || (keep != Keep::runs && !is_free_in_tallies(name));
+  };
   auto runs = static_cast<std::size_t>(all_replicates());
   for (const SweepAxis& axis : axes) {
     refuse_other_parameters(axis, label);
     refuse_other_entry(axis, label);
-    if (const std::string& name = axis.coordinate.name; !names.insert(name).second)
+    if (const std::string& name = axis.coordinate.name; is_taken(name))
       throw InputError(label + ": axis " + axis.subject(),
                        "another axis or measure has the name " + name + ": expected different names");
     if (__builtin_mul_overflow(runs, axis.length(), &runs) || runs > kMaxSweep)
@@ -277,9 +195,10 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
 
   auto definition = std::make_shared<Definition>();
   Json plain = json;
-  for (const char* part : {"experiment", "set", "axes", "measures", "refine"}) plain.erase(part);
+  for (const char* part : {"experiment", "set", "axes", "measures", "refine", "keep"}) plain.erase(part);
   read_parameters(plain, parameters(definition->title, definition->replicates), "");
   definition->measures = read_measures(json, label);
+  definition->keep = read_keep(json, label);
   definition->refine = read_refine(json, definition->measures, definition->replicates, label);
   definition->axes = read_axes(json, label, definition->refine ? definition->refine->levels : 0);
   refuse_overlapping(definition->axes, label);
@@ -311,12 +230,20 @@ const std::string& Sweep::title() const {
   return definition_->title;
 }
 
-SweepResult Sweep::plan(const Shard& shard) const {
+SweepResult Sweep::outline() const {
   SweepResult result = definition_->grid;
   result.replicates = definition_->all_replicates();
   for (const Measure& measure : definition_->measures)
     result.measures.push_back({measure.name, measure.unit, measure.meaning, {}, 1, {}});
   result.note_kinds = note_kind_names();
+  return result;
+}
+
+SweepResult Sweep::plan(const Shard& shard) const {
+  if (keep() != Keep::runs)
+    throw InputError(title(), std::string("keeps a tally (keep = ") + name_of(keep()) +
+                                  "): expected keep = runs, or the command sweep");
+  SweepResult result = outline();
   const FirstRound first(result, definition_->axes);
   const std::size_t held =
       shard.count > 1 ? shard.cells_of(first.count()) * static_cast<std::size_t>(definition_->replicates)
@@ -376,12 +303,25 @@ std::optional<RefinementRule> Sweep::refinement() const {
   return rule;
 }
 
+Keep Sweep::keep() const {
+  return definition_->keep;
+}
+
+SweepResult Sweep::plan_of(std::vector<std::uint64_t> runs) const {
+  SweepResult result = outline();
+  result.part = std::move(runs);
+  result.start(false);
+  result.state.assign(result.state.size(), RunState::pending);
+  return result;
+}
+
 std::string Sweep::to_json() const {
   Json json = {{"title", definition_->title}, {"experiment", definition_->experiment}};
   for (const SweepAxis& axis : definition_->axes)
     json["axes"].push_back(parse_json(axis.definition, axis.subject()));
   json["replicates"] = definition_->replicates;
   for (const Measure& measure : definition_->measures) json["measures"].push_back(measure.name);
+  if (definition_->keep != Keep::runs) json["keep"] = name_of(definition_->keep);
   if (definition_->refine) {
     RefineSettings refine = *definition_->refine;
     json["refine"] = Json::object();

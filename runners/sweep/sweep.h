@@ -10,16 +10,17 @@
 #include "analysis/sweeps/refinement.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "runners/experiment/catalog/experiment.h"
+#include "runners/sweep/keep.h"
 #include "runners/sweep/shard.h"
 
 namespace remote_touch {
 
 class Sweep {
  public:
-  // Reads JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine"}. label names
-  // the source in errors. Overrides "key=value" change the sweep if their path begins with one of its keys,
-  // otherwise its experiment; the title names them (changed_settings.h). Cells are resolved and checked:
-  // throws InputError for the first cell that cannot be run, and for parts that overwrite each other
+  // Reads JSON text: {"title", "experiment", "set", "axes", "replicates", "measures", "refine", "keep"}.
+  // label names the source in errors. Overrides "key=value" change the sweep if their path begins with one of
+  // its keys, otherwise its experiment; the title names them (changed_settings.h). Cells are resolved and
+  // checked: throws InputError for the first cell that cannot be run, and for parts that overwrite each other
   // (sweep_statements.h). Of more than 20000 cells, 20000 that are spread over the grid are checked, and
   // those with each value of an axis and the first values of the others.
   static Sweep from_json(const std::string& text, const std::string& label,
@@ -29,8 +30,11 @@ class Sweep {
   static Sweep load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const std::string& title() const;
+  // Returns axes, replicates, measures and kinds of notes, without runs.
+  SweepResult outline() const;
   // Returns a result without values, whose runs of the first round are pending. That of a shard is a part
-  // with its runs of the first round. Throws InputError if it would have more than 1e7 runs.
+  // with its runs of the first round. Throws InputError if it would have more than 1e7 runs, or if the sweep
+  // keeps a tally.
   SweepResult plan(const Shard& shard = {}) const;
   // Returns the experiment of one run. It has the values that the result states for its cell; throws
   // InputError otherwise. The noise key contains cell and replicate, so each run has its own noise. For an
@@ -45,6 +49,9 @@ class Sweep {
   const std::vector<Measure>& measures() const;
   bool needs_true_contact() const;  // true if one of its measures does
   std::optional<RefinementRule> refinement() const;
+  Keep keep() const;
+  // Returns a part with these runs, pending. They are increasing.
+  SweepResult plan_of(std::vector<std::uint64_t> runs) const;
   std::string to_json() const;  // complete: read again, it makes the same sweep
   // Returns the sweep with every every-th value of each axis. A range, whose steps may not divide evenly, is
   // thinned approximately. The runs have other noise than those of the full sweep.

@@ -3,17 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
+#include "analysis/tally/tally_means.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/answer_panels.h"
+#include "runners/sweep/tally_outline.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
 
 namespace {
+
+// What a question is put to: a sweep with its runs, or a tally.
+struct Asked {
+  const SweepResult& result;  // of a tally only the outline
+  std::function<EventLimits(const LimitQuestion&)> limits;
+  std::function<Table(const std::string& measure, const TableAxes& axes)> means;
+  std::function<Table(const std::string& measure, std::size_t between, const TableAxes& axes)> differences;
+  std::string event;  // that of default_event()
+};
 
 bool has_numbers(const Column& axis) {
   return std::holds_alternative<std::vector<double>>(axis.values);
@@ -71,23 +83,24 @@ std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit
          "Along the axis the event becomes " + (rises ? "more" : "less") + " probable. ";
 }
 
-void add_limits(Figure& figure, const SweepResult& result, const SweepQuestion& question,
-                const std::string& event) {
+void add_limits(Figure& figure, const Asked& asked, const SweepQuestion& question, const std::string& event) {
+  const SweepResult& result = asked.result;
   number_of_column(result.measures, event, "limit");
   if (!(question.level > 0 && question.level < 1))
     throw InputError("level " + std::to_string(question.level), "expected a probability between 0 and 1");
   const LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level};
-  const auto [table, rises] = event_limits(result, limit);
+  const auto [table, rises] = asked.limits(limit);
   figure.caption += limit_sentence(result, limit, rises);
   figure.tables.push_back(table);
   add_answer_panel(figure, {table, result.axes.size() - 1, "limit", "limit_low", "limit_high"});
 }
 
-void add_means(Figure& figure, const SweepResult& result, const std::vector<std::string>& measures,
+void add_means(Figure& figure, const Asked& asked, const std::vector<std::string>& measures,
                const TableAxes& axes) {
+  const SweepResult& result = asked.result;
   for (const std::string& measure : measures) {
     number_of_column(result.measures, measure, "mean");
-    const Table table = sweep_means(result, measure, axes);
+    const Table table = asked.means(measure, axes);
     figure.tables.push_back(table);
     add_answer_panel(figure, {table, axes.by.size(), "mean", "low", "high"});
   }
@@ -95,8 +108,8 @@ void add_means(Figure& figure, const SweepResult& result, const std::vector<std:
     figure.caption += "The sweep was refined: a mean over several cells counts only those that have runs. ";
 }
 
-void add_differences(Figure& figure, const SweepResult& result, const SweepQuestion& question,
-                     TableAxes axes) {
+void add_differences(Figure& figure, const Asked& asked, const SweepQuestion& question, TableAxes axes) {
+  const SweepResult& result = asked.result;
   const std::size_t between = axis_between(result, question.between);
   std::erase(axes.by, between);
   const Column& axis = result.axes[between];
@@ -108,7 +121,7 @@ void add_differences(Figure& figure, const SweepResult& result, const SweepQuest
                     "correction for skewness; adjusted_p: after Holm, for the rows of a table. ";
   for (const std::string& measure : question.differences) {
     number_of_column(result.measures, measure, "difference");
-    const Table table = sweep_differences(result, measure, between, axes);
+    const Table table = asked.differences(measure, between, axes);
     figure.tables.push_back(table);
     add_answer_panel(figure, {table, axes.by.size() + 1, "mean", "low", "high"});
   }
@@ -119,13 +132,14 @@ bool names_no_measure(const SweepQuestion& question) {
 }
 
 // Returns the event whose limit the question wants; an empty text if it wants none.
-std::string event_of(const SweepResult& result, const SweepQuestion& question) {
+std::string event_of(const Asked& asked, const SweepQuestion& question) {
+  const SweepResult& result = asked.result;
   if (!question.limit.empty()) return question.limit;
   const bool has_axis = std::any_of(result.axes.begin(), result.axes.end(), [](const Column& axis) {
     return has_numbers(axis) && axis.length() > 1;
   });
   if (question.along.empty() && !(names_no_measure(question) && has_axis)) return {};
-  const std::string event = default_event(result);
+  const std::string& event = asked.event;
   if (event.empty() && !question.along.empty())
     throw InputError("along " + printable(question.along),
                      "no run has popped_through or tool_popped_through: expected the measure of an event as "
@@ -165,19 +179,78 @@ std::string default_event(const SweepResult& result) {
   return {};
 }
 
+namespace {
+
+Figure answer_of(const Asked& asked, const std::string& config, const SweepQuestion& question) {
+  const SweepResult& result = asked.result;
+  const Json json = parse_json(config, "the configuration of the sweep");
+  Figure figure{kAnswerName, json.is_object() ? json.value("title", std::string()) : "", {}};
+  const std::string event = event_of(asked, question);
+  refuse_options_without_effect(question, !event.empty());
+  if (!event.empty()) add_limits(figure, asked, question, event);
+  const TableAxes axes{axes_by(result, question.by), axes_with_common_noise(json, result.axes.size())};
+  add_means(figure, asked, names_no_measure(question) ? names_of(result.measures) : question.means, axes);
+  if (!question.differences.empty()) add_differences(figure, asked, question, axes);
+  if (!figure.caption.empty()) figure.caption.pop_back();
+  return figure;
+}
+
+[[noreturn]] void refuse_for_tally(const std::string& what, const std::string& why) {
+  throw InputError(what, why + ": expected a sweep with \"keep\": \"runs\"");
+}
+
+std::size_t number_of_event(const SweepTally& tally, const LimitQuestion& question) {
+  const std::size_t measure = number_of_column(tally.measures, question.measure, "limit");
+  if (!is_event(tally.measures[measure]) || question.threshold != 0.5)
+    refuse_for_tally("limit " + question.measure,
+                     "a tally counts only the events themselves, at the threshold 0.5");
+  return measure;
+}
+
+void require_no_pooled_noise(const SweepTally& tally, const TableAxes& axes) {
+  for (const std::size_t axis : axes.common_noise)
+    if (std::find(axes.by.begin(), axes.by.end(), axis) == axes.by.end())
+      refuse_for_tally(
+          "by", "a tally does not know which runs had the same noise on the axis " + tally.axes[axis].name);
+}
+
+}  // namespace
+
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question) {
   if (result.runs_in(RunState::done).empty())
     throw InputError("the sweep", "has no finished run: expected at least one");
-  const Json json = parse_json(config, "the configuration of the sweep");
-  Figure figure{kAnswerName, json.is_object() ? json.value("title", std::string()) : "", {}};
-  const std::string event = event_of(result, question);
-  refuse_options_without_effect(question, !event.empty());
-  if (!event.empty()) add_limits(figure, result, question, event);
-  const TableAxes axes{axes_by(result, question.by), axes_with_common_noise(json, result.axes.size())};
-  add_means(figure, result, names_no_measure(question) ? names_of(result.measures) : question.means, axes);
-  if (!question.differences.empty()) add_differences(figure, result, question, axes);
-  if (!figure.caption.empty()) figure.caption.pop_back();
-  return figure;
+  return answer_of(
+      {result, [&](const LimitQuestion& limit) { return event_limits(result, limit); },
+       [&](const std::string& measure, const TableAxes& axes) { return sweep_means(result, measure, axes); },
+       [&](const std::string& measure, std::size_t between, const TableAxes& axes) {
+         return sweep_differences(result, measure, between, axes);
+       },
+       default_event(result)},
+      config, question);
+}
+
+Figure sweep_answer(const SweepTally& tally, const std::string& config, const SweepQuestion& question) {
+  const SweepResult outline = outline_of(tally);
+  const auto limits = [&](const LimitQuestion& limit) {
+    const std::size_t measure = number_of_event(tally, limit);
+    return event_limits(outline, {[&](std::size_t cell) { return event_count(tally, measure, cell); }},
+                        limit);
+  };
+  const auto means = [&](const std::string& measure, const TableAxes& axes) {
+    require_no_pooled_noise(tally, axes);
+    return tally_means(tally, outline, number_of_column(tally.measures, measure, "mean"), axes.by);
+  };
+  const auto differences = [](const std::string& measure, std::size_t, const TableAxes&) -> Table {
+    refuse_for_tally("difference " + measure, "a tally does not keep pairs of runs");
+  };
+  std::string event;
+  for (const char* name : {"tool_popped_through", "popped_through"})
+    for (std::size_t i = 0; i < tally.measures.size(); ++i)
+      if (tally.measures[i].name == name &&
+          std::any_of(tally.tallies.begin(), tally.tallies.end(),
+                      [i](const CellTally& cell) { return cell.measures[i].values > 0; }))
+        event = name;
+  return answer_of({outline, limits, means, differences, event}, config, question);
 }
 
 }  // namespace remote_touch

@@ -6,6 +6,7 @@
 
 #include "analysis/figures/figure.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/tally/sweep_tally.h"
 
 namespace remote_touch {
 
@@ -41,5 +42,10 @@ inline constexpr const char* kAnswerName = "analysis";
 // which axes have common noise. Throws InputError for a name that the sweep does not have, an axis that does
 // not fit, and a sweep without a finished run.
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question);
+
+// The same of a tally. It knows neither single runs nor thresholds: throws InputError also for a difference,
+// for a limit of a measure that is no event or with another threshold than 0.5, and for means over an axis
+// with common noise.
+Figure sweep_answer(const SweepTally& tally, const std::string& config, const SweepQuestion& question);
 
 }  // namespace remote_touch

@@ -8,6 +8,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/sweep/cell_text.h"
+#include "runners/sweep/tally_outline.h"
 
 namespace remote_touch {
 
@@ -50,10 +51,33 @@ std::vector<std::string> note_lines(const SweepResult& sweep, const std::vector<
   return lines;
 }
 
-void refuse_notes(const SweepResult& result) {
+std::vector<std::string> note_lines(const SweepTally& tally) {
+  CellTally all(tally.layout());
+  for (const CellTally& cell : tally.tallies) all.add(cell);
+  std::vector<NoteCount> counts;
+  for (std::size_t i = 0; i < all.notes.size(); ++i)
+    if (all.notes[i].runs > 0)
+      counts.push_back({tally.note_kinds[i], static_cast<std::size_t>(all.notes[i].runs),
+                        static_cast<std::size_t>(all.notes[i].first)});
+  return note_lines(outline_of(tally), counts, static_cast<std::size_t>(all.done));
+}
+
+namespace {
+
+void refuse(const std::vector<std::string>& lines) {
   std::string all;
-  for (const std::string& line : note_lines(result)) all += (all.empty() ? "" : "; ") + line;
+  for (const std::string& line : lines) all += (all.empty() ? "" : "; ") + line;
   if (!all.empty()) throw InputError("--strict", all);
+}
+
+}  // namespace
+
+void refuse_notes(const SweepResult& result) {
+  refuse(note_lines(result));
+}
+
+void refuse_notes(const SweepTally& tally) {
+  refuse(note_lines(tally));
 }
 
 void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes) {

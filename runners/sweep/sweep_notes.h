@@ -10,6 +10,7 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/tally/sweep_tally.h"
 #include "scenarios/interface/note.h"
 
 namespace remote_touch {
@@ -27,8 +28,12 @@ std::vector<std::string> note_lines(const SweepResult& result);
 std::vector<std::string> note_lines(const SweepResult& sweep, const std::vector<NoteCount>& counts,
                                     std::size_t done);
 
+// The same of a tally.
+std::vector<std::string> note_lines(const SweepTally& tally);
+
 // Throws InputError with all these lines, for --strict. Does nothing if there is none.
 void refuse_notes(const SweepResult& result);
+void refuse_notes(const SweepTally& tally);
 
 // Adds the note "outcome unknown" if the distance to the true surface is known in some tick but a measure of
 // the outcome is NaN: an event is then counted as if it had not happened, see tally().

@@ -36,10 +36,21 @@ void require_known_inputs(const Sweep& sweep, const Experiment& experiment) {
                                       std::to_string(kMaxChecked) + " cells, or recordings along one axis");
 }
 
-// Does the run at a place and writes its values, or its error, into its own elements of the result. Throws
-// std::bad_alloc, because lack of memory is not a result of the run, and Interrupted.
-void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t place, SweepResult& result) {
+// Does the run at a place and writes its values, or its error, into its own elements of the result.
+void do_run_at(const Sweep& sweep, const SweepRunOptions& options, std::size_t place, SweepResult& result) {
   const std::size_t run = result.run_at(place);
+  RunOutcome outcome = do_run(sweep, options, result.cell_of(run), result.replicate_of(run));
+  for (std::size_t i = 0; i < outcome.values.size(); ++i)
+    std::get<std::vector<double>>(result.measures[i].values)[place] = outcome.values[i];
+  result.notes[place] = outcome.notes;
+  result.state[place] = outcome.state;
+  result.error[place] = std::move(outcome.error);
+}
+
+}  // namespace
+
+RunOutcome do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t cell, int replicate) {
+  RunOutcome outcome;
   try {
     SimulationOptions simulation;
     simulation.kernels = options.kernels;
@@ -47,23 +58,20 @@ void do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t plac
     simulation.find_true_contact = sweep.needs_true_contact();
     RunReport report;
     simulation.report = &report;
-    const Experiment experiment = sweep.experiment(result.cell_of(run), result.replicate_of(run));
+    const Experiment experiment = sweep.experiment(cell, replicate);
     require_known_inputs(sweep, experiment);
     const Trace trace = simulate(experiment, simulation);
-    for (std::size_t i = 0; i < result.measures.size(); ++i)
-      std::get<std::vector<double>>(result.measures[i].values)[place] = value_of(sweep.measures()[i], trace);
+    for (const Measure& measure : sweep.measures()) outcome.values.push_back(value_of(measure, trace));
     add_unknown_outcome(sweep.measures(), trace, report.notes);
-    result.notes[place] = note_bits(report.notes);
-    result.state[place] = RunState::done;
+    outcome.notes = note_bits(report.notes);
+    outcome.state = RunState::done;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    result.error[place] = stored_error(error);
-    result.state[place] = RunState::failed;
+    outcome = {RunState::failed, {}, 0, stored_error(error)};
   }
+  return outcome;
 }
-
-}  // namespace
 
 std::size_t do_pending_runs(const Sweep& sweep, SweepResult& result, const SweepRunOptions& options) {
   const std::vector<std::size_t> places = result.runs_in(RunState::pending);
@@ -74,7 +82,7 @@ std::size_t do_pending_runs(const Sweep& sweep, SweepResult& result, const Sweep
   options.runs(places.size(), [&](std::size_t i) {
     if (ends) return;
     try {
-      do_run(sweep, options, places[i], result);
+      do_run_at(sweep, options, places[i], result);
       const std::lock_guard lock(one_at_a_time);
       if (options.finished) options.finished(places[i]);
     } catch (const std::bad_alloc&) {

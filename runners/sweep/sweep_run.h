@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
 #include "core/kernels/kernels.h"
@@ -18,6 +20,16 @@ struct SweepRunOptions {
   std::function<void(std::size_t place)> finished = {};
   SideBySide runs = side_by_side;  // distributes the runs over threads
 };
+
+// What is kept of one run.
+struct RunOutcome {
+  RunState state = RunState::pending;
+  std::vector<double> values = {};  // one for each measure; empty if the run failed
+  std::int32_t notes = 0;           // as SweepResult::notes
+  std::string error = {};
+};
+// Does one run. Throws std::bad_alloc, because lack of memory is not a result of the run, and Interrupted.
+RunOutcome do_run(const Sweep& sweep, const SweepRunOptions& options, std::size_t cell, int replicate);
 
 // Does every pending run, in parallel. The bits and the notes of a run do not depend on threads or order. A
 // run that fails is marked and its error is stored; the other runs continue. Throws Interrupted, or the

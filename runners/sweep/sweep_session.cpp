@@ -3,45 +3,15 @@
 #include <chrono>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/schema.h"
 #include "analysis/sweeps/sweep_in_progress.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
-#include "runners/experiment/settings/configuration_difference.h"
 #include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_origin.h"
 
 namespace remote_touch {
 
 namespace {
-
-std::string first_difference(const TextAttributes& theirs, const TextAttributes& ours) {
-  const auto all = configuration_differences(attribute(theirs, "config"), attribute(ours, "config"));
-  return all.empty() ? "its title" : all.front();
-}
-
-// Throws InputError for a sweep of an earlier schema. Its settings have other names, so that it would look
-// like another sweep, and another program made it.
-void require_present_schema(const std::filesystem::path& file, const std::string& schema) {
-  if (is_earlier_schema(schema))
-    throw InputError(file.string(), "was written with the earlier schema " + schema +
-                                        ": expected a new file, in which the sweep starts again");
-}
-
-// Throws InputError for a file of another sweep, shard or build, so that it is not overwritten.
-void require_same(const std::filesystem::path& file, const TextAttributes& theirs,
-                  const TextAttributes& ours) {
-  const auto refuse = [&](const std::string& what) {
-    throw InputError(file.string(),
-                     what + ": expected a file of the same sweep, shard and build, or a new file");
-  };
-  if (attribute(theirs, "config") != attribute(ours, "config"))
-    refuse("is of another configuration, first in " + first_difference(theirs, ours));
-  for (const char* name : {"shard", "version", "git_commit", "git_dirty", "source_digest", "compiler",
-                           "flags", "program", "program_sha256", "plugins"})
-    if (attribute(theirs, name) != attribute(ours, name))
-      refuse(std::string("has ") + name + " \"" + attribute(theirs, name) + "\", not \"" +
-             attribute(ours, name) + "\"");
-}
 
 // Throws InputError if a finished run has read a recording that has changed since: its values belong to
 // another recording.
@@ -90,8 +60,7 @@ SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttribu
                      "a pipe or a device: expected a file, because a sweep stores each run when it is done");
   if (!std::filesystem::is_regular_file(there)) return plan;
   StoredSweep stored = read_sweep(file);
-  require_present_schema(file, stored.schema);
-  require_same(file, stored.attributes, attributes);
+  require_same_sweep(file, stored.schema, stored.attributes, attributes);
   take_over(without_others(std::move(stored.result)), file, plan.result);
   const std::string inputs = attribute(attributes, "input_digests");
   const auto changed = changed_inputs(attribute(stored.attributes, "input_digests"), inputs);

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "analysis/figures/result_file.h"
+#include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/provenance/shell_command.h"
@@ -14,6 +15,7 @@
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/tally_merge.h"
 
 namespace remote_touch {
 
@@ -45,12 +47,44 @@ std::string command_of(const AnalyseRequest& request) {
   return shell_command(words);
 }
 
-void write_hdf5(const CommandLine& line, const AnalyseRequest& request, const StoredSweep& stored,
-                const Figure& answer) {
+struct Answer {
+  Figure figure;
+  std::string config, digest;       // of the sweep
+  std::size_t done = 0, asked = 0;  // runs that are finished, and that the sweep should have
+  std::vector<std::string> notes;
+};
+
+Answer answer_of_runs(const AnalyseRequest& request) {
+  const StoredSweep stored = read_stored_sweep(request.sweep);
+  const SweepResult& result = stored.result;
+  const std::string config = attribute(stored.attributes, "config");
+  return {sweep_answer(result, config, question_of(request)),
+          config,
+          digest(result),
+          result.runs_in(RunState::done).size(),
+          result.run_count() - result.runs_in(RunState::not_sampled).size(),
+          note_lines(result)};
+}
+
+Answer answer_of_tally(const AnalyseRequest& request) {
+  const StoredTally stored = read_tally(Hdf5Reader(request.sweep));
+  const SweepTally& tally = stored.tally;
+  std::int64_t done = 0;
+  for (const CellTally& cell : tally.tallies) done += cell.done;
+  const std::string config = attribute(stored.attributes, "config");
+  return {sweep_answer(tally, config, question_of(request)),
+          config,
+          digest(tally),
+          static_cast<std::size_t>(done),
+          static_cast<std::size_t>(tally.run_count()),
+          note_lines(tally)};
+}
+
+void write_hdf5(const CommandLine& line, const AnalyseRequest& request, const Answer& answer) {
   const FileLock lock = lock_output(line, request.output, {request.sweep});
-  TextAttributes attributes = provenance(attribute(stored.attributes, "config"), command_of(request), "");
-  attributes.emplace_back("sweep_digest", digest(stored.result));
-  write_figure(request.output, answer, attributes);
+  TextAttributes attributes = provenance(answer.config, command_of(request), "");
+  attributes.emplace_back("sweep_digest", answer.digest);
+  write_figure(request.output, answer.figure, attributes);
 }
 
 // Writes the tables without those of single curves, whose rows the others have, too.
@@ -73,13 +107,11 @@ int command_analyse(const CommandLine& line, const AnalyseRequest& request) {
   const std::string ending = std::filesystem::path(request.output).extension().string();
   if (!request.output.empty() && ending != ".h5" && ending != ".csv")
     throw InputError("--output " + request.output, "expected a file that ends with .h5 or .csv");
-  const StoredSweep stored = read_stored_sweep(request.sweep);
-  const Figure answer =
-      sweep_answer(stored.result, attribute(stored.attributes, "config"), question_of(request));
-  if (ending == ".h5") write_hdf5(line, request, stored, answer);
-  if (ending == ".csv") write_tables(line, request, answer);
-  std::fputs(answer_text(answer, stored.result).c_str(), stdout);
-  for (const std::string& note : note_lines(stored.result)) std::printf("  note: %s\n", note.c_str());
+  const Answer answer = is_tally(request.sweep) ? answer_of_tally(request) : answer_of_runs(request);
+  if (ending == ".h5") write_hdf5(line, request, answer);
+  if (ending == ".csv") write_tables(line, request, answer.figure);
+  std::fputs(answer_text(answer.figure, answer.done, answer.asked).c_str(), stdout);
+  for (const std::string& note : answer.notes) std::printf("  note: %s\n", note.c_str());
   return kDone;
 }
 

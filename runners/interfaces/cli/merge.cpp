@@ -6,14 +6,20 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/sweep_summary.h"
+#include "runners/interfaces/cli/tally_summary.h"
+#include "runners/sweep/tally_merge.h"
 
 namespace remote_touch {
 
 int command_merge(const CommandLine& line, const MergeCommand& command) {
   const FileLock lock = lock_output(line, command.output, {});
-  std::optional<SweepSummary> summary;
   const MergeRequest request{command.shards, command.output, command.partial ? Partial::yes : Partial::no,
                              line.force};
+  if (is_tally(command.shards.front())) {
+    const MergedTally merged = merge_tallies(request);
+    return print_summary(command.output, merged.tally, merged.digest);
+  }
+  std::optional<SweepSummary> summary;
   const std::string digest = merge_shards(request, [&](const SweepResult& block) {
     if (!summary) summary.emplace(block);
     summary->add(block);

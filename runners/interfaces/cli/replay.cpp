@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/maker.h"
@@ -14,10 +16,19 @@
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_replay.h"
+#include "runners/sweep/tally_merge.h"
+#include "runners/sweep/tally_outline.h"
 
 namespace remote_touch {
 
 namespace {
+
+// Returns the sweep in the file; without runs if it is a tally.
+StoredSweep stored_in(const std::string& file) {
+  if (!is_tally(file)) return read_stored_part(file);
+  StoredTally tally = read_tally(Hdf5Reader(file));
+  return {outline_of(tally.tally), std::move(tally.attributes), false, tally.schema};
+}
 
 // Prints each measure beside the stored one. Returns true if they agree bit for bit, or nothing is stored.
 bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
@@ -53,7 +64,7 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.map});
-  const StoredSweep stored = read_stored_part(request.map);
+  const StoredSweep stored = stored_in(request.map);
   const Sweep sweep = read_configuration(stored.attributes, request.map, [&] {
     return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
                             request.map + " config");

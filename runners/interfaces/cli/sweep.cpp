@@ -16,8 +16,10 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/sweep_summary.h"
+#include "runners/interfaces/cli/tally_summary.h"
 #include "runners/sweep/sweep_notes.h"
 #include "runners/sweep/sweep_session.h"
+#include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
 
@@ -77,12 +79,26 @@ Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandL
   return sample;
 }
 
-int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, const SweepRequest& request) {
-  const std::size_t runs = plan.result.runs_in(RunState::pending).size();
-  const Sample sample = sample_runs(sweep, plan.result, line);
+int print_interrupted(const std::string& file, std::size_t finished) {
+  std::fprintf(stderr, "%s: interrupted; %zu finished runs are kept in %s, and the same command continues\n",
+               program_identity().name.c_str(), finished, printable(file).c_str());
+  return kInterrupted;
+}
+
+// What the call would do.
+struct Work {
+  std::size_t runs = 0;     // to do
+  std::size_t done = 0;     // that the file has
+  std::string file_text;    // size of the file
+  const SweepResult& plan;  // some or all of the runs, pending
+};
+
+int dry_run(const Sweep& sweep, const Work& work, const CommandLine& line, const SweepRequest& request) {
+  const Sample sample = sample_runs(sweep, work.plan, line);
+  const std::size_t runs = work.runs;
   std::printf("%s\n  %s cells, %zu runs to do, all valid", sweep.title().c_str(),
-              extent_text(plan.result).c_str(), runs);
-  if (plan.is_there) std::printf("; %zu are done", plan.result.runs_in(RunState::done).size());
+              extent_text(work.plan).c_str(), runs);
+  if (work.done > 0) std::printf("; %zu are done", work.done);
   if (const auto rule = sweep.refinement())
     std::printf("\n  refinement: up to %llu runs in all", static_cast<unsigned long long>(rule->budget));
   if (sample.seconds_per_run)
@@ -92,13 +108,72 @@ int dry_run(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line, 
   else
     std::printf("\n  no time to estimate: no run was tried");
   if (sample.failed > 0) std::printf("; %d of those tried failed", sample.failed);
-  std::printf("\n  file: %.3g MB while it runs, less when it is finished\n",
-              1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));
+  std::printf("\n  file: %s\n", work.file_text.c_str());
   for (const std::string& note : note_lines(sample.tried))
     std::printf("  note on the runs that were tried: %s\n", note.c_str());
   print_replaced(request.overrides);
   if (request.strict) refuse_notes(sample.tried);
   return kDone;
+}
+
+int dry_run_of_runs(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line,
+                    const SweepRequest& request) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.3g MB while it runs, less when it is finished",
+                1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));
+  return dry_run(sweep,
+                 {plan.result.runs_in(RunState::pending).size(), plan.result.runs_in(RunState::done).size(),
+                  text, plan.result},
+                 line, request);
+}
+
+// Tries the first replicate of cells that are spread over those of the shard.
+int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const CommandLine& line,
+                     const SweepRequest& request) {
+  constexpr std::size_t kSamples = 16;
+  const SweepResult outline = sweep.outline();
+  const std::size_t cells = shard.cells_of(outline.cell_count()), tried = std::min(kSamples, cells);
+  std::vector<std::uint64_t> runs;
+  for (std::size_t i = 0; i < tried; ++i) runs.push_back(outline.run(shard.cell(i * cells / tried), 0));
+  const SweepResult sample = sweep.plan_of(runs);
+  return dry_run(sweep,
+                 {cells * static_cast<std::size_t>(outline.replicates), 0,
+                  "a tally of " + std::to_string(cells) + " cells", sample},
+                 line, request);
+}
+
+int make_runs(const CommandLine& line, const SweepRequest& request, const std::string& file,
+              SweepSession session) {
+  Progress progress(request.sweep, line.quiet);
+  try {
+    const bool any = session.run(*line.kernels, line.stop, [&](auto done, auto total, auto earlier) {
+      progress.update(done, total, earlier, "runs");
+    });
+    if (!any) std::printf("%s: nothing left to do\n", printable(file).c_str());
+  } catch (const Interrupted&) {
+    return print_interrupted(file, session.result().runs_in(RunState::done).size());
+  }
+  print_replaced(request.overrides);
+  const int code = print_summary(file, session.result());
+  if (request.strict) refuse_notes(session.result());
+  return code;
+}
+
+int make_tally(const CommandLine& line, const SweepRequest& request, const std::string& file,
+               TallySession session) {
+  Progress progress(request.sweep, line.quiet);
+  try {
+    const bool any = session.run(*line.kernels, line.stop, [&](auto done, auto total, auto earlier) {
+      progress.update(done, total, earlier, "runs");
+    });
+    if (!any) std::printf("%s: nothing left to do\n", printable(file).c_str());
+  } catch (const Interrupted&) {
+    return print_interrupted(file, session.tally().held.count());
+  }
+  print_replaced(request.overrides);
+  const int code = print_summary(file, session.tally(), session.digest());
+  if (request.strict) refuse_notes(session.tally());
+  return code;
 }
 
 }  // namespace
@@ -113,26 +188,12 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     throw InputError("--output", "is required; see remote-touch sweep --help");
   if (!request.dry_run) require_writable(file);
   const TextAttributes attributes = attributes_of(sweep, request, shard);
-  if (request.dry_run) return dry_run(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
-
-  SweepSession session(sweep, shard, attributes, file);
-  Progress progress(request.sweep, line.quiet);
-  try {
-    const bool any = session.run(*line.kernels, line.stop, [&](auto done, auto total, auto earlier) {
-      progress.update(done, total, earlier, "runs");
-    });
-    if (!any) std::printf("%s: nothing left to do\n", printable(file).c_str());
-  } catch (const Interrupted&) {
-    std::fprintf(stderr,
-                 "%s: interrupted; %zu finished runs are kept in %s, and the same command continues\n",
-                 program_identity().name.c_str(), session.result().runs_in(RunState::done).size(),
-                 printable(file).c_str());
-    return kInterrupted;
-  }
-  print_replaced(request.overrides);
-  const int code = print_summary(file, session.result());
-  if (request.strict) refuse_notes(session.result());
-  return code;
+  if (sweep.keep() != Keep::runs)
+    return request.dry_run ? dry_run_of_tally(sweep, shard, line, request)
+                           : make_tally(line, request, file, TallySession(sweep, shard, attributes, file));
+  if (request.dry_run)
+    return dry_run_of_runs(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
+  return make_runs(line, request, file, SweepSession(sweep, shard, attributes, file));
 }
 
 }  // namespace remote_touch

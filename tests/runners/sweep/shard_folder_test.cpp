@@ -8,6 +8,7 @@
 
 #include "analysis/storage/file_lock.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 
@@ -74,6 +75,23 @@ TEST_F(ShardFolder, TheTimeLeftIsThatOfTheRunningShards) {
   EXPECT_DOUBLE_EQ(*all.left_s(), 800 / 5.0);
   all.files.pop_back(), all.files.clear();
   EXPECT_FALSE(all.left_s());
+}
+
+TEST_F(ShardFolder, MayHoldTallies) {
+  SweepTally tally;
+  tally.axes = {{"x", "1", "an axis", std::vector<double>{1, 2, 3, 4}}}, tally.replicates = 6;
+  tally.measures = {{"max_force", "N", "a measure", {}}};
+  const TallyLayout layout = tally.layout();
+  for (std::uint64_t run = 0; run < 6; ++run) tally.add_done(layout, run, std::vector<double>{1}, 0);
+  write_tally(folder_ / "1.h5", tally, {{"config", "{}"}, {"shard", "1/4"}});
+  tally.add_failed(layout, 12, "no force");
+  write_tally(folder_ / "3.h5", tally, {{"config", "{}"}, {"shard", "1,3/4"}});
+  const SweepProgress all = progress();
+  EXPECT_EQ(all.runs, 24u);
+  EXPECT_EQ(all.files[0].state, ShardState::finished);
+  EXPECT_EQ(all.files[1].state, ShardState::running);
+  EXPECT_EQ(all.files[1].runs, 12u);
+  EXPECT_EQ(all.failed(), 1u);
 }
 
 TEST_F(ShardFolder, NamesWhatCannotBeReadAndLeavesOutWhatIsNoShard) {

@@ -14,6 +14,11 @@
 namespace remote_touch::sweep_answer_test {
 namespace {
 
+std::string text_of(const Figure& answer, const SweepResult& result) {
+  return answer_text(answer, result.runs_in(RunState::done).size(),
+                     result.run_count() - result.runs_in(RunState::not_sampled).size());
+}
+
 constexpr int kRuns = 10;
 constexpr const char* kConfig = R"({"title": "a sweep"})";
 
@@ -145,7 +150,7 @@ TEST(SweepAnswers, CurvesOfLikeLookingValuesAreTwo) {
   const Figure answer = sweep_answer(result, kConfig, question);
   ASSERT_EQ(answer.panels.front().curves.size(), 4u);
   EXPECT_EQ(answer.panels.front().curves[3].label, "seed = 10000002");
-  EXPECT_HAS(answer_text(answer, result), "10000002");
+  EXPECT_HAS(text_of(answer, result), "10000002");
 }
 
 // A result with two columns of one name cannot be read. The list of refused names is in joint_axis.cpp.
@@ -172,7 +177,7 @@ TEST(AnswerText, HasEachTableWithUnits) {
   SweepQuestion question;
   question.limit = "popped_through", question.along = "x";
   const Figure answer = sweep_answer(sweep(), kConfig, question);
-  const std::string text = answer_text(answer, sweep());
+  const std::string text = text_of(answer, sweep());
   EXPECT_HAS(text, "  r_c    method  limit  limit_low  limit_high  at_least  at_most  place   runs\n");
   EXPECT_HAS(text, "  m              m/s^2  m/s^2      m/s^2       m/s^2     m/s^2\n");
   EXPECT_HAS(text, "  0.005  old     2      ");
@@ -182,9 +187,9 @@ TEST(AnswerText, HasEachTableWithUnits) {
 TEST(AnswerText, SaysWhatIsLeftOut) {
   SweepResult part = sweep();
   part.state[0] = part.state[7] = RunState::failed;
-  EXPECT_HAS(answer_text(sweep_answer(part, kConfig, {}), part),
+  EXPECT_HAS(text_of(sweep_answer(part, kConfig, {}), part),
              "note: 2 of 120 runs are not finished and are left out");
-  EXPECT_EQ(answer_text(sweep_answer(sweep(), kConfig, {}), sweep()).find("note"), std::string::npos);
+  EXPECT_EQ(text_of(sweep_answer(sweep(), kConfig, {}), sweep()).find("note"), std::string::npos);
 }
 
 }  // namespace

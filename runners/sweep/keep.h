@@ -1,0 +1,19 @@
+// What a sweep keeps of its runs: the key "keep".
+#pragma once
+
+#include <string>
+
+#include "runners/experiment/settings/json_parameters.h"
+
+namespace remote_touch {
+
+// runs: the measures of each run. tally: of each cell the counts, exact sums, extremes and quantiles of its
+// runs (analysis/tally). events: a tally, and the numbers of the runs in which an event happened.
+enum class Keep { runs, tally, events };
+
+// Reads the key "keep" of a sweep; runs if it is missing. Throws InputError for another value, and for a
+// sweep with refinement that does not keep its runs. label: names the source in errors.
+Keep read_keep(const Json& sweep, const std::string& label);
+const char* name_of(Keep keep);
+
+}  // namespace remote_touch

@@ -1,0 +1,75 @@
+#include "runners/sweep/tally_merge.h"
+
+#include <filesystem>
+#include <optional>
+
+#include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/schema.h"
+#include "analysis/tally/tally_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/sweep/seen_shards.h"
+#include "runners/sweep/sweep_origin.h"
+
+namespace remote_touch {
+
+namespace {
+
+// Throws InputError for a shard some of whose runs are not made.
+void require_finished(const std::string& file, const ShardSet& shards, const SweepTally& tally) {
+  std::uint64_t cells = 0;
+  for (const int index : shards.indices) cells += Shard{index, shards.count}.cells_of(tally.cell_count());
+  const std::uint64_t runs = cells * static_cast<std::uint64_t>(tally.replicates);
+  if (tally.held.count() < runs)
+    throw InputError(file, "not finished (" + std::to_string(runs - tally.held.count()) +
+                               " runs are left): expected once its sweep command has ended, or --partial");
+}
+
+// Throws InputError if the file holds runs that the shards do not.
+void require_nothing_more(const MergeRequest& request, const SweepTally& merged) {
+  std::error_code unreachable;
+  if (!std::filesystem::is_regular_file(request.output, unreachable) ||
+      std::filesystem::file_size(request.output, unreachable) == 0)
+    return;
+  try {
+    const SweepTally there = read_tally(Hdf5Reader(request.output)).tally;
+    for (const RunRange& range : there.held.ranges())
+      if (merged.held.count_in(range) < range.end - range.first)
+        throw InputError(request.output, "holds runs that the shards do not: expected another file");
+  } catch (const InputError&) {
+    if (!request.force) throw;
+  }
+}
+
+}  // namespace
+
+bool is_tally(const std::string& file) {
+  return is_schema_of(attribute(Hdf5Reader(file).attributes(), "schema"), "tally");
+}
+
+MergedTally merge_tallies(const MergeRequest& request) {
+  std::optional<StoredTally> merged;
+  SeenShards seen;
+  for (const std::string& file : request.shards) {
+    std::error_code absent;
+    if (std::filesystem::equivalent(file, request.output, absent))
+      throw InputError(request.output, "is one of the shards: expected another file");
+    StoredTally part = read_tally(Hdf5Reader(file));
+    const ShardSet shards = take_shards(part.attributes, file);
+    if (merged) require_same_origin({file, part.attributes}, {request.shards.front(), merged->attributes});
+    seen.add(file, shards);
+    if (request.partial == Partial::no) require_finished(file, shards, part.tally);
+    if (!merged)
+      merged = std::move(part);
+    else if (const std::string obstacle = merged->tally.obstacle(part.tally); !obstacle.empty())
+      throw InputError(file, "cannot be added (" + obstacle + "): expected shards of one sweep");
+    else
+      merged->tally.add(std::move(part.tally));
+  }
+  if (request.partial == Partial::no) seen.require_complete();
+  if (!seen.are_complete()) merged->attributes.emplace_back("shard", seen.all().text());
+  require_nothing_more(request, merged->tally);
+  const std::string digest = write_tally(request.output, merged->tally, merged->attributes);
+  return {std::move(merged->tally), digest};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,155 @@
+#include "runners/sweep/tally_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <new>
+
+#include "analysis/storage/atomic_file.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_origin.h"
+#include "runners/sweep/sweep_run.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMaxCells = 1'000'000;
+constexpr std::size_t kLeastBatch = 16, kMostBatch = 65536;  // runs that are added together
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+SweepTally without_runs(const Sweep& sweep) {
+  const SweepResult outline = sweep.outline();
+  SweepTally tally;
+  tally.axes = outline.axes, tally.replicates = outline.replicates, tally.measures = outline.measures;
+  tally.note_kinds = outline.note_kinds, tally.keeps_events = sweep.keep() == Keep::events;
+  return tally;
+}
+
+// Does the runs, in parallel. Runs that were not done, because the batch ended early, are pending; failure is
+// the reason.
+std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const SweepTally& tally,
+                                    const std::vector<std::uint64_t>& runs, const SweepRunOptions& options,
+                                    std::exception_ptr& failure) {
+  const auto replicates = static_cast<std::uint64_t>(tally.replicates);
+  std::vector<RunOutcome> outcomes(runs.size());
+  std::mutex one_at_a_time;
+  std::atomic<bool> ends{false};
+  options.runs(runs.size(), [&](std::size_t i) {
+    if (ends) return;
+    try {
+      outcomes[i] = do_run(sweep, options, static_cast<std::size_t>(runs[i] / replicates),
+                           static_cast<int>(runs[i] % replicates));
+    } catch (...) {
+      const std::lock_guard lock(one_at_a_time);
+      if (!ends.exchange(true)) failure = std::current_exception();
+    }
+  });
+  return outcomes;
+}
+
+void add(const TallyLayout& layout, std::uint64_t run, const RunOutcome& outcome, SweepTally& tally) {
+  if (outcome.state == RunState::done)
+    tally.add_done(layout, run, outcome.values, static_cast<std::uint32_t>(outcome.notes));
+  if (outcome.state == RunState::failed) tally.add_failed(layout, run, outcome.error);
+}
+
+}  // namespace
+
+TallySession::TallySession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+                           const std::filesystem::path& file)
+    : sweep_(sweep),
+      shard_(shard),
+      file_(resolved(file)),
+      lock_(file_),
+      attributes_(attributes),
+      tally_(without_runs(sweep)) {
+  const std::size_t cells = shard.cells_of(tally_.cell_count());
+  if (cells == 0 || cells > kMaxCells)
+    throw InputError(sweep.title(), "shard " + shard.text() + " has " + std::to_string(cells) +
+                                        " cells: expected 1 to " + std::to_string(kMaxCells));
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file_, unreachable)) return;
+  StoredTally stored = read_tally(Hdf5Reader(file_));
+  require_same_sweep(file_, stored.schema, stored.attributes, attributes);
+  const std::string inputs = attribute(attributes, "input_digests");
+  for (const auto& input : changed_inputs(attribute(stored.attributes, "input_digests"), inputs))
+    throw InputError(file_.string(), "has runs on another recording " + input.path + " (" + input.before +
+                                         "; now " + input.now +
+                                         "): expected the same recording, or a new file");
+  tally_ = std::move(stored.tally);
+  attributes_ = std::move(stored.attributes);
+}
+
+std::uint64_t TallySession::own_runs() const {
+  return shard_.cells_of(tally_.cell_count()) * static_cast<std::uint64_t>(tally_.replicates);
+}
+
+// Returns up to `count` of the lowest runs that are not made.
+std::vector<std::uint64_t> TallySession::next_runs(std::size_t count) {
+  const auto replicates = static_cast<std::uint64_t>(tally_.replicates);
+  std::vector<std::uint64_t> runs;
+  for (std::size_t i = next_cell_; i < shard_.cells_of(tally_.cell_count()); ++i) {
+    const std::uint64_t first = shard_.cell(i) * replicates;
+    const RunRanges missing = tally_.held.missing_in({first, first + replicates});
+    if (missing.ranges().empty() && i == next_cell_) ++next_cell_;
+    for (const RunRange& range : missing.ranges())
+      for (std::uint64_t run = range.first; run < range.end; ++run) {
+        if (runs.size() == count) return runs;
+        runs.push_back(run);
+      }
+  }
+  return runs;
+}
+
+// Throws InputError if a recording has changed since the session began: then it is not known which runs have
+// read it.
+void TallySession::store() {
+  require_unchanged(sweep_.inputs(), attribute(attributes_, "input_digests"));
+  digest_ = write_tally(file_, tally_, attributes_);
+}
+
+bool TallySession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
+  SweepRunOptions options;
+  options.kernels = &kernels, options.stop = stop;
+  const TallyLayout layout = tally_.layout();
+  const std::size_t earlier = tally_.held.count();
+  std::size_t batch = kLeastBatch;
+  auto stored = Clock::now();
+  double storing_s = 0.5;
+  for (;;) {
+    const std::vector<std::uint64_t> runs = next_runs(batch);
+    if (runs.empty()) break;
+    const auto start = Clock::now();
+    std::exception_ptr failure;
+    const std::vector<RunOutcome> outcomes = outcomes_of(sweep_, tally_, runs, options, failure);
+    for (std::size_t i = 0; i < runs.size(); ++i) add(layout, runs[i], outcomes[i], tally_);
+    if (failure) {
+      if (tally_.held.count() > earlier) store();
+      std::rethrow_exception(failure);
+    }
+    progress(tally_.held.count(), own_runs(), earlier);
+    if (seconds_since(start) < 1) batch = std::min(2 * batch, kMostBatch);
+    if (seconds_since(start) > 3) batch = std::max(batch / 2, kLeastBatch);
+    if (seconds_since(stored) < std::max(10.0, 20 * storing_s)) continue;
+    const auto began = Clock::now();
+    store();
+    stored = Clock::now(), storing_s = std::chrono::duration<double>(stored - began).count();
+  }
+  if (tally_.held.count() == earlier) {
+    digest_ = remote_touch::digest(tally_);
+    return false;
+  }
+  store();
+  return true;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,50 @@
+// Runs a sweep that keeps tallies into its file.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+
+#include "analysis/storage/file_lock.h"
+#include "analysis/tally/tally_file.h"
+#include "core/kernels/kernels.h"
+#include "runners/sweep/sweep.h"
+
+namespace remote_touch {
+
+// The file is a tally of the runs that are done. It is written again every ten seconds, or less often if that
+// takes longer than a twentieth of the time: a killed program loses the runs since then. The same command
+// makes the missing runs. A failed run is counted; it is not made again. The finished tally has the same
+// bytes however often it was interrupted, and with any number of threads.
+class TallySession {
+ public:
+  // Takes the file's lock and reads what is there. attributes: configuration, provenance and shard. Throws
+  // InputError if the file belongs to another sweep, shard or build, or to other recordings, if another
+  // process writes it, and if the shard has no cells or more than 1e6.
+  TallySession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+               const std::filesystem::path& file);
+
+  // See SweepSession::run(). Returns false if no run was left. Throws Interrupted, after the finished runs
+  // have been stored; InputError if the file cannot be written or a recording has changed; std::bad_alloc.
+  using Progress = std::function<void(std::size_t done, std::size_t total, std::size_t earlier)>;
+  bool run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
+
+  const SweepTally& tally() const { return tally_; }
+  std::uint64_t own_runs() const;                        // of the shard
+  const std::string& digest() const { return digest_; }  // of the file, after run()
+
+ private:
+  std::vector<std::uint64_t> next_runs(std::size_t count);
+  void store();
+
+  const Sweep& sweep_;
+  const Shard shard_;
+  const std::filesystem::path file_;
+  const FileLock lock_;
+  TextAttributes attributes_;
+  SweepTally tally_;
+  std::size_t next_cell_ = 0;  // of the shard: earlier ones are complete
+  std::string digest_;
+};
+
+}  // namespace remote_touch
