@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "analysis/storage/file_lock.h"
 #include "analysis/storage/hdf5_reader.h"
@@ -62,8 +64,8 @@ void read_runs_of(const Hdf5Reader& hdf5, ReadShard& read) {
   const StoredSweep outline = read_stored_outline(hdf5);
   read.config = attribute(outline.attributes, "config");
   read.runs_of_sweep = outline.result.run_count();
-  read.is_finished = !outline.in_progress;
   count_states(hdf5, read.progress);
+  read.is_finished = !outline.in_progress && read.progress.done + read.progress.failed == read.progress.runs;
 }
 
 void read_tally_of(const Hdf5Reader& hdf5, ReadShard& read) {
@@ -124,6 +126,23 @@ void add(const ReadShard& read, const std::filesystem::path& file, std::string& 
   all.files.push_back(read.progress);
 }
 
+// Leaves each shard in one file only: a merged file with all its runs comes before the files that it was
+// merged from.
+void leave_each_shard_once(std::vector<ShardProgress>& files) {
+  const auto rank = [](const ShardProgress& file) {
+    return std::pair(file.state == ShardState::finished, file.shards.indices.size());
+  };
+  std::stable_sort(files.begin(), files.end(),
+                   [&](const ShardProgress& a, const ShardProgress& b) { return rank(a) > rank(b); });
+  std::set<int> seen;
+  std::erase_if(files, [&](const ShardProgress& file) {
+    const auto is_seen = [&](int index) { return seen.contains(index); };
+    if (std::ranges::any_of(file.shards.indices, is_seen)) return true;
+    seen.insert(file.shards.indices.begin(), file.shards.indices.end());
+    return false;
+  });
+}
+
 std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code unreachable;
@@ -181,6 +200,7 @@ SweepProgress progress_of_shards(const std::filesystem::path& folder) {
   }
   if (all.files.empty())
     throw InputError(folder.string(), "has no shards of a sweep: expected files of sweep --shard");
+  leave_each_shard_once(all.files);
   const auto first = [](const ShardProgress& shard) { return *shard.shards.indices.begin(); };
   std::sort(all.files.begin(), all.files.end(),
             [&](const ShardProgress& a, const ShardProgress& b) { return first(a) < first(b); });

@@ -84,13 +84,14 @@ TEST_F(ShardFolder, MayHoldTallies) {
   const TallyLayout layout = tally.layout();
   for (std::uint64_t run = 0; run < 6; ++run) tally.add_done(layout, run, std::vector<double>{1}, 0);
   write_tally(folder_ / "1.h5", tally, {{"config", "{}"}, {"shard", "1/4"}});
+  tally.cells.clear(), tally.tallies.clear(), tally.held = {};
   tally.add_failed(layout, 12, "no force");
-  write_tally(folder_ / "3.h5", tally, {{"config", "{}"}, {"shard", "1,3/4"}});
+  write_tally(folder_ / "3.h5", tally, {{"config", "{}"}, {"shard", "3/4"}});
   const SweepProgress all = progress();
   EXPECT_EQ(all.runs, 24u);
   EXPECT_EQ(all.files[0].state, ShardState::finished);
   EXPECT_EQ(all.files[1].state, ShardState::running);
-  EXPECT_EQ(all.files[1].runs, 12u);
+  EXPECT_EQ(all.files[1].runs, 6u);
   EXPECT_EQ(all.failed(), 1u);
 }
 
@@ -101,6 +102,23 @@ TEST_F(ShardFolder, NamesWhatCannotBeReadAndLeavesOutWhatIsNoShard) {
   EXPECT_EQ(all.files.size(), 1u);
   ASSERT_EQ(all.unread.size(), 1u);
   EXPECT_HAS(all.unread.front(), "junk.h5: not a readable HDF5 file");
+}
+
+// Shard 1 is also in a part that was merged from 1 and 3, and that has all its runs.
+TEST_F(ShardFolder, CountsAShardInTwoFilesOnce) {
+  StoredSweep one = read_sweep(write("1/4", 6));
+  write("2/4", 2);
+  one.result.part->resize(12);
+  for (std::size_t i = 6; i < 12; ++i) (*one.result.part)[i] = i + 6;
+  for (Column& measure : one.result.measures) measure.values = std::vector<double>(12);
+  one.result.state.assign(12, RunState::done), one.result.error.resize(12), one.result.notes.resize(12);
+  write_sweep(folder_ / "merged.h5", one.result,
+              {{"config", attribute(one.attributes, "config")}, {"shard", "1,3/4"}});
+  const SweepProgress all = progress();
+  ASSERT_EQ(all.files.size(), 2u);
+  EXPECT_EQ(all.files[0].file, "merged.h5");
+  EXPECT_EQ(all.done(), 14u);
+  EXPECT_EQ(all.count(ShardState::absent), 1u);
 }
 
 TEST_F(ShardFolder, RefusesSeveralSweepsAndNone) {
