@@ -68,7 +68,7 @@ std::vector<char> with_seal(const std::vector<char>& image) {
 }
 
 void write_sealed_copy(const std::filesystem::path& image, const std::filesystem::path& sealed) {
-  constexpr std::size_t kOpenMark = 20, kOpenMarkSize = 4;  // of a superblock of version 0
+  constexpr std::size_t kOpenMark = 20, kOpenMarkSize = 4;  // bytes of a superblock of version 0
   std::string opening = opening_of(image, kOpenMark + kOpenMarkSize);
   opening.replace(kOpenMark, kOpenMarkSize, kOpenMarkSize, '\0');
   const std::string head = block(sha256_of_file(image, opening.size(), opening)) + opening;

@@ -101,7 +101,7 @@ class Hdf5Writer {
   std::string components(const std::string& group, int width, bool are_vectors);
   const Hdf5Work work_;
   bool sealed_;
-  std::filesystem::path on_disk_;  // where the file is built; empty: in memory
+  std::filesystem::path on_disk_;  // the file that is built; empty: it is built in memory
   std::int64_t file_ = -1;
 };
 

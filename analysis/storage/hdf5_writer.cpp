@@ -118,7 +118,7 @@ std::vector<hsize_t> chunk_of(std::vector<hsize_t> extent) {
   return extent;
 }
 
-// Where values are in memory, and where in the dataset.
+// The places of values in memory and in the dataset.
 struct Spaces {
   hid_t memory = H5S_ALL, file = H5S_ALL;
 };

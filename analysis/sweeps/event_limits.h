@@ -45,7 +45,7 @@ EventLimits event_limits(const SweepResult& result, const LimitQuestion& questio
 
 // The counts of each cell, for a sweep that does not keep its runs.
 struct CellCounts {
-  std::function<Tally(std::size_t cell)> events;             // of the finished runs
+  std::function<Tally(std::size_t cell)> events;             // counts the finished runs
   std::function<std::int32_t(std::size_t cell)> noted = {};  // finished runs with a note; empty: not known
 };
 // The same with these counts. Only the axes of the outline are used.

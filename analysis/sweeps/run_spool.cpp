@@ -94,7 +94,7 @@ RunSpool::Words RunSpool::get(const Part& part, std::size_t array, std::size_t f
 
 void RunSpool::add(const std::string& name, std::size_t held, const PartValues& values) {
   const Part part{name, held, size_};
-  std::uint64_t least = 0;  // that the next run may have
+  std::uint64_t least = 0;  // least number that the next run may have
   for (const std::string& array : arrays_)
     for (std::size_t first = 0; first < held; first += kBlock) {
       const Words words = words_of(values(array, first, std::min(kBlock, held - first)));

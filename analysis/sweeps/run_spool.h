@@ -48,7 +48,7 @@ class RunSpool {
   struct Part {
     std::string name;
     std::size_t held;
-    std::uint64_t offset;  // of its arrays in the temporary file, bytes; one array after the other
+    std::uint64_t offset;  // bytes before its arrays in the temporary file; one array follows the other
   };
   using Words = std::vector<std::uint64_t>;  // the bits of values of any type
   std::size_t array_number(const std::string& array) const;
@@ -71,8 +71,8 @@ class RunSpool {
   int file_ = -1;
   std::uint64_t size_ = 0;
   std::vector<Part> parts_;
-  std::map<std::uint64_t, std::string> errors_;  // of the failed runs
-  std::vector<Words> starts_;  // for each part the first of its places in each window, and their number
+  std::map<std::uint64_t, std::string> errors_;  // errors of the failed runs
+  std::vector<Words> starts_;  // each part has the first of its places in each window, and their number
   std::size_t loaded_array_ = 0, loaded_window_ = 0;
   bool is_loaded_ = false;
   Words loaded_;

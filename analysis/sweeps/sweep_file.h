@@ -24,7 +24,7 @@ std::string write_sweep(const std::filesystem::path& file, const SweepResult& re
 
 // A sweep whose arrays are larger than the memory.
 struct SweepInBlocks {
-  const SweepResult& outline;  // without values in measures, state, round, error and notes
+  const SweepResult& outline;  // has no values in measures, state, round, error and notes
   bool is_refined = false;
   std::size_t longest_error = 1;  // bytes, at least 1
   // Returns the values at `count` places from `first` on of an array, which is named as in the file: a

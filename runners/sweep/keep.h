@@ -1,4 +1,4 @@
-// What a sweep keeps of its runs: the key "keep".
+// The key "keep": what a sweep keeps of its runs.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Which shards of a sweep the files of a merge have.
+// The shards of a sweep that the files of a merge have.
 #pragma once
 
 #include <map>

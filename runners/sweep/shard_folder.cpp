@@ -52,7 +52,7 @@ void count_states(const Hdf5Reader& hdf5, ShardProgress& shard) {
   }
 }
 
-// What a file of a shard says of itself.
+// The file of a shard, as it describes itself.
 struct ReadShard {
   ShardProgress progress;
   std::string config, title;

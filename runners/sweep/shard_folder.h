@@ -1,4 +1,4 @@
-// How far the shards in a folder are.
+// The progress of the shards in a folder.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ enum class ShardState { finished, running, stopped, absent };
 
 struct ShardProgress {
   ShardSet shards;
-  std::string file;  // without its folder; empty if absent
+  std::string file;  // name in the folder; empty if absent
   ShardState state = ShardState::absent;
   std::size_t runs = 0, done = 0, failed = 0;  // runs that the file holds
   double written_s_ago = 0;                    // time since the file was written last
@@ -27,7 +27,7 @@ struct ShardProgress {
 struct SweepProgress {
   std::string title;
   int shard_count = 1;
-  std::size_t runs = 0;  // of the whole sweep
+  std::size_t runs = 0;  // number of runs of the whole sweep
   std::vector<ShardProgress> files;
   std::vector<std::string> unread;  // one line for each file that could not be read, with the reason
 

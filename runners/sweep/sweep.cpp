@@ -26,9 +26,9 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMaxRuns = 10'000'000;  // in one file
+constexpr std::size_t kMaxRuns = 10'000'000;  // runs in one file
 constexpr std::size_t kMaxSweep =
-    1'000'000'000'000'000;  // in all files: a double holds their numbers exactly
+    1'000'000'000'000'000;  // runs in all files: a double holds their numbers exactly
 
 }  // namespace
 

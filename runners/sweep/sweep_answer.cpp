@@ -18,13 +18,13 @@ namespace remote_touch {
 
 namespace {
 
-// What a question is put to: a sweep with its runs, or a tally.
+// The subject of a question: a sweep with its runs, or a tally.
 struct Asked {
-  const SweepResult& result;  // of a tally only the outline
+  const SweepResult& result;  // only the outline if it is a tally
   std::function<EventLimits(const LimitQuestion&)> limits;
   std::function<Table(const std::string& measure, const TableAxes& axes)> means;
   std::function<Table(const std::string& measure, std::size_t between, const TableAxes& axes)> differences;
-  std::string event;  // that of default_event()
+  std::string event;  // event of default_event()
 };
 
 bool has_numbers(const Column& axis) {

@@ -1,4 +1,4 @@
-// Whether files belong to one sweep, made by one build.
+// Checks whether files belong to one sweep, made by one build.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,12 @@
 
 namespace remote_touch {
 
-// For a command that continues a file. Throws InputError, which names the file, if it is of another sweep,
+// Checks a file that a command continues. Throws InputError, which names the file, if it is of another sweep,
 // shard or build, or was written with an earlier schema, so that it is not overwritten.
 void require_same_sweep(const std::filesystem::path& file, const std::string& schema,
                         const TextAttributes& theirs, const TextAttributes& ours);
 
-// For files that are merged; without their attributes `shard`. Throws InputError, which names both files,
+// Checks files that are merged, without their attributes `shard`. Throws InputError, which names both files,
 // unless they are of one sweep, one build and the same recordings.
 struct MergedFile {
   std::string file;

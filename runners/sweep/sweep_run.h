@@ -8,8 +8,8 @@
 
 #include "analysis/sweeps/sweep_result.h"
 #include "core/kernels/kernels.h"
-#include "runners/sweep/side_by_side.h"
 #include "runners/sweep/sweep.h"
+#include "runners/sweep/threads/side_by_side.h"
 
 namespace remote_touch {
 
@@ -21,11 +21,11 @@ struct SweepRunOptions {
   SideBySide runs = side_by_side;  // distributes the runs over threads
 };
 
-// What is kept of one run.
+// The results of one run.
 struct RunOutcome {
   RunState state = RunState::pending;
   std::vector<double> values = {};  // one for each measure; empty if the run failed
-  std::int32_t notes = 0;           // as SweepResult::notes
+  std::int32_t notes = 0;           // bits as in SweepResult::notes
   std::string error = {};
 };
 // Does one run. Throws std::bad_alloc, because lack of memory is not a result of the run, and Interrupted.

@@ -30,7 +30,7 @@ class TallySession {
   bool run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
 
   const SweepTally& tally() const { return tally_; }
-  std::uint64_t own_runs() const;                        // of the shard
+  std::uint64_t own_runs() const;                        // number of runs of the shard
   const std::string& digest() const { return digest_; }  // of the file, after run()
 
  private:
@@ -43,7 +43,7 @@ class TallySession {
   const FileLock lock_;
   TextAttributes attributes_;
   SweepTally tally_;
-  std::size_t next_cell_ = 0;  // of the shard: earlier ones are complete
+  std::size_t next_cell_ = 0;  // number of runs of the shard: earlier ones are complete
   std::string digest_;
 };
 

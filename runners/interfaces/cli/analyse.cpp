@@ -49,7 +49,7 @@ std::string command_of(const AnalyseRequest& request) {
 
 struct Answer {
   Figure figure;
-  std::string config, digest;       // of the sweep
+  std::string config, digest;       // configuration and digest of the sweep
   std::size_t done = 0, asked = 0;  // runs that are finished, and that the sweep should have
   std::vector<std::string> notes;
 };

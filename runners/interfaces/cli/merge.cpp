@@ -6,7 +6,6 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/interfaces/cli/tally_summary.h"
 #include "runners/sweep/tally_merge.h"
 
 namespace remote_touch {

@@ -19,7 +19,7 @@ std::string progress_text(std::size_t done, std::size_t total, std::size_t earli
 // may use it.
 class Progress {
  public:
-  // From now on all progress is printed as JSON for other programs, one object in a line, at most once a
+  // Prints all later progress as JSON for other programs, one object in a line, at most once a
   // second:
   //   {"what": "map.json", "done": 30, "total": 100, "elapsed_s": 15.2, "left_s": 35.4}
   // done and total are missing where there is only a text, left_s where it is not known.

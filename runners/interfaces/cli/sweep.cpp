@@ -16,7 +16,6 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/interfaces/cli/tally_summary.h"
 #include "runners/sweep/sweep_notes.h"
 #include "runners/sweep/sweep_session.h"
 #include "runners/sweep/tally_session.h"
@@ -85,10 +84,10 @@ int print_interrupted(const std::string& file, std::size_t finished) {
   return kInterrupted;
 }
 
-// What the call would do.
+// The work that a call would do.
 struct Work {
-  std::size_t runs = 0;     // to do
-  std::size_t done = 0;     // that the file has
+  std::size_t runs = 0;     // runs to do
+  std::size_t done = 0;     // runs that the file has
   std::string file_text;    // size of the file
   const SweepResult& plan;  // some or all of the runs, pending
 };

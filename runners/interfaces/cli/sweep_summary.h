@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/tally/sweep_tally.h"
 
 namespace remote_touch {
 
@@ -15,6 +16,10 @@ std::string extent_text(const SweepResult& result);  // "76 x 71"
 // Prints the cells, the runs, the mean and range of each measure, and the number of runs with each kind of
 // note. Returns kDone, or kCheckFailed if a run failed.
 int print_summary(const std::string& file, const SweepResult& result);
+
+// Prints the cells, the runs, the mean and range of each measure over all runs, the number of runs with each
+// kind of note, and the first failed run of each cell. Returns kDone, or kCheckFailed if a run failed.
+int print_summary(const std::string& file, const SweepTally& tally, const std::string& digest);
 
 // The same of a sweep whose runs come in blocks.
 class SweepSummary {
@@ -25,17 +30,17 @@ class SweepSummary {
   int print(const std::string& file, const std::string& digest) const;
 
  private:
-  // Of the finite values of a measure.
+  // The finite values of a measure.
   struct Range {
     double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
     std::size_t count = 0;
   };
   std::string text_of(const Range& range, const std::string& units) const;
   void add_notes(const std::vector<NoteCount>& counts);
-  SweepResult outline_;  // without values
+  SweepResult outline_;  // has no values
   std::size_t held_ = 0, done_ = 0, failed_ = 0, elsewhere_ = 0;
   int rounds_ = 0;                     // 0 without refinement
-  std::vector<Range> ranges_;          // of the measures
+  std::vector<Range> ranges_;          // one for each measure
   std::vector<std::string> failures_;  // the first of them
   std::vector<NoteCount> notes_;
 };

@@ -1,4 +1,4 @@
-#include "runners/sweep/enough_threads.h"
+#include "runners/sweep/threads/enough_threads.h"
 
 #include <fcntl.h>
 #include <omp.h>

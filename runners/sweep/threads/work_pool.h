@@ -8,7 +8,7 @@
 #include <mutex>
 #include <vector>
 
-#include "runners/sweep/side_by_side.h"
+#include "runners/sweep/threads/side_by_side.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/sweep/side_by_side.h"
+#include "runners/sweep/threads/side_by_side.h"
 
 #include <exception>
 #include <vector>

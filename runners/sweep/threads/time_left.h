@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "runners/sweep/work_pool.h"
+#include "runners/sweep/threads/work_pool.h"
 
 namespace remote_touch {
 

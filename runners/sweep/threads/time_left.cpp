@@ -1,4 +1,4 @@
-#include "runners/sweep/time_left.h"
+#include "runners/sweep/threads/time_left.h"
 
 #include <algorithm>
 #include <numeric>
