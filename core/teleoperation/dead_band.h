@@ -14,7 +14,7 @@ namespace remote_touch {
 // The threshold is max(weber_fraction |x^|, least). If both settings are 0, every sample is sent.
 //
 // A fraction suits forces and velocities. The magnitude of a position depends on the origin, so a signal of
-// positions needs weber_fraction 0 and a length as `least`.
+// positions or poses needs weber_fraction 0 and a length as `least`.
 struct DeadBandSettings {
   double weber_fraction = 0;
   double least = 0;  // unit of the signal
@@ -31,12 +31,18 @@ struct DeadBandSample {
   Vec3 value = Vec3::Zero();
   Vec3 slope_per_s = Vec3::Zero();  // zero unless the sender predicts
   double sent_s = 0;
+  // The rest of a pose, world frame: its orientation, and its angular velocity in rad/s, which is zero unless
+  // the sender predicts.
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  Vec3 turn_per_s = Vec3::Zero();
 };
 
 // The value x^ that is shown for a sample, at a time after its arrival.
 inline Vec3 shown_value(const DeadBandSample& sample, double age_s) {
   return sample.value + age_s * sample.slope_per_s;
 }
+// The orientation that is shown with it, a unit quaternion.
+Eigen::Quaterniond shown_orientation(const DeadBandSample& sample, double age_s);
 
 // Sends a sample x if |x - x^| > max(weber_fraction |x^|, least), where x^ is what a receiver would show now
 // that got all packets without a delay (Hinterseer, Hirche, Chaudhuri, Steinbach and Buss 2008; for vectors
@@ -45,25 +51,35 @@ inline Vec3 shown_value(const DeadBandSample& sample, double age_s) {
 //
 // Without prediction x^ is the value sent last. With prediction x^ continues linearly, through the last two
 // values sent. The sender computes the slope, and the packet carries it.
+//
+// A signal of poses has a reach: the largest distance of a point of the moving body from the origin of its
+// frame. If the pose that is shown differs from x by the rotation angle a, reach_m a is added to the
+// difference |x - x^|. So no point of the body is farther than the threshold from where it is shown. With a
+// reach of 0 orientations are not compared.
 class DeadBandSender {
  public:
-  // pre: validate(settings) is empty.
-  explicit DeadBandSender(const DeadBandSettings& settings) : s_(settings) {}
+  // pre: validate(settings) is empty, reach_m >= 0.
+  explicit DeadBandSender(const DeadBandSettings& settings, double reach_m = 0)
+      : s_(settings), reach_m_(reach_m) {}
 
   // Returns the packet to be sent, or nothing. Must be called for every sample, in the order of time.
-  // pre: the value is finite.
-  std::optional<DeadBandSample> send(const Vec3& value, double time_s);
+  // pre: the value is finite, the orientation is a unit quaternion.
+  std::optional<DeadBandSample> send(
+      const Vec3& value, double time_s,
+      const Eigen::Quaterniond& orientation_W = Eigen::Quaterniond::Identity());
 
-  // Returns x^ at a time that is not before the last packet; nothing before the first packet.
+  // Return x^ at a time that is not before the last packet; nothing before the first packet.
   std::optional<Vec3> shown(double time_s) const;
+  std::optional<Eigen::Quaterniond> shown_orientation(double time_s) const;
 
   std::uint64_t samples() const { return samples_; }  // number of calls of send()
   std::uint64_t packets() const { return packets_; }  // number of them that returned a packet
 
  private:
-  bool must_send(const Vec3& value, double time_s) const;
+  bool must_send(const Vec3& value, const Eigen::Quaterniond& orientation_W, double time_s) const;
 
   const DeadBandSettings s_;
+  const double reach_m_;
   std::optional<DeadBandSample> last_;
   std::uint64_t samples_ = 0, packets_ = 0;
 };
@@ -77,8 +93,9 @@ class DeadBandReceiver {
   // pre: time_s is not smaller than in earlier calls.
   void receive(const DeadBandSample& sample, double time_s);
 
-  // Returns the value shown at a time that is not before the last arrival; nothing before the first.
+  // Return what is shown at a time that is not before the last arrival; nothing before the first.
   std::optional<Vec3> shown(double time_s) const;
+  std::optional<Eigen::Quaterniond> shown_orientation(double time_s) const;
 
  private:
   std::optional<DeadBandSample> last_;

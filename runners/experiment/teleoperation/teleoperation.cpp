@@ -25,14 +25,16 @@ double response_m_per_N(double mass_kg, double tick_s) {
 }  // namespace
 
 // A packet per tick is in transit, and those that the slave sends in missed ticks.
-Teleoperation::Link::Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use, double tick_s)
-    : channel(settings.channel, key, use), sender(settings.dead_band) {
+Teleoperation::Link::Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use, double tick_s,
+                          double reach_m)
+    : channel(settings.channel, key, use), sender(settings.dead_band, reach_m) {
   const double longest_s = settings.channel.delay_s + settings.channel.jitter_s;
   channel.reserve(static_cast<std::size_t>(longest_s / tick_s) + kMaxMissedTicks + 2);
 }
 
-void Teleoperation::Link::send(const Vec3& value, Packet rest, double time_s) {
-  const std::optional<DeadBandSample> sample = sender.send(value, time_s);
+void Teleoperation::Link::send(const Vec3& value, const Eigen::Quaterniond& orientation_W, Packet rest,
+                               double time_s) {
+  const std::optional<DeadBandSample> sample = sender.send(value, time_s, orientation_W);
   if (!sample) return;
   rest.sample = *sample;
   channel.send(time_s, rest);
@@ -51,8 +53,9 @@ Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseK
       X_registration_(registration_of(settings.registration, key)),
       tick_s_(tick_s),
       slave_(settings.slave, tick_s, scene),
-      commands_(settings.commands, key, NoiseUse::command_channel, tick_s),
-      forces_(settings.forces, key, NoiseUse::force_channel, tick_s),
+      commands_(settings.commands, key, NoiseUse::command_channel, tick_s,
+                settings.tool ? settings.tool->reach_m : 0),
+      forces_(settings.forces, key, NoiseUse::force_channel, tick_s, 0),
       hand_port_(settings.feedback.passivity, tick_s, response_m_per_N(settings.hand_mass_kg, tick_s)),
       slave_port_(settings.feedback.passivity, tick_s),
       state_(unknown_state()) {
@@ -101,7 +104,7 @@ Vec3 Teleoperation::displacement_m(const DeviceState& device) {
 
 void Teleoperation::receive_command(double time_s) {
   commands_.receive(time_s);
-  if (commands_.receiver.shown(time_s)) command_orientation_W_ = commands_.newest.orientation_W;
+  command_orientation_W_ = commands_.receiver.shown_orientation(time_s).value_or(command_orientation_W_);
   if (const std::optional<Vec3> received = commands_.receiver.shown(time_s))
     command_W_ =
         is_passive() ? slave_port_.command(*received, slave_force(), commands_.newest.in_J) : *received;
@@ -110,7 +113,8 @@ void Teleoperation::receive_command(double time_s) {
 void Teleoperation::send_force(double time_s) {
   if (!feels_slave()) return;
   const Vec3 torque_Nm = tool_slave_ ? in_axes_of_hand(tool_slave_->state().torque_Nm) : Vec3(Vec3::Zero());
-  forces_.send(slave_force(), {.in_J = slave_port_.energy().in_J, .torque_Nm = torque_Nm}, time_s);
+  forces_.send(slave_force(), Eigen::Quaterniond::Identity(),
+               {.in_J = slave_port_.energy().in_J, .torque_Nm = torque_Nm}, time_s);
 }
 
 // Returns the force on the hand for the coming tick.
@@ -155,8 +159,7 @@ Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, d
     slave_port_.observe(slave_force());
     hand_port_.observe(moved_m);
   }
-  const Packet rest{.in_J = hand_port_.energy().in_J, .orientation_W = orientation_W};
-  if (is_valid) commands_.send(command_W, rest, time_s);
+  if (is_valid) commands_.send(command_W, orientation_W, {.in_J = hand_port_.energy().in_J}, time_s);
   receive_command(time_s);
   send_force(time_s);
   Wrench wrench =

@@ -49,18 +49,18 @@ class Teleoperation {
   const PortEnergy& slave_energy() const { return slave_port_.energy(); }
 
  private:
-  // A sample (a position or a force), the energy that has entered the channel at its port, see
-  // passivity_control.h, and the orientation or torque of a tool. The dead-band compares only the sample.
+  // A sample (a pose or a force), the energy that has entered the channel at its port, see
+  // passivity_control.h, and the torque on a tool. The dead-band compares only the sample.
   struct Packet {
     DeadBandSample sample = {};
     double in_J = 0;
-    Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
     Vec3 torque_Nm = Vec3::Zero();
   };
   struct Link {
-    Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use, double tick_s);
+    // reach_m: see DeadBandSender.
+    Link(const LinkSettings& settings, const NoiseKey& key, NoiseUse use, double tick_s, double reach_m);
     // rest: the packet without its sample.
-    void send(const Vec3& value, Packet rest, double time_s);
+    void send(const Vec3& value, const Eigen::Quaterniond& orientation_W, Packet rest, double time_s);
     void receive(double time_s);
     Channel<Packet> channel;
     DeadBandSender sender;

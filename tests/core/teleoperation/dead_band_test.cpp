@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/rotation.h"
 #include "core/teleoperation/channel.h"
 
 namespace remote_touch::dead_band_test {
@@ -287,6 +288,86 @@ TEST(DeadBandReceiver, NeedsNoEarlierPacket) {
     EXPECT_EQ(lossy.shown(time_s + 0.01), complete.shown(time_s + 0.01));
   }
   EXPECT_GT(packets, 4);
+}
+
+// --- poses ---
+
+struct TestPose {
+  Vec3 position;
+  Eigen::Quaterniond orientation;
+};
+
+// A tool that wanders and turns; at times it only turns.
+std::vector<TestPose> wandering_poses(int ticks) {
+  const std::vector<Vec3> position = wandering(ticks);
+  std::vector<TestPose> poses;
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
+  Vec3 turn = Vec3::Zero();
+  for (int k = 0; k < ticks; ++k) {
+    const auto u = uniforms(noise_stream({}, NoiseUse::motion, 1), static_cast<std::uint32_t>(k));
+    turn = 0.99 * turn + 1e-4 * Vec3(u[0] - 0.5, u[1] - 0.5, u[2] - 0.5);
+    q = (rotation(turn) * q).normalized();
+    poses.push_back({0.1 * position[k % 2000 < 1000 ? k : k - k % 1000], q});
+  }
+  return poses;
+}
+
+// The oracle moves the points of a tool by both poses. The reach is the distance of the farthest one.
+TEST(DeadBand, BoundsTheErrorAtEveryPointOfATool) {
+  const std::vector<Vec3> points{{0.08, 0, 0}, {0, -0.06, 0.01}, {-0.02, 0.03, -0.07}, {0, 0, 0.05}};
+  const std::vector<TestPose> poses = wandering_poses(20000);
+  for (const double least_m : {0.0005, 0.005})
+    for (const bool predicts : {false, true}) {
+      DeadBandSender sender({.least = least_m, .predicts = predicts}, 0.08);
+      DeadBandReceiver receiver;
+      double largest_m = 0;
+      for (int k = 0; k < 20000; ++k) {
+        const TestPose& pose = poses[k];
+        const double time_s = k * kTick_s;
+        if (const auto sample = sender.send(pose.position, time_s, pose.orientation))
+          receiver.receive(*sample, time_s);
+        const Vec3 at = receiver.shown(time_s).value();
+        const Eigen::Quaterniond turned = receiver.shown_orientation(time_s).value();
+        for (const Vec3& p : points)
+          largest_m = std::max(largest_m, (at + turned * p - pose.position - pose.orientation * p).norm());
+      }
+      EXPECT_LE(largest_m, least_m + kRounding);
+      EXPECT_GT(largest_m, 0.5 * least_m);  // the bound is not far above
+      EXPECT_LT(sender.packets(), sender.samples() / 2) << least_m << predicts;
+    }
+}
+
+// 1 mrad in a tick moves the farthest point by 0.1 mm.
+TEST(DeadBand, SendsARotationAloneByTheArcOfTheFarthestPoint) {
+  const auto sent = [](double reach_m, bool predicts) {
+    DeadBandSender sender({.least = 5.5e-4, .predicts = predicts}, reach_m);
+    std::vector<int> ticks;
+    for (int k = 0; k < 100; ++k)
+      if (sender.send({1, 2, 3}, k * kTick_s, rotation({0, 1e-3 * k, 0}))) ticks.push_back(k);
+    return ticks;
+  };
+  EXPECT_EQ(sent(0.1, false), multiples(6, 100));
+  EXPECT_EQ(sent(0.1, true), (std::vector<int>{0, 6}));
+  EXPECT_EQ(sent(0, false), (std::vector<int>{0}));
+}
+
+TEST(DeadBandReceiver, ShowsTheOrientationOfTheSender) {
+  const std::vector<TestPose> poses = wandering_poses(3000);
+  for (const bool predicts : {false, true}) {
+    DeadBandSender sender({.least = 0.002, .predicts = predicts}, 0.08);
+    DeadBandReceiver receiver;
+    EXPECT_EQ(sender.shown_orientation(0).has_value(), false);
+    EXPECT_EQ(receiver.shown_orientation(0).has_value(), false);
+    for (int k = 0; k < 3000; ++k) {
+      const double time_s = k * kTick_s;
+      const auto sample = sender.send(poses[k].position, time_s, poses[k].orientation);
+      if (sample) receiver.receive(*sample, time_s);
+      ASSERT_TRUE(!sample || sample->orientation_W.coeffs() == poses[k].orientation.coeffs()) << k;
+      const Eigen::Quaterniond got = receiver.shown_orientation(time_s).value();
+      ASSERT_EQ(got.coeffs(), sender.shown_orientation(time_s).value().coeffs()) << k;
+      ASSERT_NEAR(got.norm(), 1, kRounding);
+    }
+  }
 }
 
 // --- silence ---

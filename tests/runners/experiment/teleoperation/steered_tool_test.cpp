@@ -101,15 +101,33 @@ TEST(SteeredTool, WaitsForACommandWithAnOrientation) {
   EXPECT_EQ(remote.state().command_packets, 1);
 }
 
-// The dead-band does not compare orientations, so a silence bounds how late they are.
-TEST(SteeredTool, ADeadBandHoldsBackAnOrientationUntilTheSilenceEnds) {
-  TeleoperationSettings s = with(Feedback::none);
-  s.commands.dead_band.least = 0.001, s.commands.dead_band.longest_silence_s = 0.1;
-  Teleoperation remote(s, {}, kTick_s, ground());
-  for (int i = 0; i < 1000; ++i) remote.tick(device(1, {0, i * kTick_s, 0}), {}, i * kTick_s);
-  EXPECT_GE(remote.state().command_packets, 10);
-  EXPECT_LE(remote.state().command_packets, 11);
-  EXPECT_GT(rotation_vector(remote.state().tool->orientation_W).y(), 0.5);
+// The hand turns, and at times moves too, and then rests until the slave has reached the command that it has
+// received. There no point of the tool is farther from where the hand commands it than the dead-band allows.
+TEST(SteeredTool, ADeadBandBoundsTheErrorOfThePoseAtTheTool) {
+  for (const bool predicts : {false, true}) {
+    TeleoperationSettings s = with(Feedback::none);
+    s.slave.natural_frequency_hz = 20;
+    s.commands.dead_band.least = 0.002, s.commands.dead_band.predicts = predicts;
+    s.commands.dead_band.longest_silence_s = predicts ? 0.3 : 0;  // a prediction would go on while it rests
+    Teleoperation remote(s, {}, kTick_s, ground());
+    double turned = 0, y = 1, largest_m = 0;
+    for (int i = 0; i < 10000; ++i) {
+      const bool moves = i % 1000 < 117;
+      if (moves) turned += 1e-3;
+      if (moves && i > 5000) y += 1e-5;
+      const DeviceState hand = device(y, turned * Vec3(0.6, 0, 0.8));
+      remote.tick(hand, {}, i * kTick_s);
+      if (i % 1000 < 999) continue;
+      const SlaveState& slave = remote.state();
+      const Vec3& p_T = s.tool->points_T.front();
+      const Vec3 wanted_W = hand.position_W + hand.orientation_W * p_T;
+      largest_m = std::max(largest_m, (slave.position_W + slave.tool->orientation_W * p_T - wanted_W).norm());
+    }
+    EXPECT_LE(largest_m, 0.002 + 1e-9) << predicts;
+    EXPECT_LT(remote.state().command_packets, 100) << predicts;
+    EXPECT_GT(remote.state().command_packets, 1170 * 1e-3 * 0.04 / 0.002 / 2) << predicts;
+    EXPECT_GT(rotation_vector(remote.state().tool->orientation_W).norm(), 1.1) << predicts;
+  }
 }
 
 TEST(SteeredTool, AllocatesNothingInATick) {
@@ -144,6 +162,19 @@ TEST(SteeredTool, CoincidesWithTheRenderedTool) {
   EXPECT_NEAR(trace.slave_orientation[last].angularDistance(trace.tool_orientation[last]), 0, 1e-4);
   EXPECT_GT(trace.slave_orientation[last].angularDistance(Eigen::Quaterniond::Identity()), 0.3);
   EXPECT_EQ(trace.slave_torque_Nm[last], Vec3::Zero());
+}
+
+// The hand only turns, by 20 degrees. The plate reaches about 7 cm, so it may be 1 mm / 7 cm = 0.8 degrees
+// behind.
+TEST(SteeredTool, ADeadBandSendsARotationAlone) {
+  const Trace trace = run(
+      {R"(trajectory={"name": "poses", "poses": [[0, 0.05, 0, 0, 0, 0, 0], [0, 0.05, 0, 0, 0, 20, 0.2]]})",
+       "duration_s=0.7", "command_link.least=0.001", "slave.natural_frequency_hz=20"});
+  const std::size_t last = trace.length() - 1;
+  EXPECT_LT(trace.slave_orientation[last].angularDistance(trace.tool_orientation[last]), 0.03);
+  EXPECT_GT(trace.slave_orientation[last].angularDistance(Eigen::Quaterniond::Identity()), 0.3);
+  EXPECT_GT(trace.command_packets[last], 10);
+  EXPECT_LT(trace.command_packets[last], 100);
 }
 
 // The plate, which the hand holds level, lands on the tilted surface with its edge, so the surface turns it.
