@@ -5,6 +5,7 @@
 
 #include "analysis/measures/first_tick.h"
 #include "analysis/statistics/mean.h"
+#include "core/geometry/rotation.h"
 
 namespace remote_touch {
 
@@ -13,6 +14,14 @@ namespace {
 double rate_per_s(const Trace& trace, const std::vector<std::int32_t>& sent) {
   if (sent.size() < 2) return kNoValue;
   return (sent.back() - sent.front()) / (trace.time_s.back() - trace.time_s.front());
+}
+
+// The orientation that is sent to the slave's tool in tick i, see Teleoperation::command_orientation(). If
+// the slave is sent where the device is, the renderer's tool is there too only while it touches nothing, and
+// then it has the orientation of the device.
+const Eigen::Quaterniond& commanded_orientation(const Trace& trace, std::size_t i) {
+  return trace.slave_command_m[i] == trace.proxy_position_m[i] ? trace.tool_orientation[i]
+                                                               : trace.hip_orientation[i];
 }
 
 }  // namespace
@@ -39,6 +48,21 @@ double rms_slave_lag_m(const Trace& trace) {
   return std::sqrt(mean_where(
       trace.slave_position_m.size(), [&](std::size_t i) { return trace.slave_command_m[i].allFinite(); },
       [&](std::size_t i) { return (trace.slave_position_m[i] - trace.slave_command_m[i]).squaredNorm(); }));
+}
+
+double rms_slave_lag_angle_rad(const Trace& trace) {
+  if (!trace.has_tool()) return kNoValue;
+  return std::sqrt(mean_where(
+      trace.slave_orientation.size(),
+      [&](std::size_t i) {
+        // A device without an orientation has a quaternion of zeros.
+        const double norm = commanded_orientation(trace, i).norm();
+        return trace.slave_command_m[i].allFinite() && norm > 0 && std::isfinite(norm);
+      },
+      [&](std::size_t i) {
+        const Eigen::Quaterniond commanded = commanded_orientation(trace, i).normalized();
+        return rotation_vector(commanded * trace.slave_orientation[i].conjugate()).squaredNorm();
+      }));
 }
 
 double first_slave_contact_time_s(const Trace& trace) {

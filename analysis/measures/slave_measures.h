@@ -16,6 +16,11 @@ double min_slave_clearance_m(const Trace& trace);
 // limited bandwidth and contact together. Ticks without a command that is finite do not count; NaN if there
 // are no others.
 double rms_slave_lag_m(const Trace& trace);
+// Root mean square of the angle between the orientation of the slave's tool and that which was commanded in
+// the same tick, rad. The commanded orientation is that of the renderer's tool if Trace::slave_command_m is
+// the position of that tool, else that of the device. Ticks without a command that is finite do not count;
+// NaN if there are no others, or if the slave is a ball.
+double rms_slave_lag_angle_rad(const Trace& trace);
 // Maximum magnitude of the force of the device on the hand, N.
 double max_device_force_N(const Trace& trace);
 // Time of the first tick with a force on the slave, s; NaN if there is none.

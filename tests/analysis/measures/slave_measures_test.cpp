@@ -9,6 +9,7 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
+#include "core/geometry/rotation.h"
 #include "tests/analysis/measures/measure_named.h"
 
 namespace remote_touch::slave_measures_test {
@@ -72,6 +73,49 @@ TEST(SlaveMeasures, IgnoreTicksBeforeTheFirstCommand) {
   EXPECT_EQ(min_slave_clearance_m(trace_of(ticks)), -0.002);
 }
 
+struct ToolTick {
+  bool commands_tool;  // the slave is sent where the renderer's tool is, else where the device is
+  double device_rad, tool_rad, slave_rad;
+};
+
+// All turn about one axis. The renderer's tool is 1 cm above the device.
+Trace trace_of(const std::vector<ToolTick>& ticks) {
+  const auto turned = [](double angle) { return rotation(angle * Vec3(0.36, 0.48, 0.8)); };
+  Trace trace;
+  for (const ToolTick& tick : ticks) {
+    DeviceState device;
+    device.position_W = Vec3(1, 2, 3), device.orientation_W = turned(tick.device_rad);
+    RenderOutput out;
+    out.proxy_W = Vec3(1, 2.01, 3);
+    out.tool.emplace().orientation_W = turned(tick.tool_rad);
+    out.slave_W = tick.commands_tool ? out.proxy_W : device.position_W;
+    SlaveState slave;
+    slave.tool.emplace().orientation_W = turned(tick.slave_rad);
+    trace.append(0.001 * static_cast<double>(trace.length()), device, out, {}, HandState{}, slave);
+  }
+  return trace;
+}
+
+TEST(SlaveMeasures, TheLagInRotationIsThatBehindTheCommand) {
+  EXPECT_NEAR(rms_slave_lag_angle_rad(trace_of(std::vector<ToolTick>{{true, 3, 0.5, 0.2}})), 0.3, 1e-12);
+  EXPECT_NEAR(rms_slave_lag_angle_rad(trace_of(std::vector<ToolTick>{{false, 0.9, 3, 0.5}})), 0.4, 1e-12);
+  EXPECT_NEAR(
+      rms_slave_lag_angle_rad(trace_of(std::vector<ToolTick>{{true, 3, 0.5, 0.2}, {false, 0.9, 3, 0.5}})),
+      std::sqrt((0.09 + 0.16) / 2), 1e-12);
+  EXPECT_TRUE(std::isnan(rms_slave_lag_angle_rad(trace_of(kTouch)))) << "a ball";
+}
+
+// Before the first command the state of the slave is NaN, and so is the command.
+TEST(SlaveMeasures, TheLagInRotationIgnoresTicksWithoutACommand) {
+  Trace trace =
+      trace_of(std::vector<ToolTick>{{true, 0, 0.1, kUnknown}, {false, 0, 0, kUnknown}, {true, 0, 0.1, 0.3}});
+  trace.slave_command_m[0].setConstant(kUnknown);
+  trace.hip_orientation[1].coeffs().setZero();
+  EXPECT_NEAR(rms_slave_lag_angle_rad(trace), 0.2, 1e-12);
+  trace.slave_command_m[2].setConstant(kUnknown);
+  EXPECT_TRUE(std::isnan(rms_slave_lag_angle_rad(trace)));
+}
+
 TEST(SlaveMeasures, BelongToRunsWithASlave) {
   const Trace with = trace_of(kTouch);
   Trace without;
@@ -84,7 +128,7 @@ TEST(SlaveMeasures, BelongToRunsWithASlave) {
     EXPECT_TRUE(std::isnan(value_of(measure, without))) << measure.name;
     ++measures;
   }
-  EXPECT_EQ(measures, 10);
+  EXPECT_EQ(measures, 11);
   EXPECT_EQ(value_of(measure_named("max_slave_force"), with), 7);
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "analysis/measures/slave_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/contract/allocation_counter.h"
@@ -175,6 +176,17 @@ TEST(SteeredTool, ADeadBandSendsARotationAlone) {
   EXPECT_GT(trace.slave_orientation[last].angularDistance(Eigen::Quaterniond::Identity()), 0.3);
   EXPECT_GT(trace.command_packets[last], 10);
   EXPECT_LT(trace.command_packets[last], 100);
+}
+
+// The hand turns at a constant rate, which the drive knows, so the slave is behind by the delay and one tick.
+TEST(SteeredTool, TheLagInRotationIsThatOfTheDelay) {
+  const Trace trace =
+      run({R"(trajectory={"name": "poses", "poses": [[0, 0.05, 0, 0, 0, 0, 0], [0, 0.05, 0, 0, 0, 60, 1]]})",
+           "duration_s=1", "command_link.delay_s=0.05", "slave.natural_frequency_hz=20"});
+  const double rate_rad_per_s = trace.hip_orientation.back().angularDistance(trace.hip_orientation[500]) /
+                                (trace.time_s.back() - trace.time_s[500]);
+  // The slave starts at rest, so it is behind by less in the first 5 % of the run.
+  EXPECT_NEAR(rms_slave_lag_angle_rad(trace), rate_rad_per_s * 0.051, 0.05 * rate_rad_per_s * 0.051);
 }
 
 // The plate, which the hand holds level, lands on the tilted surface with its edge, so the surface turns it.
