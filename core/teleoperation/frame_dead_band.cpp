@@ -1,6 +1,7 @@
 #include "core/teleoperation/frame_dead_band.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -59,30 +60,68 @@ class NearPoints {
 Parameters parameters(FrameDeadBandSettings& s) {
   return {
       {"least_motion_m", &s.least_motion_m, 0, 1,
-       "a frame is sent only if the surface near the slave is farther than this from that of the last frame that was sent; 0: every frame is sent"},
-      {"near_m", &s.near_m, 0.001, 1, "radius around the slave in which the surfaces are compared"},
+       "a frame is sent only if the surface near the slave is farther than this from that of the last frame that was sent, or if regions or stiffness have changed; 0: every frame is sent"},
+      {"near_m", &s.near_m, 0.001, 1,
+       "radius around the slave in which the surfaces are compared; the reach of a tool and the radius of the regions are added"},
   };
 }
 
 double surface_motion_m(const NeighbourSearch& before, const NeighbourSearch& now, const Vec3& near_W,
                         double near_m, const Kernels& kernels) {
-  const Ball ball{near_W, 2 * near_m};  // the foot is at most near_m away, and so are the points around it
+  const double far_m = near_m + std::max(before.max_fixture_radius_m(), now.max_fixture_radius_m());
+  const Ball ball{near_W, far_m + near_m};  // the foot is at most far_m away, and the points near_m from it
   const NearPoints old_points(before, ball, kernels), new_points(now, ball, kernels);
-  const std::optional<LocalPlane> around = old_points.plane(near_W, near_m);
-  if (!around) return new_points.plane(near_W, near_m) ? std::numeric_limits<double>::infinity() : 0;
+  const std::optional<LocalPlane> around = old_points.plane(near_W, far_m);
+  if (!around) return new_points.plane(near_W, far_m) ? std::numeric_limits<double>::infinity() : 0;
   const Vec3 foot = near_W - around->normal.dot(near_W - around->centre) * around->normal;
   const std::optional<LocalPlane> from = old_points.plane(foot, near_m), to = new_points.plane(foot, near_m);
   if (!from || !to) return from || to ? std::numeric_limits<double>::infinity() : 0;
   return std::abs(from->normal.dot(to->centre - from->centre));
 }
 
-bool FrameDeadBand::sends(std::shared_ptr<const NeighbourSearch> frame, const Vec3& slave_W,
-                          const Kernels& kernels) {
-  const bool is_needed = s_.least_motion_m == 0 || !last_ || !slave_W.allFinite() ||
-                         surface_motion_m(*last_, *frame, slave_W, s_.near_m, kernels) > s_.least_motion_m;
+// A frame without such values is a single point with the values that points then have. A stiffness of -1 is
+// that of the renderer.
+FrameDeadBand::PointValues FrameDeadBand::values_of(const NeighbourSearch& points, const Kernels& kernels) {
+  constexpr std::array<double, 2> kNone{0, -1};
+  constexpr double kEverywhere_m = 1e6;
+  if (!points.has_fixture_radius() && !points.has_stiffness()) return {kNone};
+  GatheredPoints all;
+  all.reserve(points.size(), points.has_fixture_radius(), points.has_stiffness());
+  points.gather({Vec3::Zero(), kEverywhere_m}, kernels, all);
+  const PointsView view = all.view();
+  PointValues values(points.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::array<double, 2>& value = values[all.index()[i]].emplace(kNone);
+    if (view.radius) value[0] = view.radius[i];
+    if (view.stiffness && !std::isnan(view.stiffness[i])) value[1] = view.stiffness[i];
+  }
+  return values;
+}
+
+bool FrameDeadBand::differ(const PointValues& before, const PointValues& now) {
+  if (before.size() == now.size()) {
+    const auto are_equal = [](const auto& a, const auto& b) { return !a || !b || *a == *b; };
+    return !std::equal(before.begin(), before.end(), now.begin(), are_equal);
+  }
+  std::optional<std::array<double, 2>> first;
+  const auto is_other = [&](const auto& value) {
+    if (value && !first) first = value;
+    return value && *value != *first;
+  };
+  return std::ranges::any_of(before, is_other) || std::ranges::any_of(now, is_other);
+}
+
+bool FrameDeadBand::sends(const Frame& frame, const Vec3& slave_W, const Kernels& kernels) {
+  if (s_.least_motion_m == 0) return ++sent_, true;
+  if (last_ && !(frame.captured_s > last_->captured_s)) return false;
+  PointValues values = values_of(*frame.points, kernels);
+  const bool is_needed =
+      !last_ || !slave_W.allFinite() || differ(last_values_, values) || frame.guidance != last_->guidance ||
+      surface_motion_m(*last_->points, *frame.points, slave_W, s_.near_m, kernels) > s_.least_motion_m;
   if (!is_needed) return false;
   ++sent_;
-  if (s_.least_motion_m > 0) last_ = std::move(frame);
+  last_ = frame, last_->prepared = nullptr;
+  last_values_ = std::move(values);
   return true;
 }
 

@@ -1,4 +1,5 @@
-// A dead-band for frames: a frame is sent to the operator only if the surface near the slave has moved.
+// A dead-band for frames: a frame is sent to the operator only if the surface near the slave has moved, or if
+// values of its points have changed.
 //
 // This is the part of model-mediated teleoperation that decides about updates of the model: X. Xu, B.
 // Cizmeci, A. Al-Nuaimi, E. Steinbach, "Point cloud-based model-mediated teleoperation with dynamic and
@@ -6,12 +7,15 @@
 // rule is this project's. Stiffness and friction of the object are not estimated.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
-#include "core/search/neighbour_search.h"
+#include "core/rendering/frame.h"
 
 namespace remote_touch {
 
@@ -26,11 +30,12 @@ inline std::string validate(const FrameDeadBandSettings&) {
 }
 
 // Returns the distance between the surfaces of two frames near a position, m, not negative. A first plane is
-// fitted to the points of `before` within near_m of near_W; q is the foot of near_W on it. For both frames
-// the points within near_m of q are averaged. The result is the distance of the two means along the normal of
-// the plane that is fitted to those points of `before`. A point at the distance r from near_W or q has the
-// weight (1 - (r / near_m)^2)^2. Returns 0 if neither frame has 3 points there, and infinity if only one has.
-// So a surface that stays farther than near_m from near_W does not count as moved.
+// fitted to the points of `before` within R = near_m + r_f of near_W, where r_f is the largest radius of a
+// forbidden region in the two frames; q is the foot of near_W on it. For both frames the points within near_m
+// of q are averaged. The result is the distance of the two means along the normal of the plane that is fitted
+// to those points of `before`. A point at the distance r from near_W has the weight (1 - (r / R)^2)^2, and
+// one at the distance r from q has (1 - (r / near_m)^2)^2. Returns 0 if neither frame has 3 points there, and
+// infinity if only one has. So a surface that stays farther than R from near_W does not count as moved.
 double surface_motion_m(const NeighbourSearch& before, const NeighbourSearch& now, const Vec3& near_W,
                         double near_m, const Kernels& kernels);
 
@@ -40,15 +45,29 @@ class FrameDeadBand {
   explicit FrameDeadBand(const FrameDeadBandSettings& settings) : s_(settings) {}
 
   // Returns true if a frame has to be sent, and then keeps it as the newest that was sent. slave_W: position
-  // of the slave, world frame, when the frame was captured. If it is not finite, the slave has not started,
-  // and the frame is sent. The first frame is always sent.
-  bool sends(std::shared_ptr<const NeighbourSearch> frame, const Vec3& slave_W, const Kernels& kernels);
+  // of the slave, world frame, when the frame was captured. The frame is sent if
+  // - it is the first, or least_motion_m is 0;
+  // - slave_W is not finite, because the slave has not started;
+  // - the surface near slave_W has moved by more than least_motion_m since the last frame that was sent;
+  // - the radius of a region or the stiffness of a point differs from that frame, or a guidance target.
+  // Points
+  //   with the same index are compared, if both were measured. If the frames have different sizes, they
+  //   differ unless all points of both have the same values.
+  // With a band, a frame that was not captured after the last one that was sent is never sent, because
+  // renderers drop it.
+  bool sends(const Frame& frame, const Vec3& slave_W, const Kernels& kernels);
   // Returns the number of frames that had to be sent.
   int sent() const { return sent_; }
 
  private:
+  // The radius of the region and the stiffness of every point, at its index; nothing: it is not measured.
+  using PointValues = std::vector<std::optional<std::array<double, 2>>>;
+  static PointValues values_of(const NeighbourSearch& points, const Kernels& kernels);
+  static bool differ(const PointValues& before, const PointValues& now);
+
   const FrameDeadBandSettings s_;
-  std::shared_ptr<const NeighbourSearch> last_;  // the newest frame that was sent
+  std::optional<Frame> last_;  // the newest frame that was sent
+  PointValues last_values_;
   int sent_ = 0;
 };
 

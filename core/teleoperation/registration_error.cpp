@@ -11,7 +11,8 @@ enum Drawn : std::uint32_t { offset, axis };
 // Returns a unit vector, by rejection: points in a cube are drawn until one lies in its inscribed ball.
 // Unlike with sine and cosine, the bits do not depend on the C library.
 Vec3 direction(const NoiseKey& key, Drawn which) {
-  const NoiseStream stream = noise_stream(key, NoiseUse::registration, which);
+  const NoiseKey of_all_cells{key.seed, 0, key.replicate};
+  const NoiseStream stream = noise_stream(of_all_cells, NoiseUse::registration, which);
   for (std::uint32_t draw = 0;; ++draw) {
     const auto u = uniforms(stream, draw);
     const Vec3 p(2 * u[0] - 1, 2 * u[1] - 1, 2 * u[2] - 1);

@@ -61,15 +61,19 @@ bool Slave::is_far(const Vec3& reference_velocity) const {
 }
 
 Vec3 Slave::contact_force(double before_s, double now_s) {
-  const double depth_before = depth_m_;
-  depth_m_ = s_.radius_m - scene_.signed_distance(state_.position_W, now_s);
+  const auto depth_at = [&](const Vec3& p_W) { return s_.radius_m - scene_.signed_distance(p_W, now_s); };
+  // After a jump, the speed is that of the ball over the new surface.
+  const double depth_before = scene_.jumps(before_s, now_s) ? depth_at(depth_W_) : depth_m_;
+  depth_m_ = depth_at(state_.position_W), depth_W_ = state_.position_W;
   if (!(depth_m_ > 0) || s_.contact_stiffness_N_per_m == 0) return Vec3::Zero();
   // A ball that the scene reaches from an unknown distance has no known speed of approach.
   const double speed = std::isnan(depth_before) ? 0 : (depth_m_ - depth_before) / (now_s - before_s);
   const double force = s_.contact_stiffness_N_per_m * depth_m_ + s_.contact_damping_Ns_per_m * speed;
   if (!(force > 0)) return Vec3::Zero();
   if (!normal_W_) normal_W_ = scene_.normal(state_.position_W, now_s);
-  return normal_W_->allFinite() ? Vec3(force * *normal_W_) : Vec3(Vec3::Zero());
+  if (normal_W_->allFinite()) return force * *normal_W_;
+  state_.is_force_known = false;
+  return Vec3::Zero();
 }
 
 void Slave::step(const Vec3& reference_velocity, bool can_touch, double before_s, double now_s) {
@@ -88,22 +92,24 @@ void Slave::step(const Vec3& reference_velocity, bool can_touch, double before_s
 const Slave::State& Slave::move(const Vec3& command_W, double time_s) {
   if (!is_placed_) {
     state_.position_W = reference_W_ = command_W;
-    depth_m_ = s_.radius_m - scene_.signed_distance(command_W, time_s);
+    depth_m_ = s_.radius_m - scene_.signed_distance(command_W, time_s), depth_W_ = command_W;
     is_placed_ = true;
-  } else {
-    const Vec3 reference_velocity = cut((command_W - reference_W_) / tick_s_, s_.max_speed_m_per_s);
-    state_.force_N = Vec3::Zero(), state_.peak_force_N = 0;
-    const bool has_paused = time_s - last_s_ > 1.5 * tick_s_;  // the scene may be anywhere
-    if (has_paused) depth_m_ = std::numeric_limits<double>::quiet_NaN();
-    const double step_s = tick_s_ / s_.steps_per_tick, begin_s = time_s - tick_s_;
-    const bool can_touch = has_paused || !is_far(reference_velocity);
-    if (!can_touch) depth_m_ = -state_.clearance_m;
-    normal_W_.reset();
-    for (int i = 0; i < s_.steps_per_tick; ++i)
-      step(reference_velocity, can_touch, begin_s + (i - 1) * step_s, begin_s + i * step_s);
+    last_s_ = time_s;
+    state_.clearance_m = -depth_m_;
+    return state_;
   }
+  const Vec3 reference_velocity = cut((command_W - reference_W_) / tick_s_, s_.max_speed_m_per_s);
+  state_.force_N = Vec3::Zero(), state_.peak_force_N = 0, state_.is_force_known = true;
+  const bool has_paused = time_s - last_s_ > 1.5 * tick_s_;  // the scene may be anywhere
+  if (has_paused) depth_m_ = std::numeric_limits<double>::quiet_NaN();
+  const double step_s = tick_s_ / s_.steps_per_tick, begin_s = time_s - tick_s_;
+  const bool can_touch = has_paused || !is_far(reference_velocity);
+  normal_W_.reset();
+  for (int i = 0; i < s_.steps_per_tick; ++i)
+    step(reference_velocity, can_touch, begin_s + (i - 1) * step_s, begin_s + i * step_s);
   last_s_ = time_s;
   state_.clearance_m = scene_.signed_distance(state_.position_W, time_s) - s_.radius_m;
+  if (!can_touch) depth_m_ = -state_.clearance_m, depth_W_ = state_.position_W;
   return state_;
 }
 

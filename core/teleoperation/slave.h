@@ -31,6 +31,16 @@ struct SlaveScene {
   std::function<double(const Vec3& p_W, double time_s)> signed_distance;
   // Unit normal towards the outside at the surface point that is nearest; NaN where it is not known.
   std::function<Vec3(const Vec3& p_W, double time_s)> normal;
+  // Time of the surface to which both refer: time_s, if the surface moves while time passes. Otherwise the
+  // surface is at rest until the result changes, and then it jumps. Empty: time_s.
+  std::function<double(double time_s)> surface_time_s = {};
+
+  // True if the surface jumps between two times, so that it has no speed.
+  bool jumps(double before_s, double now_s) const {
+    if (!surface_time_s) return false;
+    const double before = surface_time_s(before_s), now = surface_time_s(now_s);
+    return before != now && !(before == before_s && now == now_s);
+  }
 };
 
 // m x'' = m w^2 (c - x) + 2 zeta w m (c' - x') + f along every axis, with x the centre of the ball, c the
@@ -39,9 +49,9 @@ struct SlaveScene {
 // drive, which is the first two terms divided by m, is limited to max_acceleration_m_per_s2 in magnitude.
 //
 // f = max(0, K d + B d') n, with d = radius_m - signed distance of the centre, where d > 0; n is the normal
-// of the true surface where the ball touches first in a tick. d' includes the motion of the surface. There is
-// no friction, and no contact where the distance is not known. A surface that approaches with more than 10
-// m/s may be noticed a tick later.
+// of the true surface where the ball touches first in a tick. d' includes the motion of the surface, but not
+// a jump (SlaveScene::surface_time_s). There is no friction, and no contact where distance or normal are not
+// known. A surface that approaches with more than 10 m/s may be noticed a tick later.
 //
 // The motion is integrated in steps of a tick / steps_per_tick by the semi-implicit rule. Its error is of
 // the order of w T and sqrt(K / m) T, where T is the duration of a step.
@@ -56,6 +66,9 @@ class Slave {
     Vec3 force_N = Vec3::Zero();  // mean force of the scene on the slave in the last tick, world frame
     double peak_force_N = 0;      // largest magnitude of the force in the last tick
     double clearance_m = 0;  // distance of the slave from the surface; negative in contact; NaN: not known
+    // False if the slave was behind the surface in the last tick and the normal there is not known. There is
+    // then no force, because its direction is not known.
+    bool is_force_known = true;
   };
   // Moves the slave from time_s - tick_s to time_s. command_W: the position that it has received last. In the
   // first call the slave is put at the command, at rest. If the last call was for an earlier time than
@@ -74,6 +87,7 @@ class Slave {
   State state_;
   Vec3 reference_W_ = Vec3::Zero();
   double depth_m_ = 0;            // d after the last step; NaN: not known
+  Vec3 depth_W_ = Vec3::Zero();   // position to which it belongs
   std::optional<Vec3> normal_W_;  // normal of the surface in this tick
   double last_s_ = 0;             // time of the last call
   bool is_placed_ = false;

@@ -91,12 +91,16 @@ double ToolSlave::clearance(double least_m, double time_s) const {
 
 // Completes the points that may touch. Those whose plane is not known do not touch.
 void ToolSlave::ask_scene(double begin_s, double end_s) {
+  const bool jumps = scene_.jumps(begin_s, end_s);
+  bool is_behind = false, is_known = false;
   for (Touch& t : touches_) {
     const Vec3 p_W = state_.position_W + t.arm_W;
     const Vec3 n = scene_.normal(p_W, begin_s);
     t.normal << n, t.arm_W.cross(n);
-    t.rate_m_per_s = (scene_.signed_distance(p_W, end_s) + t.start_m) / (end_s - begin_s);
+    t.rate_m_per_s = jumps ? 0 : (scene_.signed_distance(p_W, end_s) + t.start_m) / (end_s - begin_s);
+    if (t.start_m > 0) is_behind = true, is_known |= n.allFinite();
   }
+  state_.is_force_known = is_known || !is_behind;
   std::erase_if(touches_, [](const Touch& t) { return !t.normal.allFinite() || std::isnan(t.rate_m_per_s); });
 }
 

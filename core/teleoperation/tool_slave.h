@@ -35,16 +35,17 @@ namespace remote_touch {
 //   over the tool: the resultant of a face acts where the face is deepest, within F / K and s.
 // - With a spring at every point instead, the stiffness of a face would grow with the number of its points.
 //   If these springs shared K, a corner of the tool would be soft.
-// There is no friction, and no contact where distance or normal are not known.
+// There is no friction, and no contact where distance or normal are not known. is_force_known is false if
+// points are behind the surface and the normal is known at none of them.
 //
 // Steps: the scene is queried per tick, not in each of the steps_per_tick. At the start of a tick each point
 // that may touch in it finds the tangent plane at its nearest surface point. The speed of this plane is the
-// change of the distance of the initial position over the tick. In the steps the point touches this plane,
-// and the rotation since the start is treated as small. The error of a depth is of the order of x^2 / (2 R),
-// where x is the path of the point in a tick and R the radius of curvature of surface or path: 0.1 um for 0.1
-// m/s and 50 mm. A point may touch if it is nearer than 2 v T + kSceneSpeed_m_per_s T, where v is a bound of
-// the speed of the points and T the duration of a tick. So a surface that approaches faster than
-// kSceneSpeed_m_per_s may be felt one tick late.
+// change of the distance of the initial position over the tick, or 0 if the surface jumps in it. In the steps
+// the point touches this plane, and the rotation since the start is treated as small. The error of a depth is
+// of the order of x^2 / (2 R), where x is the path of the point in a tick and R the radius of curvature of
+// surface or path: 0.1 um for 0.1 m/s and 50 mm. A point may touch if it is nearer than 2 v T +
+// kSceneSpeed_m_per_s T, where v is a bound of the speed of the points and T the duration of a tick. So a
+// surface that approaches faster than kSceneSpeed_m_per_s may be felt one tick late.
 class ToolSlave {
  public:
   static constexpr double kRounding_m = 5e-5;

@@ -69,6 +69,8 @@ class RecordedScene : public Scenario {
   // Returns NaN if the truth is the measured surface, which is no independent truth: a normal would be judged
   // by the error of the measurement.
   Vec3 true_normal(const Vec3& p_W, double time_s) const override;
+  // Both truths belong to the newest frame.
+  double truth_time_s(double time_s) const override { return captured_s(newest_frame(time_s)); }
   // "meshes of truth/ (cube, table), uncertainty 3 mm", or "the measured surface".
   std::string truth_text() const override;
   // Meshes: the true objects at their poses in the newest frame. Otherwise empty.

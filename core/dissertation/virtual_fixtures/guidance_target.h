@@ -23,6 +23,7 @@ struct GuidanceTarget {
   double strength = 1;  // strength of its rule when the frame was captured, 0 to 1
   static constexpr double kFlat = 0.25, kLine = 1e-3;
 
+  bool operator==(const GuidanceTarget&) const = default;
   bool is_visible() const { return points > 0; }
   bool is_flat() const { return !normal_W.isZero(0); }
 };

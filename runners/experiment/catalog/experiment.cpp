@@ -51,6 +51,13 @@ void refuse_sweep(const Json& configuration, const std::string& label) {
     throw InputError(label, std::string("is a sweep: expected `remote-touch sweep ") + label + " -o FILE`");
 }
 
+// The override that removes the slave also removes the sections that need one.
+void remove_with_slave(Json& configuration, const std::vector<std::string>& overrides) {
+  if (std::ranges::find(overrides, "slave=null") == overrides.end()) return;
+  for (const char* section : {"command_link", "force_link", "frame_link", "feedback", "registration"})
+    configuration.erase(section);
+}
+
 }  // namespace
 
 Experiment Experiment::from_json(const std::string& text, const std::string& label,
@@ -59,6 +66,7 @@ Experiment Experiment::from_json(const std::string& text, const std::string& lab
   if (!configuration.is_object()) throw InputError(label, "not an object: expected {\"scenario\": ..., ...}");
   refuse_sweep(configuration, label);
   const Json former = configuration;
+  remove_with_slave(configuration, overrides);
   apply_overrides(configuration, overrides);
   refuse_former_keys(former, configuration);
   return from_json(configuration);
@@ -188,18 +196,26 @@ std::optional<Teleoperation> Experiment::build_teleoperation(const Scenario* tou
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const ExperimentConfiguration& c = configuration_;
   if (!c.slave) return {};
-  const SlaveScene scene{[touched](const Vec3& p_W, double time_s) {
-                           return touched ? touched->signed_distance(p_W, time_s) : kUnknown;
-                         },
-                         [touched](const Vec3& p_W, double time_s) {
-                           return touched ? touched->true_normal(p_W, time_s)
-                                          : Vec3(Vec3::Constant(kUnknown));
-                         }};
+  const SlaveScene scene{
+      [touched](const Vec3& p_W, double time_s) {
+        return touched ? touched->signed_distance(p_W, time_s) : kUnknown;
+      },
+      [touched](const Vec3& p_W, double time_s) {
+        return touched ? touched->true_normal(p_W, time_s) : Vec3(Vec3::Constant(kUnknown));
+      },
+      [touched](double time_s) { return touched ? touched->truth_time_s(time_s) : time_s; }};
   const bool knows_mass = hand == Hand::simulated && c.operator_settings;
   const double hand_mass_kg = knows_mass ? c.operator_settings->mass_kg : 0;
   return Teleoperation(
       {*c.slave, *c.command_link, *c.force_link, *c.feedback, *c.registration, hand_mass_kg, slave_tool(c)},
       c.run.key, 1 / c.run.haptic_rate_hz, scene);
+}
+
+FrameDeadBandSettings Experiment::frame_dead_band() const {
+  FrameDeadBandSettings settings = configuration_.frame_link.value_or(FrameDeadBandSettings{});
+  if (settings.least_motion_m == 0) return settings;
+  if (const std::optional<SlaveTool> tool = slave_tool(configuration_)) settings.near_m += tool->reach_m;
+  return settings;
 }
 
 std::optional<Experiment> Experiment::recorded_experiment() const {

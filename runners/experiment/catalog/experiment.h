@@ -90,10 +90,9 @@ class Experiment {
   // simulated. Then builds the scene that the camera saw, as build_simulated_scene() does: the session itself
   // has no true surface.
   std::unique_ptr<const Scenario> build_recorded_scene(const Kernels& kernels) const;
-  // Returns the dead-band of frames; without a slave, settings with which every frame is passed on.
-  FrameDeadBandSettings frame_dead_band() const {
-    return configuration_.frame_link.value_or(FrameDeadBandSettings{});
-  }
+  // Returns the dead-band of frames, whose near_m contains the reach of the slave's tool; without a slave,
+  // settings with which every frame is passed on.
+  FrameDeadBandSettings frame_dead_band() const;
   // Returns the phases in the sections of the experiment itself: changes of the renderer, schedules of
   // fixtures, and steps of the sequence that wait for a time.
   std::vector<Phase> phases() const { return setting_phases(configuration_); }

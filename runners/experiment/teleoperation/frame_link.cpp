@@ -14,7 +14,7 @@ Vec3 FrameLink::slave_at(double time_s) {
 }
 
 void FrameLink::on_frame(const Frame& frame) {
-  if (dead_band_.sends(frame.points, slave_at(frame.captured_s), kernels_)) renderer_.on_frame(frame);
+  if (dead_band_.sends(frame, slave_at(frame.captured_s), kernels_)) renderer_.on_frame(frame);
 }
 
 }  // namespace remote_touch

@@ -73,6 +73,10 @@ void Teleoperation::move_slave(double time_s) {
   state_.command_W = goal_W;
   state_.position_W = slave.position_W, state_.force_N = slave.force_N;
   state_.peak_force_N = slave.peak_force_N, state_.clearance_m = slave.clearance_m;
+  if (slave.is_force_known) return;
+  state_.peak_force_N = std::numeric_limits<double>::quiet_NaN();
+  state_.force_N = Vec3::Constant(state_.peak_force_N);
+  if (state_.tool) state_.tool->torque_Nm = state_.force_N;
 }
 
 double Teleoperation::ticks_since_last(double time_s) const {
@@ -85,13 +89,13 @@ void Teleoperation::move_slave_until(double time_s, double ticks) {
   for (int left = static_cast<int>(std::min(ticks - 1, 1.0 * kMaxMissedTicks)); left > 0; --left) {
     const double at_s = time_s - left * tick_s_;
     move_slave(at_s);
-    peak_N = std::max(peak_N, state_.peak_force_N);
+    peak_N = std::max(state_.peak_force_N, peak_N);  // keeps NaN
     if (is_passive()) slave_port_.observe(slave_force());
     receive_command(at_s);
     send_force(at_s);
   }
   move_slave(time_s);
-  state_.peak_force_N = std::max(peak_N, state_.peak_force_N);
+  state_.peak_force_N = std::max(state_.peak_force_N, peak_N);
 }
 
 // Returns the motion of the hand since the last tick.

@@ -60,5 +60,12 @@ TEST(RegistrationError, BelongsToTheKey) {
       1e-15);
 }
 
+// The runs of one replicate of a sweep have the same error, so that its cells are compared in pairs.
+TEST(RegistrationError, IsTheSameInEveryCellOfASweep) {
+  const RegistrationError error{0.01, 5};
+  EXPECT_TRUE(registration_of(error, {7, 0, 3}).isApprox(registration_of(error, {7, 12, 3}), 0));
+  EXPECT_FALSE(registration_of(error, {7, 0, 3}).isApprox(registration_of(error, {8, 0, 3}), 0.001));
+}
+
 }  // namespace
 }  // namespace remote_touch::registration_error_test

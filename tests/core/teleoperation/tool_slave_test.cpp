@@ -274,6 +274,36 @@ TEST(ToolSlave, IsPushedByASurfaceThatRises) {
 }
 
 // The resultant moves over the plate without a jump while it rocks from one edge to the other.
+// A jump of the surface loads the spring and has no speed, at any length of the tick.
+TEST(ToolSlave, NoDamperActsOverAJumpOfTheSurface) {
+  constexpr double kJump_m = 0.002, kJump_s = 0.4995;
+  for (const double tick_s : {0.001, 0.00025}) {
+    SlaveSettings s;
+    SlaveScene scene{[](const Vec3& p, double t) { return p.y() - (t < kJump_s ? 0 : kJump_m); },
+                     [](const Vec3&, double) { return Vec3(0, 1, 0); },
+                     [](double t) { return t < kJump_s ? 0 : kJump_s; }};
+    ToolSlave slave(s, plate(), tick_s, scene);
+    double resting_N = 0, peak_N = 0;
+    for (int tick = 0; tick * tick_s < 0.6; ++tick) {
+      const double now_N = slave.move(pose({0, 0.005, 0}), tick * tick_s).peak_force_N;
+      if (tick * tick_s < kJump_s) resting_N = now_N;
+      peak_N = std::max(peak_N, now_N);
+    }
+    EXPECT_NEAR(peak_N, resting_N + s.contact_stiffness_N_per_m * kJump_m, 0.5) << tick_s;
+  }
+}
+
+TEST(ToolSlave, DoesNotKnowAForceWithoutANormal) {
+  SlaveScene scene = plane();
+  scene.normal = nothing().normal;
+  ToolSlave slave({}, plate(), kTick_s, scene);
+  slave.move(pose({0, 0.01, 0}), 0);
+  EXPECT_TRUE(slave.move(pose({0, 0.01, 0}), kTick_s).is_force_known);
+  for (int tick = 2; tick < 1000; ++tick) slave.move(pose({0, 0.001, 0}), tick * kTick_s);
+  EXPECT_FALSE(slave.state().is_force_known);
+  EXPECT_EQ(slave.state().force_N, Vec3::Zero());
+}
+
 TEST(ToolSlave, ForceAndTorqueAreContinuousWhileThePlateRocks) {
   SlaveSettings s;
   s.natural_frequency_hz = 10;

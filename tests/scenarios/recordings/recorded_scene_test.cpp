@@ -56,6 +56,12 @@ TEST_F(RecordedSceneTest, KnowsTheSurfaceExceptAtDepthEdges) {
   EXPECT_TRUE(std::isnan(scene.signed_distance(seen(9, 8, 0.5), 0)));
 }
 
+// A slave must not take the step from frame to frame for a motion.
+TEST_F(RecordedSceneTest, ItsTruthBelongsToTheNewestFrame) {
+  const RecordedScene scene(two_walls(folder_), {}, scenes::kernels());
+  EXPECT_EQ(scene.truth_time_s(0.03), 0);
+}
+
 // Depth edges are found in the camera's depth and not in the base frame's z, which may be negative or lie in
 // the wall.
 TEST_F(RecordedSceneTest, KnowsTheSameSurfaceForAnyCameraPose) {

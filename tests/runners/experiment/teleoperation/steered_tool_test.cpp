@@ -204,6 +204,18 @@ TEST(SteeredTool, TheSurfaceTurnsTheSlave) {
   EXPECT_LT(turned, 0.3);
 }
 
+// A surface may touch the end of a tool first, far from its origin.
+TEST(SteeredTool, TheDeadBandOfFramesReachesBeyondTheTool) {
+  const auto near_m = [](const std::vector<std::string>& set) {
+    return Experiment::load("steer-tool", set).frame_dead_band().near_m;
+  };
+  const std::string band = "frame_link.least_motion_m=0.001", bar = "renderer.tool_mesh=bar";
+  const double small_m = near_m({band, bar, "renderer.tool_size_m=0.05"});
+  const double large_m = near_m({band, bar, "renderer.tool_size_m=0.1"});
+  EXPECT_GT(small_m, 0.04 + 0.02);
+  EXPECT_NEAR(large_m - 0.04, 2 * (small_m - 0.04), 1e-9);
+}
+
 TEST(SteeredTool, RefusesWhatASlaveWithAToolDoesNotHave) {
   const auto why = [](const std::string& setting) {
     return refusal([&] { Experiment::load("steer-tool", {setting}); });

@@ -67,6 +67,18 @@ TEST(Teleoperation, TheCommandIsWhatIsSent) {
     EXPECT_EQ(Teleoperation(with(force), {}, kTick_s, ground()).command(device, out), device.position_W);
 }
 
+// What is not known is not shown as zero, but the hand feels no NaN.
+TEST(Teleoperation, AForceWithoutANormalIsNotKnown) {
+  SlaveScene scene = ground();
+  scene.normal = [](const Vec3&, double) { return Vec3(Vec3::Constant(std::nan(""))); };
+  Teleoperation remote(with(Feedback::slave_force), {}, kTick_s, scene);
+  for (int i = 0; i < 600; ++i)
+    EXPECT_EQ(remote.tick({{0, i < 300 ? 0.01 : -0.01, 0}}, {}, i * kTick_s).force_N, Vec3::Zero());
+  EXPECT_LT(remote.state().clearance_m, 0);
+  EXPECT_TRUE(std::isnan(remote.state().peak_force_N));
+  EXPECT_TRUE(remote.state().force_N.hasNaN());
+}
+
 TEST(Teleoperation, WithoutFeedbackSendsTheHip) {
   const std::vector<Tick> ticks = descent(with(Feedback::none));
   for (const Tick& tick : ticks) EXPECT_EQ(tick.felt.force_N, Vec3::Zero());
