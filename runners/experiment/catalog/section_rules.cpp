@@ -175,6 +175,10 @@ void check_slave(ExperimentConfiguration& configuration) {
   if (!configuration.frame_link) configuration.frame_link.emplace();
   if (!configuration.feedback) configuration.feedback.emplace();
   if (!configuration.registration) configuration.registration.emplace();
+  if (const double fraction = configuration.command_link->dead_band.weber_fraction; fraction > 0)
+    throw InputError("command_link.weber_fraction = " + shown(fraction),
+                     "expected 0, and a length as command_link.least: the size of a position depends on the "
+                     "origin");
   if (renders_tool(configuration)) check_slave_tool(configuration);
 }
 

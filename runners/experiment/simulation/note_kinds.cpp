@@ -51,6 +51,7 @@ const std::vector<NoteKind>& note_kinds() {
       {"slave without command", "the slave received no command after its first"},
       {"slave loop gains energy",
        "the device gave much energy to the hand: hand, links and slave may oscillate"},
+      {"setting without effect", "settings of the experiment that cannot act together"},
   };
   return kinds;
 }

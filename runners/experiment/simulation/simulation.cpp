@@ -204,6 +204,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     add_missed_phases(experiment.operator_phases(), end_s, notes);
     add(fixture_notes(frames.fixtures(), observed.first_points(), observed.newest_points()), notes);
     add(surface.notes(), notes);
+    add(slave_setting_notes(experiment, Experiment::Hand::simulated), notes);
     add(slave_notes(trace), notes);
     if (trace.has_tool())
       add(tool_start_notes(trace), notes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "analysis/measures/passivity_measures.h"
 #include "analysis/measures/slave_measures.h"
@@ -51,6 +52,38 @@ std::vector<Note> slave_notes(const Trace& trace) {
     notes.push_back({"slave loop gains energy", text});
   }
   return notes;
+}
+
+std::vector<Note> slave_setting_notes(const Experiment& experiment, Experiment::Hand hand) {
+  constexpr const char* kKind = "setting without effect";
+  const auto setting = [&](const char* path) { return experiment.value_at_start(path); };
+  std::vector<Note> notes;
+  if (!setting("slave").is_object()) return notes;
+  const std::string force = setting("feedback.force").get<std::string>();
+  if (force != "rendered" && !setting("fixtures").empty())
+    notes.push_back({kKind, "fixtures hold nothing back with feedback.force = " + force +
+                                ": the HIP is sent to the slave, and the hand does not feel the renderer"});
+  const bool is_scripted = hand == Experiment::Hand::simulated && !setting("operator").is_object() &&
+                           setting("trajectory.name") != "live-session";
+  if (is_scripted && force.ends_with("slave-force"))
+    notes.push_back({kKind, "feedback.force = " + force +
+                                " moves nothing: without the section operator the hand follows its path, "
+                                "whatever the device exerts"});
+  return notes;
+}
+
+std::string slave_summary(const Trace& trace) {
+  const double clearance_m = min_slave_clearance_m(trace);
+  if (std::isnan(clearance_m)) return {};
+  char text[120];
+  if (slave_touched(trace) > 0)
+    std::snprintf(text, sizeof text,
+                  "the slave touched first at %.3f s; largest force of the scene on it: %.3g N",
+                  first_slave_contact_time_s(trace), max_slave_force_N(trace));
+  else
+    std::snprintf(text, sizeof text, "the slave did not touch; it came within %.3g mm of the surface",
+                  1e3 * clearance_m);
+  return text;
 }
 
 }  // namespace remote_touch

@@ -1,8 +1,10 @@
 // Notes on a slave that could not do what its run is about.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "runners/experiment/catalog/experiment.h"
 #include "scenarios/interface/note.h"
 
 namespace remote_touch {
@@ -14,5 +16,16 @@ struct Trace;
 // and a note "slave loop gains energy" if the device gave the hand more than 5 J, as an unstable loop does.
 // Returns no notes for a run without a slave.
 std::vector<Note> slave_notes(const Trace& trace);
+
+// Returns notes "setting without effect" on an experiment with a slave:
+// - it has fixtures, but the feedback is not rendered. The HIP is then sent to the slave, and the hand does
+//   not feel the renderer, so that no fixture holds anything back;
+// - hand is simulated and should feel forces of the slave, but there is no section operator: the hand then
+//   follows its path, whatever the device exerts. The hand of a recorded session gives no such note.
+std::vector<Note> slave_setting_notes(const Experiment& experiment, Experiment::Hand hand);
+
+// Returns a sentence on the first contact of the slave and the largest force on it, or on how near it came to
+// the true surface. Empty if there is no slave, or if the surface was not known where it was.
+std::string slave_summary(const Trace& trace);
 
 }  // namespace remote_touch

@@ -15,7 +15,8 @@ Parameters parameters(FeedbackSettings& s) {
 
 std::string validate(const FeedbackSettings& s) {
   if (s.force != Feedback::slave_force && s.gain != 1)
-    return "gain = " + std::to_string(s.gain) + ": expected 1 unless force = slave-force";
+    return "gain = " + std::to_string(s.gain) +
+           ": expected 1 unless force = slave-force; a sweep sets both in a variant";
   return {};
 }
 

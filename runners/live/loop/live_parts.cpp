@@ -49,7 +49,8 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
       device_(std::move(device)),
       rows_(kRows),
       contact_(experiment),
-      phases_(simulated_phases(experiment, options.device, options.depth, *options.kernels)) {
+      phases_(simulated_phases(experiment, options.device, options.depth, *options.kernels)),
+      setting_notes_(slave_setting_notes(experiment, Experiment::Hand::real)) {
   require_rate();
   const SensorView& view = source->view();
   experiment.check_needs(view);
@@ -180,6 +181,7 @@ RunReport LiveParts::report(const LiveLog& log) const {
   RunReport report = report_of(
       {options_.depth, camera_->view(), camera_->sensed(), camera_->counts(), log, rate_hz_, phases_});
   for (Note& note : contact_.notes(*options_.kernels)) report.notes.push_back(std::move(note));
+  report.notes.insert(report.notes.end(), setting_notes_.begin(), setting_notes_.end());
   for (Note& note : slave_notes(log.trace)) report.notes.push_back(std::move(note));
   return report;
 }

@@ -87,7 +87,8 @@ class LiveParts {
   std::unique_ptr<Servo> servo_;
   LiveContact contact_;
   const std::vector<Phase> phases_;  // see simulated_phases()
-  std::string ended_;                // reason why the run has ended; empty: not yet
+  const std::vector<Note> setting_notes_;
+  std::string ended_;  // reason why the run has ended; empty: not yet
   LiveTrouble reported_;
   // The time at which report_changes() first found the device released by the heartbeat; -1 if it is not
   // released.

@@ -99,6 +99,20 @@ TEST(Sections, RefuseUnknownParametersByTheirPath) {
   }
 }
 
+// The size of a position depends on the origin of the world frame.
+TEST(Sections, RefuseARelativeDeadBandOfCommands) {
+  const std::string refused =
+      "command_link.weber_fraction = 0.1: expected 0, and a length as command_link.least: the size of a "
+      "position depends on the origin";
+  EXPECT_EQ(why("command_link.weber_fraction=0.1"), refused);
+  EXPECT_EQ(
+      refusal([] {
+        Experiment::load("steer-robot", {"command_link.weber_fraction=0.1", "command_link.least=0.001"});
+      }),
+      refused);
+  EXPECT_EQ(why("force_link.weber_fraction=0.1"), "no InputError");
+}
+
 // An optional section may be left out or null, with the same result. A required one is reported as missing in
 // both cases.
 TEST(Sections, LeftOutAndNullAreTheSame) {

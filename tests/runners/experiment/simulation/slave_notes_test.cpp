@@ -1,10 +1,15 @@
-// Notes on a slave that could not touch, got no command, or is part of an unstable loop.
+// Notes on a slave that could not touch, got no command, is part of an unstable loop, or has settings that
+// cannot act.
 #include "runners/experiment/simulation/slave_notes.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::slave_notes_test {
 namespace {
@@ -21,6 +26,16 @@ std::vector<std::string> notes_of(const std::string& experiment, std::vector<std
 }
 
 using Kinds = std::vector<std::string>;
+
+// Returns the notes "setting without effect" of a run.
+std::vector<Note> setting_notes(const std::string& experiment, const std::vector<std::string>& overrides) {
+  RunReport report;
+  SimulationOptions options;
+  options.report = &report;
+  simulate(Experiment::load(experiment, overrides), options);
+  std::erase_if(report.notes, [](const Note& note) { return note.kind != "setting without effect"; });
+  return report.notes;
+}
 
 TEST(SlaveNotes, AreNoneForASlaveThatFollows) {
   EXPECT_EQ(notes_of("steer-robot", {"duration_s=1"}), Kinds{});
@@ -39,6 +54,56 @@ TEST(SlaveNotes, SayThatTheLoopIsUnstable) {
   EXPECT_EQ(notes_of("steer-robot", {"duration_s=3", "feedback.force=slave-force"}),
             Kinds{"slave loop gains energy"});
   EXPECT_EQ(notes_of("steer-robot", {"duration_s=3", "feedback.force=none"}), Kinds{});
+}
+
+// The slave follows the HIP through the region. The notes of a real or recorded hand do not mention its path.
+TEST(SlaveNotes, SayThatFixturesHoldNothingBack) {
+  for (const std::string force : {"none", "slave-force", "passive-slave-force"}) {
+    const std::vector<std::string> set = {"feedback.force=" + force, "duration_s=0.1"};
+    const std::vector<Note> notes = setting_notes("steer-robot", set);
+    ASSERT_EQ(notes.size(), 1u) << force;
+    EXPECT_HAS(notes[0].text, "fixtures hold nothing back with feedback.force = " + force);
+    EXPECT_EQ(setting_notes("steer-robot", {set[0], "fixtures=[]"}).size(), 0u);
+    EXPECT_EQ(slave_setting_notes(Experiment::load("steer-robot", set), Experiment::Hand::real).size(), 1u);
+  }
+  EXPECT_EQ(setting_notes("steer-robot", {"duration_s=0.1"}).size(), 0u);
+  EXPECT_EQ(setting_notes("fixture-tasks", {"duration_s=0.1"}).size(), 0u);
+}
+
+TEST(SlaveNotes, SayThatAForceCannotMoveAHandWithoutAnOperator) {
+  const std::string ball = R"({"scenario": {"name": "flat-grid"}, "renderer": {"name": "proxy"}, "slave": {},
+      "trajectory": {"name": "waypoints"}, "duration_s": 0.02, "feedback": {"force": ")";
+  const auto notes_of_force = [&](const std::string& force, const std::string& more, Experiment::Hand hand) {
+    return slave_setting_notes(Experiment::from_json(ball + force + "\"}" + more + "}", "test"), hand);
+  };
+  for (const std::string force : {"slave-force", "passive-slave-force"}) {
+    const std::vector<Note> notes = notes_of_force(force, "", Experiment::Hand::simulated);
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_EQ(notes[0].kind, "setting without effect");
+    EXPECT_HAS(notes[0].text, "feedback.force = " + force + " moves nothing");
+    EXPECT_EQ(notes_of_force(force, R"(, "operator": {})", Experiment::Hand::simulated).size(), 0u);
+    EXPECT_EQ(notes_of_force(force, "", Experiment::Hand::real).size(), 0u);
+  }
+  for (const char* force : {"rendered", "none"})
+    EXPECT_EQ(notes_of_force(force, "", Experiment::Hand::simulated).size(), 0u);
+}
+
+TEST(SlaveNotes, TheSummaryHasTheFirstContactAndTheLargestForce) {
+  Trace trace;
+  const auto add = [&](double peak_N, double clearance_m) {
+    SlaveState slave;
+    slave.peak_force_N = peak_N, slave.clearance_m = clearance_m;
+    trace.append(0.001 * static_cast<double>(trace.length()), {}, {}, {}, HandState{}, slave);
+  };
+  EXPECT_EQ(slave_summary(trace), "");
+  add(0, std::nan(""));
+  EXPECT_EQ(slave_summary(trace), "") << "the surface is not known";
+  add(0, 0.0123);
+  EXPECT_EQ(slave_summary(trace), "the slave did not touch; it came within 12.3 mm of the surface");
+  add(4.5, -0.001);
+  add(12.34, -0.002);
+  EXPECT_EQ(slave_summary(trace),
+            "the slave touched first at 0.002 s; largest force of the scene on it: 12.3 N");
 }
 
 TEST(SlaveNotes, SayThatThereIsNoSurfaceToTouch) {
