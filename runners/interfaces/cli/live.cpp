@@ -20,6 +20,7 @@
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/provenance/shell_command.h"
+#include "runners/experiment/simulation/slave_notes.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/live/loop/live_inputs.h"
@@ -224,6 +225,8 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
         "    forces and torques were scaled by %.3g, so that no spring exceeds the maximum stiffness of the device\n",
         result.force_scale);
   std::fputs(text(report).c_str(), stdout);
+  if (const std::string slave = slave_summary(result.log.trace); !slave.empty())
+    std::printf("  %s\n", slave.c_str());
   std::fputs(text_of(result.report).c_str(), stdout);
   std::string lost = result.lost;
   note_failure(lost, [&] { print_trace(request, result.log, options.provenance); });

@@ -14,6 +14,13 @@ Vec3 cut(const Vec3& v, double max_length) {
   return length > max_length ? Vec3(v * (max_length / length)) : v;
 }
 
+// The least difference between the command and what is passed that counts as a limit.
+constexpr double kSmallForce_N = 0.01, kSmallTorque_Nm = 1e-4, kSmallFraction = 0.01;
+
+bool differs(const Vec3& passed, const Vec3& command, double least) {
+  return (passed - command).norm() > kSmallFraction * command.norm() + least;
+}
+
 Vec3 towards(const Vec3& from, const Vec3& to, double max_length) {
   return from + cut(to - from, max_length);
 }
@@ -76,6 +83,15 @@ double SafetyGate::fraction(double now_s, const Wrench& command) noexcept {
 
 Wrench SafetyGate::pass(double now_s, const DeviceReading& reading, const DeviceFault& fault,
                         const Wrench& command, double command_time_s) noexcept {
+  const Wrench passed = limited(now_s, reading, fault, command, command_time_s);
+  is_limiting_ =
+      state_ == GateState::engaged && (differs(passed.force_N, command.force_N, kSmallForce_N) ||
+                                       differs(passed.torque_Nm, command.torque_Nm, kSmallTorque_Nm));
+  return passed;
+}
+
+Wrench SafetyGate::limited(double now_s, const DeviceReading& reading, const DeviceFault& fault,
+                           const Wrench& command, double command_time_s) noexcept {
   const double gap_s = has_last_ ? now_s - last_s_ : 0;
   last_s_ = now_s, has_last_ = true;
   if (rearm_.exchange(false, std::memory_order_relaxed) && state_ == GateState::latched)

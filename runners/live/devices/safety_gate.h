@@ -41,19 +41,24 @@ class SafetyGate {
   void rearm() noexcept { rearm_.store(true, std::memory_order_relaxed); }
 
   GateState state() const { return state_; }
+  // Returns true if the gate is engaged, and the wrench of the last pass() differed from its command by more
+  // than 1 % and 0.01 N or 0.0001 Nm: the command was above a limit, or changed faster than a slew rate.
+  bool is_limiting() const { return is_limiting_; }
   const DeviceFault& reason() const { return reason_; }  // reason of the newest latch
 
  private:
   DeviceFault trouble(const DeviceReading& reading, const DeviceFault& fault,
                       const Wrench& command) const noexcept;
   double fraction(double now_s, const Wrench& command) noexcept;
+  Wrench limited(double now_s, const DeviceReading& reading, const DeviceFault& fault, const Wrench& command,
+                 double command_time_s) noexcept;
 
   const SafetyLimits limits_;
   GateState state_ = GateState::waiting;
   DeviceFault reason_;
   Wrench last_;
   double last_s_ = 0, ramp_began_s_ = 0;
-  bool has_last_ = false;
+  bool has_last_ = false, is_limiting_ = false;
   std::atomic<bool> rearm_ = false;
 };
 

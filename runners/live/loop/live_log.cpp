@@ -44,6 +44,7 @@ void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
   }
   exhausted_ticks += tick.out.tool && tick.out.tool->budget_exhausted ? 1 : 0;
   zero_force_ticks += tick.gate == GateState::waiting || tick.gate == GateState::latched ? 1 : 0;
+  limited_ticks += tick.is_limited ? 1 : 0;
   contact_ticks +=
       tick.out.contact_count > 0 || tick.out.force_N.norm() > 0 || tick.command.force_N.norm() > 0 ? 1 : 0;
   stale_ticks += static_cast<double>(tick.number - taken_at_) > kStaleFrame_s * haptic_rate_hz ? 1 : 0;

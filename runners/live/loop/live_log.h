@@ -30,6 +30,7 @@ struct LiveLog {
   std::int64_t missed_ticks = 0;      // tick numbers that were skipped
   std::int64_t exhausted_ticks = 0;   // ticks that ended before the tool came to rest
   std::int64_t zero_force_ticks = 0;  // ticks in which the gate was waiting or latched
+  std::int64_t limited_ticks = 0;     // ticks in which the gate was engaged and limited force or torque
   std::int64_t contact_ticks = 0;     // ticks that touched a point, or with a force of the renderer or slave
   std::int64_t stale_ticks = 0;       // ticks before which no new frame came for kStaleFrame_s
   std::int64_t reversed_frames = 0;   // frames taken although older than the one before; should be 0

@@ -33,6 +33,17 @@ std::jthread repeat(Clock& clock, double period_s, std::function<void()> step) {
   });
 }
 
+// A live loop uses frames when they come.
+void refuse_simulated_transport(const Transport& transport) {
+  const std::pair<const char*, double> settings[] = {{"frame_latency_s", transport.latency_s},
+                                                     {"frame_jitter_s", transport.jitter_s},
+                                                     {"frame_drop_probability", transport.drop_probability}};
+  for (const auto& [name, value] : settings)
+    if (value > 0)
+      throw InputError(std::string(name) + " = " + std::to_string(value),
+                       "expected 0 in a live session, which uses each frame when the camera has sent it");
+}
+
 // The threads of a run.
 class LiveThreads {
  public:
@@ -123,6 +134,7 @@ LiveResult run_parts(LiveParts& parts, const LiveOptions& options, Clock& clock)
 }  // namespace
 
 LiveResult run_live(const Experiment& experiment, const LiveOptions& options) {
+  refuse_simulated_transport(experiment.settings().transport);
   Clock& clock = steady_clock();
   auto device = open_device(options.device, {experiment, *options.kernels, clock, options.poses});
   auto source = open_sensor(options.depth, {experiment, *options.kernels, clock,

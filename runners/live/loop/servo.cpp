@@ -153,7 +153,7 @@ void Servo::one_tick() {
     if (!is_released(refused)) gate_.latch(refused);
     links_.device.release();
   }
-  row_.gate = gate_.state();
+  row_.gate = gate_.state(), row_.is_limited = gate_.is_limiting();
   note(fault, true);
   if (!is_released(refused)) note(refused, true);
   if (row_.gate == GateState::latched) note(gate_.reason(), false);

@@ -39,6 +39,7 @@ struct LiveTick {
   std::uint64_t hash = 0;  // hash of the newest frame taken
   Wrench written;          // wrench written to the device, in its axes; zero if the device refused it
   GateState gate = GateState::waiting;
+  bool is_limited = false;      // see SafetyGate::is_limiting()
   float step_s = 0;             // time for taking the frame, rendering and the slave
   float since_last_tick_s = 0;  // time from the start of the tick before to the start of this one
   float latency_s = 0;          // if a frame was taken: sensor's time stamp to the write that it affects

@@ -57,6 +57,34 @@ TEST(SafetyGate, BeginsOnlyBelowTheThresholdAndThenRisesEvenly) {
   EXPECT_NEAR(loop.tick({1, 0, 0}).force_N.x(), 1, 1e-12);
 }
 
+// A ramp is not a limit: the state tells it.
+TEST(SafetyGate, KnowsWhenItLimits) {
+  Loop loop;
+  EXPECT_FALSE(loop.gate.is_limiting());
+  loop.tick(Vec3::Zero());
+  for (int i = 0; i < 100; ++i) loop.tick({1, 0, 0});
+  EXPECT_EQ(loop.gate.state(), GateState::ramping);
+  EXPECT_FALSE(loop.gate.is_limiting());
+  for (int i = 0; i < 600; ++i) loop.tick({1, 0, 0});
+  EXPECT_FALSE(loop.gate.is_limiting());
+  const double limit_N = loop.limits.max_force_N;
+  for (int i = 0; i < 100; ++i) loop.tick({0.999 * limit_N, 0, 0});
+  EXPECT_FALSE(loop.gate.is_limiting());
+  loop.tick({1.1 * limit_N, 0, 0});
+  EXPECT_TRUE(loop.gate.is_limiting());
+  for (int i = 0; i < 100; ++i) loop.tick({0, 0, 0});
+  EXPECT_FALSE(loop.gate.is_limiting());
+  loop.tick({limit_N, 0, 0});
+  EXPECT_TRUE(loop.gate.is_limiting()) << "it rises too fast";
+  for (int i = 0; i < 100; ++i) loop.tick({limit_N, 0, 0});
+  EXPECT_FALSE(loop.gate.is_limiting());
+  loop.tick({limit_N, 0, 0}, {0, 2 * loop.limits.max_torque_Nm, 0});
+  EXPECT_TRUE(loop.gate.is_limiting());
+  loop.gate.latch({"a fault"});
+  loop.tick({limit_N, 0, 0});
+  EXPECT_FALSE(loop.gate.is_limiting());
+}
+
 // Both lengths must be below their thresholds. That of the torque is 0.3 / 5 of its limit, 12 mN m.
 TEST(SafetyGate, ForceAndTorqueMustBothBeShorterThanTheirThresholds) {
   EXPECT_TRUE(begins({0.299, 0, 0}, {0, -0.0119, 0}));

@@ -131,6 +131,18 @@ TEST(LiveReport, ATickWithoutForceIsMeasured) {
   EXPECT_EQ(count_of(report, kForce), 0);
 }
 
+TEST(LiveLog, CountsTheTicksInWhichTheGateLimits) {
+  LiveLog log;
+  LiveTick tick;
+  for (const bool is_limited : {false, true, true}) {
+    tick.is_limited = is_limited;
+    log.append(tick, 1000);
+    ++tick.number;
+  }
+  EXPECT_EQ(log.limited_ticks, 2);
+  EXPECT_EQ(count_of(live_report(log, {}), "ticks with a force or torque limited for safety"), 2);
+}
+
 TEST(LiveLog, AFrameThatIsNotNewerThanTheOneBeforeIsReversed) {
   LiveLog log;
   LiveTick tick;

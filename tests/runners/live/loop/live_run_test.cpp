@@ -82,6 +82,16 @@ TEST_P(RecordedLiveRun, GivesTheSameDigestOffline) {
   expect_the_same_offline(run.options.record, result);
 }
 
+TEST(LiveRun, RefusesDelaysOfFramesThatItCannotSimulate) {
+  for (const std::string setting : {"frame_latency_s", "frame_jitter_s", "frame_drop_probability"}) {
+    const Experiment late = Experiment::from_json(kProxy, "test", {setting + "=0.25"});
+    EXPECT_EQ(refusal([&] { run_live(late, options(0.1)); }),
+              setting +
+                  " = 0.250000: expected 0 in a live session, which uses each frame when the camera "
+                  "has sent it");
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Renderers, RecordedLiveRun,
     testing::Values(RecordedCase{"three_dof", kProxy},
