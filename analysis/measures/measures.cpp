@@ -231,6 +231,8 @@ constexpr Row kMeasures[] = {
      tool_max<tool_lag_rad>},
 
     {"max_slave_force", "N", "maximum force of the scene on the slave", slave, neither, max_slave_force_N},
+    {"slave_touched", "1", "1 when the scene exerted a force on the slave in any tick", slave, neither,
+     slave_touched},
     {"slave_contact_fraction", "1", "fraction of ticks with a force on the slave", slave, neither,
      slave_contact_fraction},
     {"min_slave_clearance", "m", "minimum distance of the slave's ball or tool from the true surface", slave,

@@ -16,6 +16,16 @@ double rate_per_s(const Trace& trace, const std::vector<std::int32_t>& sent) {
   return (sent.back() - sent.front()) / (trace.time_s.back() - trace.time_s.front());
 }
 
+// Returns true if the scene may have exerted a force on the slave in tick i that is not known. Before the
+// first command the clearance is not known either.
+bool is_unknown_force(const Trace& trace, std::size_t i) {
+  return std::isnan(trace.slave_peak_force_N[i]) && !std::isnan(trace.slave_clearance_m[i]);
+}
+
+bool has_unknown_force(const Trace& trace) {
+  return first_tick(trace, [&](std::size_t i) { return is_unknown_force(trace, i); }) >= 0;
+}
+
 // The orientation that is sent to the slave's tool in tick i, see Teleoperation::command_orientation(). If
 // the slave is sent where the device is, the renderer's tool is there too only while it touches nothing, and
 // then it has the orientation of the device.
@@ -27,12 +37,20 @@ const Eigen::Quaterniond& commanded_orientation(const Trace& trace, std::size_t 
 }  // namespace
 
 double max_slave_force_N(const Trace& trace) {
+  if (has_unknown_force(trace)) return kNoValue;
   double largest = kNoValue;
   for (const double peak : trace.slave_peak_force_N) largest = std::fmax(largest, peak);  // ignores NaN
   return largest;
 }
 
+double slave_touched(const Trace& trace) {
+  if (std::isnan(min_slave_clearance_m(trace))) return kNoValue;
+  if (first_tick(trace, [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0; }) >= 0) return 1;
+  return has_unknown_force(trace) ? kNoValue : 0;
+}
+
 double slave_contact_fraction(const Trace& trace) {
+  if (has_unknown_force(trace)) return kNoValue;
   return mean_where(
       trace.slave_peak_force_N.size(), [](std::size_t) { return true; },
       [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0; });
@@ -66,7 +84,10 @@ double rms_slave_lag_angle_rad(const Trace& trace) {
 }
 
 double first_slave_contact_time_s(const Trace& trace) {
-  return time_of(trace, first_tick(trace, [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0; }));
+  const double tick = first_tick(
+      trace, [&](std::size_t i) { return trace.slave_peak_force_N[i] > 0 || is_unknown_force(trace, i); });
+  return tick >= 0 && is_unknown_force(trace, static_cast<std::size_t>(tick)) ? kNoValue
+                                                                              : time_of(trace, tick);
 }
 
 double max_device_force_N(const Trace& trace) {

@@ -5,10 +5,17 @@ namespace remote_touch {
 
 struct Trace;
 
-// Maximum of Trace::slave_peak_force_N, N: forces between the ticks count. Ticks before the first command
-// have none; NaN if there are no others.
+// Forces on the slave are not known in a tick in which it is behind the surface and the normal of the surface
+// is not known; the force columns are then NaN. Ticks before the first command have no force.
+
+// Maximum of Trace::slave_peak_force_N, N: forces between the ticks count. NaN if it is not known in some
+// tick, or if the slave never got a command.
 double max_slave_force_N(const Trace& trace);
-// Fraction of the ticks with a force on the slave.
+// 1 when the scene exerted a force on the slave in any tick, else 0. NaN if the slave never got a command, if
+// the true surface was not known wherever it was, and if the force is not known in some tick and 0 in all
+// others.
+double slave_touched(const Trace& trace);
+// Fraction of the ticks with a force on the slave. NaN if it is not known in some tick.
 double slave_contact_fraction(const Trace& trace);
 // Minimum of Trace::slave_clearance_m, m, over the ticks in which it is known; NaN if there is no such tick.
 double min_slave_clearance_m(const Trace& trace);
@@ -23,7 +30,8 @@ double rms_slave_lag_m(const Trace& trace);
 double rms_slave_lag_angle_rad(const Trace& trace);
 // Maximum magnitude of the force of the device on the hand, N.
 double max_device_force_N(const Trace& trace);
-// Time of the first tick with a force on the slave, s; NaN if there is none.
+// Time of the first tick with a force on the slave, s; NaN if there is none, or if the force is not known in
+// an earlier tick.
 double first_slave_contact_time_s(const Trace& trace);
 // Time of first contact of the slave less that of the first tick in which the device exerts a force on the
 // hand, s. Positive: the hand is warned. NaN if one of them never happens.

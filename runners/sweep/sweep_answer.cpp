@@ -116,8 +116,9 @@ void add_differences(Figure& figure, const Asked& asked, const SweepQuestion& qu
   const bool common =
       std::find(axes.common_noise.begin(), axes.common_noise.end(), between) != axes.common_noise.end();
   figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) +
-                    ", in pairs of runs with " + (common ? "the same" : "independent") +
-                    " noise; p is that of the sign test for an event, else of Student's t test with a "
+                    ", in pairs of runs with the same replicate" +
+                    (common ? " and the same noise" : ", whose noise is independent") +
+                    "; p is that of the sign test for an event, else of Student's t test with a "
                     "correction for skewness; adjusted_p: after Holm, for the rows of a table. ";
   for (const std::string& measure : question.differences) {
     number_of_column(result.measures, measure, "difference");
@@ -141,9 +142,10 @@ std::string event_of(const Asked& asked, const SweepQuestion& question) {
   if (question.along.empty() && !(names_no_measure(question) && has_axis)) return {};
   const std::string& event = asked.event;
   if (event.empty() && !question.along.empty())
-    throw InputError("along " + printable(question.along),
-                     "no run has popped_through or tool_popped_through: expected the measure of an event as "
-                     "limit");
+    throw InputError(
+        "along " + printable(question.along),
+        "no run has popped_through, tool_popped_through or slave_touched: expected the measure of an event as "
+        "limit");
   return event;
 }
 
@@ -171,7 +173,9 @@ std::vector<std::size_t> axes_with_common_noise(const Json& config, std::size_t 
 
 std::string default_event(const SweepResult& result) {
   for (const Column& measure : result.measures) {
-    if (measure.name != "popped_through" && measure.name != "tool_popped_through") continue;
+    if (measure.name != "popped_through" && measure.name != "tool_popped_through" &&
+        measure.name != "slave_touched")
+      continue;
     const auto& values = std::get<std::vector<double>>(measure.values);
     if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); }))
       return measure.name;

@@ -29,8 +29,8 @@ struct SweepQuestion {
   std::string between;
 };
 
-// Returns popped_through or tool_popped_through if the sweep has it and it is known in a run; else an empty
-// text.
+// Returns popped_through, tool_popped_through or slave_touched if the sweep has it and it is known in a run;
+// else an empty text.
 std::string default_event(const SweepResult& result);
 
 // The name of such a figure.

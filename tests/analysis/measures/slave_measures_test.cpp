@@ -45,6 +45,7 @@ const std::vector<Tick> kTouch = {
 TEST(SlaveMeasures, AreThoseOfTheSlave) {
   const Trace trace = trace_of(kTouch);
   EXPECT_EQ(max_slave_force_N(trace), 7);
+  EXPECT_EQ(slave_touched(trace), 1);
   EXPECT_NEAR(slave_contact_fraction(trace), 0.4, 1e-15);
   EXPECT_EQ(min_slave_clearance_m(trace), -0.002);
   EXPECT_NEAR(rms_slave_lag_m(trace), std::sqrt(9e-6 / 5), 1e-15);
@@ -60,6 +61,8 @@ TEST(SlaveMeasures, HaveNoValueForWhatDidNotHappen) {
   const Trace trace = trace_of({{0, 0, kUnknown, 0}, {0, 0, kUnknown, 0}});
   EXPECT_EQ(max_slave_force_N(trace), 0);
   EXPECT_TRUE(std::isnan(min_slave_clearance_m(trace)));
+  EXPECT_TRUE(std::isnan(slave_touched(trace))) << "there is no surface to touch";
+  EXPECT_EQ(slave_touched(trace_of({{0, 0, kUnknown, 0}, {0, 0, 0.001, 0}})), 0);
   EXPECT_TRUE(std::isnan(first_slave_contact_time_s(trace)));
   EXPECT_TRUE(std::isnan(slave_anticipation_s(trace)));
   EXPECT_TRUE(std::isnan(command_packet_rate_per_s(trace_of({{0, 0, 0, 0}}))));
@@ -128,7 +131,7 @@ TEST(SlaveMeasures, BelongToRunsWithASlave) {
     EXPECT_TRUE(std::isnan(value_of(measure, without))) << measure.name;
     ++measures;
   }
-  EXPECT_EQ(measures, 11);
+  EXPECT_EQ(measures, 12);
   EXPECT_EQ(value_of(measure_named("max_slave_force"), with), 7);
 }
 

@@ -65,6 +65,15 @@ TEST(SweepAnswers, WithoutAQuestionHaveLimitsAndMeans) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 }
 
+TEST(SweepAnswers, TheEventOfASlaveIsThatItTouched) {
+  SweepResult result = sweep();
+  result.measures[0].name = "slave_touched";
+  EXPECT_EQ(default_event(result), "slave_touched");
+  EXPECT_HAS(sweep_answer(result, kConfig, {}).caption, "the x at which slave_touched is above 0.5");
+  result.measures[0].name = "slave_contact_fraction";
+  EXPECT_EQ(default_event(result), "");
+}
+
 TEST(SweepAnswers, HaveWhatWasAsked) {
   SweepQuestion means;
   means.means = {"max_force"}, means.by = {"r_c"};
@@ -73,7 +82,8 @@ TEST(SweepAnswers, HaveWhatWasAsked) {
   differences.differences = {"max_force"};
   const Figure answer = sweep_answer(sweep(), kConfig, differences);
   EXPECT_EQ(answer.tables.front().name, "difference_max_force");
-  EXPECT_HAS(answer.caption, "from method = old");
+  EXPECT_HAS(answer.caption,
+             "from method = old, in pairs of runs with the same replicate, whose noise is independent;");
 }
 
 // One panel with a curve for each method, over r_c.
