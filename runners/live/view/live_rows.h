@@ -16,14 +16,15 @@ class LiveRows {
   std::size_t length() const { return trace_.length(); }
   void append(const LiveTick& tick, double haptic_rate_hz, const DevicePlacement& placement);
 
-  // Returns the columns of the trace, whose force and torque are those that the renderer commands. Adds
-  // `device_force` and, for a tool, `device_torque`, which were written to the device after the safety gate.
+  // Returns the columns of the trace, whose force and torque are those of the renderer. Adds `device_force`
+  // and, for a tool, `device_torque`, which were written to the device after the safety gate. With a slave it
+  // adds `commanded_force`, the force before the gate, which may be the slave's and not the renderer's.
   // Adds `tick_interval`, by which a page counts missed deadlines, and `gate`, the state of the gate.
   std::vector<Column> columns() const;
 
  private:
   Trace trace_;
-  std::vector<double> force_N_, torque_Nm_;  // world frame, three numbers a row
+  std::vector<double> force_N_, torque_Nm_, commanded_N_;  // world frame, three numbers a row
   std::vector<double> interval_s_;
   std::vector<std::int32_t> gate_;
 };

@@ -51,6 +51,17 @@ std::string text_with(const char* format, double value) {
   return text;
 }
 
+void find_hardest_hit(const ColumnSource& trace, std::vector<TraceEvent>& events) {
+  const auto force_N = values_or_none<double>(trace, "slave_peak_force");
+  double largest_N = 0;
+  std::size_t tick = 0;
+  for (std::size_t i = 0; i < force_N.size(); ++i)
+    if (force_N[i] > largest_N) largest_N = force_N[i], tick = i;  // false for NaN
+  if (largest_N > 0)
+    events.push_back(
+        {tick, "hardest hit", text_with("The largest force of the scene on the slave, %.3g N.", largest_N)});
+}
+
 void find_largest_forces(const ColumnSource& trace, std::vector<TraceEvent>& events) {
   const auto force_N = values_or_none<double>(trace, "force");
   double largest_N = 0, largest_jump_N = 0;
@@ -66,8 +77,9 @@ void find_largest_forces(const ColumnSource& trace, std::vector<TraceEvent>& eve
   if (largest_jump_N > 0)
     events.push_back({jump_tick, "force jump",
                       text_with("The largest change of the force, %.3g N in one tick.", largest_jump_N)});
-  if (largest_N > 0)
-    events.push_back({tick, "largest force", text_with("The largest force, %.3g N.", largest_N)});
+  const char* const format = trace.has("slave_peak_force") ? "The largest force of the renderer, %.3g N."
+                                                           : "The largest force, %.3g N.";
+  if (largest_N > 0) events.push_back({tick, "largest force", text_with(format, largest_N)});
 }
 
 // exhausted: the value of the column that means that the tick did not converge.
@@ -135,6 +147,7 @@ std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vecto
   find_pop_throughs(trace, held_depth_m, events);
   find_first_contact(trace, events);
   find_first_slave_contact(trace, events);
+  find_hardest_hit(trace, events);
   find_largest_forces(trace, events);
   if (trace.has("budget_exhausted"))
     find_spells(trace, "budget_exhausted", 1, events);

@@ -18,6 +18,7 @@ struct TraceEvent {
 //   pop-through    the proxy's centre passes through the true surface to its back, see surface_side.h
 //   first contact  the first tick with a contact
 //   slave contact  the first tick with a force of the scene on the slave
+//   hardest hit    the first tick with the largest force of the scene on the slave
 //   force jump     the largest change of the force from one tick to the next
 //   largest force  the first tick with the largest force
 //   not converged  the first tick of each spell in which a tick ended before the proxy or tool had converged,

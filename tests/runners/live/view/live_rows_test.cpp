@@ -29,8 +29,30 @@ TEST(LiveRows, HaveTheColumnsOfASlaveAndOneForceOfTheDevice) {
     EXPECT_EQ(count(with, name), 1) << name;
     EXPECT_EQ(count(without, name), 0) << name;
   }
+  EXPECT_EQ(count(with, "commanded_force"), 1);
+  EXPECT_EQ(count(without, "commanded_force"), 0) << "it is the renderer's force";
   EXPECT_EQ(count(with, "device_force"), 1);
   EXPECT_EQ(count(without, "device_force"), 1);
+}
+
+// The hand feels the slave here, and the safety gate has reduced its force.
+TEST(LiveRows, TheCommandedForceIsThatBeforeTheGate) {
+  LiveTick tick;
+  tick.slave = SlaveState{};
+  tick.out.force_N = Vec3(0, 20, 0);
+  tick.command.force_N = Vec3(0, 0.5, 0);
+  tick.written.force_N = Vec3(0, 0.25, 0);
+  LiveRows rows;
+  rows.append(tick, 1000, DevicePlacement({}));
+  const std::pair<const char*, double> expected[] = {
+      {"force", 20}, {"commanded_force", 0.5}, {"device_force", 0.25}};
+  const std::vector<Column> columns = rows.columns();
+  for (const auto& [name, value_N] : expected) {
+    const auto found = std::find_if(columns.begin(), columns.end(),
+                                    [name = name](const Column& column) { return column.name == name; });
+    ASSERT_NE(found, columns.end()) << name;
+    EXPECT_EQ(std::get<std::vector<double>>(found->values)[1], value_N) << name;
+  }
 }
 
 }  // namespace

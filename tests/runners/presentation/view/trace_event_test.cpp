@@ -45,6 +45,17 @@ TEST(TraceEvents, HaveTheLargestForceAndTheLargestJump) {
   EXPECT_EQ(found({column("force", Doubles{0, 0, 0, 0, 0, 0}, 3)}), Texts{});
 }
 
+TEST(TraceEvents, HaveTheFirstAndTheHardestContactOfASlave) {
+  EXPECT_EQ(found({column("slave_peak_force", Doubles{NAN, 0, 2, 7, 7, 3})}),
+            (Texts{"2 slave contact", "3 hardest hit"}));
+  EXPECT_EQ(found({column("slave_peak_force", Doubles{NAN, 0, 0})}), Texts{});
+  const auto events = trace_events(ColumnsInMemory(
+      {column("slave_peak_force", Doubles{0, 12.34}), column("force", Doubles{0, 2, 0, 0, 2, 0}, 3)}));
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(events[0].text, "The largest force of the renderer, 2 N.");
+  EXPECT_EQ(events[2].text, "The largest force of the scene on the slave, 12.3 N.");
+}
+
 TEST(TraceEvents, HaveTheFirstContact) {
   EXPECT_EQ(found({column("contact_count", Integers{0, 0, 2, 0, 1})}), Texts{"2 first contact"});
   EXPECT_EQ(found({column("contact_count", Integers{0, 0})}), Texts{});

@@ -25,7 +25,7 @@ export const components = [["#e0525f", "#a81e3c"], ["#7fd06a", "#4f9a2a"], ["#7f
 // Kinds of events, on both grounds.
 export const eventColours: Record<string, string> = {
   "pop-through": "#df225d", divergence: "#7b5bf0", "force jump": "#bf7c00", "largest force": "#c86034", "first contact": "#228f6b",
-  "not converged": "#7f8291", task: "#0088bd", "slave contact": "#ff2dcd",
+  "not converged": "#7f8291", task: "#0088bd", "slave contact": "#ff2dcd", "hardest hit": "#7830f8",
 };
 
 const onLight = new Map<string, string>([...Object.values(table), ...components].map(([dark, light]) => [dark, light ?? dark]));

@@ -158,6 +158,12 @@ export class Run {
   get forceName(): string {
     return this.columns.has("device_force") ? "device_force" : "force";
   }
+  // The column of the force that the device is to exert; null if it is not known. In a live run with a slave it is not the
+  // force of the renderer. A stored run has only the force that the device exerts on the hand of a slave's operator.
+  get commandedForceName(): string | null {
+    if (this.columns.has("commanded_force")) return "commanded_force";
+    return this.columns.has("slave_position") ? null : "force";
+  }
   // The surface from which signed_distance is measured.
   get truthName(): string {
     return this.stored.truth?.stays ? "true surface at the last capture" : "true surface";

@@ -11,9 +11,9 @@ export interface Trouble { camera: string; force: string }
 // A statement about the force that the safety gate passes. gate: it passes none; limited: it passes less than is commanded.
 export interface Limit { kind: "gate" | "limited"; text: string }
 
-// Returns why the device receives another force than the renderer commands; null if it receives that force.
+// Returns why the device receives another force than is commanded; null if it receives that force.
 export function limitOf(run: Run, tick: number): Limit | null {
-  const sent = run.vector("device_force", tick), commanded = run.vector("force", tick);
+  const sent = run.vector("device_force", tick), commanded = run.vector(run.commandedForceName ?? "force", tick);
   const size = (v: Vector) => Math.hypot(...v), apart = size(sent.map((x, k) => x - commanded[k]) as Vector);
   if (!(apart > 0.01 * size(commanded) + 0.01)) return null;
   const newtons = (v: Vector) => `${digits(Number(size(v).toPrecision(3)))} N`, gate = run.column("gate").text(tick);

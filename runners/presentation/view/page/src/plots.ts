@@ -284,11 +284,12 @@ export class Plot {
   }
 }
 
-// The force on the hand; of a device what it exerts, and dashed what the renderer commands.
+// The force on the hand; of a device what it exerts, and dashed what is commanded, or the renderer's force if that is not known.
 export function forceCurves(runs: Run[]): Curve[] {
   const name = runs[0].forceName, felt = curvesOf(runs, name, colours.force, name === "force" ? "force" : "force of the device");
+  const commanded = runs[0].commandedForceName, label = commanded ? "commanded" : "force of the renderer";
   return runs.length > 1 || name === "force" ? felt
-    : [...felt, { column: runs[0].column("force"), colour: colours.slave, label: "commanded", dashed: true }];
+    : [...felt, { column: runs[0].column(commanded ?? "force"), colour: colours.slave, label, dashed: true }];
 }
 
 export function curvesOf(runs: Run[], name: string, colour: string, label: string): Curve[] {

@@ -2,7 +2,7 @@
 import { eventColours } from "./colours";
 import type { Run, RunEvent } from "./data";
 
-const byImportance = ["divergence", "pop-through", "slave contact", "force jump", "largest force", "first contact", "task", "not converged"];
+const byImportance = ["divergence", "pop-through", "slave contact", "hardest hit", "force jump", "largest force", "first contact", "task", "not converged"];
 
 // Returns the events of one run, or of both runs with the number of the run in the text.
 export function eventsOf(runs: Run[]): RunEvent[] {
