@@ -9,8 +9,9 @@ from plotting.plot_error import PlotError
 from plotting.page import CSS, write_page
 from plotting.scorecard_plots import CSS as PLOT_CSS
 from plotting.scorecard_plots import level_text, looks_css, noise_plot, shapes
-from plotting.scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, level_heads,
-                                       level_tables, measure_table, overview_table, success_table, threshold_value)
+from plotting.scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, has_rule_before,
+                                       level_heads, level_tables, measure_table, overview_table, success_table,
+                                       threshold_value)
 
 SCHEMA = "remote-touch-scorecard/5"
 # /4 has no thresholds; the weaknesses of /3 also have the key "shown" in place of "significant".
@@ -64,6 +65,28 @@ without noise are in small print. A method that succeeds only where it is easy i
 the forces of this page.</p><ul>{listed}</ul>"""
 
 
+def rule_text(card):
+    """What success means."""
+    if not has_rule_before(card):
+        return """<p><b>Success</b> has a rule for each task, which stands below the title of each scene. It is the same for \
+all methods.</p>"""
+    return """<p><b>Success</b> in most scenes is a held surface, by one rule for all methods. Judged is the point that touches: of a \
+ball the point that faces the surface, of a point the point itself, of direct rendering (a spring without a proxy) \
+the place where its force would end. From 0.1 s after the HIP got below the true surface, this point must never be \
+farther from it than the tolerance, below or above, and there must be a force in 90 % of these ticks. The rule before \
+allowed a ball to sink three times as far as a point, did not count floating, and looked at the last tick only; its \
+fractions stand beside those of the new one. Where the truth is not known in more than a tenth of these ticks, a run is no \
+success.</p>"""
+
+
+def tuned_text(card):
+    """Which seeds were used before, for cards with a method that was tuned with them."""
+    if not any("tracked" in method["name"] for method in card["methods"]):
+        return ""
+    return (f'The parameters of the tracked sheet were chosen with seeds 1 to {card["last_tuned_seed"]:d}, which no run here '
+            "uses. ")
+
+
 def how_to_read(card):
     """What the reader of the tables must know."""
     return f"""<h2 id="reading">How to read the tables</h2>
@@ -71,17 +94,10 @@ def how_to_read(card):
 noise as often as others at all levels with noise. Noise is given in units of the contact radius \
 r_c = {1e3 * card["contact_radius_m"]:g} mm ("own": the scene's own). It depends on \
 the seed {card["seed"]:d}, the level and the number of the run, not on the method: all methods got the same points in \
-the same frames. The parameters of the tracked sheet were chosen with seeds 1 to {card["last_tuned_seed"]:d}, which no \
-run here uses. Lines are fractions of successful runs with Wilson's 95 % intervals. Where there is no noise and all \
+the same frames. {tuned_text(card)}Lines are fractions of successful runs with Wilson's 95 % intervals. Where there is no noise and all \
 runs of a method have the same numbers to the last bit, they count as one run. Runs without noise are never mixed with \
 the others.</p>
-<p><b>Success</b> in most scenes is a held surface, by one rule for all methods. Judged is the point that touches: of a \
-ball the point that faces the surface, of a point the point itself, of direct rendering (a spring without a proxy) \
-the place where its force would end. From 0.1 s after the HIP got below the true surface, this point must never be \
-farther from it than the tolerance, below or above, and there must be a force in 90 % of these ticks. The rule before \
-allowed a ball to sink three times as far as a point, did not count floating, and looked at the last tick only; its \
-fractions stand beside those of the new one. Where the truth is not known in more than a tenth of these ticks, a run is no \
-success.</p>
+{rule_text(card)}
 <p><b>Best and worst</b> are marked only where one method differs from all others by more than chance: fractions by the \
 exact sign test, other measures by Student's t with a correction for skewness, run by run over all levels with noise. \
 The p values of all pairs of methods in all scenes and measures of this page are corrected together (Holm), so that \

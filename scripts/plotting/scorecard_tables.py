@@ -68,18 +68,23 @@ def threshold_cell(counts):
                 f"<small>{share(counts['noise_free_below'], counts['noise_free_runs'])}</small>")
 
 
+def has_rule_before(card):
+    """Whether a scene was judged by an earlier rule too, as scenes of a held surface are."""
+    return any(one["old"] is not None for scene in card["scenes"] for one in scene["success"])
+
+
 def overview_table(card):
     """Successes of all scenes together, how often each method stands out, and how many runs are below each threshold of
     perception; the most successful method first."""
     interval = "<br><small>mean over the scenes, 95 % interval</small>"
-    heads = ["", f"successes with noise{interval}", f"successes without noise{interval}",
-             f"by the rule before, with noise{interval}",
-             f"scenes held in more than {100 * card['held_fraction']:g} % of the runs", "best alone", "worst alone",
+    before = [f"by the rule before, with noise{interval}"] if has_rule_before(card) else []
+    heads = ["", f"successes with noise{interval}", f"successes without noise{interval}", *before,
+             f"scenes {'held' if before else 'with success'} in more than {100 * card['held_fraction']:g} % of the runs", "best alone", "worst alone",
              *(f"{esc(one['measure'])} below {threshold_value(one)}<br><small>successful runs with noise; without"
                "</small>" for one in card["thresholds"])]
     rows = named_rows(card, card["methods"], lambda method: [
         cell(with_interval(method["success"], 1)), cell(with_interval(method["noise_free"], 1)),
-        cell(with_interval(method["old_success"], 1)),
+        *(cell(with_interval(method["old_success"], 1)) for _ in before),
         cell(f"{method['scenes_held']:d} of {len(card['scenes'])}"), cell(f"{method['scenes_best']:d}"),
         cell(f"{method['scenes_worst']:d}")])
     for one in card["thresholds"]:
@@ -131,16 +136,18 @@ def failure_text(failure, levels, link):
 def success_table(card, scene, link):
     """Successes at each noise level and over all, and a typical failure. link: from its file to where that lies."""
     levels = level_heads(card, scene)
+    before = ["by the rule before"] if has_rule_before(card) else []
 
     def cells(one):
         for share in one["levels"]:
             successes, runs = share["successes"], share["runs"]
             yield cell(f"{successes:d}/{runs:d}", "all" if successes == runs else "zero" if successes == 0 else "some")
         yield cell(share_text(one["overall"]), MARKS[one["mark"]])
-        yield cell("-" if one["old"] is None else f"{one['old']['overall']['fraction']:.2f}")
+        for _ in before:
+            yield cell("-" if one["old"] is None else f"{one['old']['overall']['fraction']:.2f}")
         yield cell(failure_text(one["failure"], levels, link), "left")
 
-    heads = ["noise / r_c", *levels, "with noise, 95 % interval", "by the rule before",
+    heads = ["noise / r_c", *levels, "with noise, 95 % interval", *before,
              "a typical failure, at the lowest noise that has one"]
     return table(heads, named_rows(card, scene["success"], cells))
 

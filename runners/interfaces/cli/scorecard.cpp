@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <string>
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
@@ -24,15 +27,30 @@ void require_inputs_kept(const ScorecardRequest& request) {
         require_different_file(std::filesystem::path(request.folder) / written, name);
 }
 
+// Prints the noise of each column of a scene.
+void print_levels(const std::vector<double>& noise_m, int width) {
+  std::printf("  %-*s", width, "noise in mm");
+  for (const double sigma_m : noise_m)
+    if (std::isnan(sigma_m))
+      std::printf(" %7s", "own");
+    else
+      std::printf(" %7.3g", 1e3 * sigma_m);
+  std::printf("\n");
+}
+
 void print(const ScorecardReport& report) {
   const Scorecard& card = report.card;
+  std::size_t width = 11;
+  for (const std::string& method : card.methods) width = std::max(width, method.size());
+  if (!card.scenes.empty()) std::printf("successes/runs of each method, over the noise\n");
   for (const SceneScore& scene : card.scenes) {
     std::printf("%s\n", scene.name.c_str());
     if (!scene.truth.empty()) std::printf("  truth: %s\n", printable(scene.truth).c_str());
+    print_levels(scene.noise_m, static_cast<int>(width));
     for (std::size_t c = 0; c < card.methods.size(); ++c) {
-      std::printf("  %-18s", card.methods[c].c_str());
+      std::printf("  %-*s", static_cast<int>(width), card.methods[c].c_str());
       for (const Proportion& fraction : scene.success[c].at_level)
-        std::printf(" %3d/%d", fraction.events, fraction.runs);
+        std::printf(" %7s", (std::to_string(fraction.events) + "/" + std::to_string(fraction.runs)).c_str());
       std::printf("\n");
     }
   }
