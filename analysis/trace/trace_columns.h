@@ -11,7 +11,7 @@ TRACE_COLUMN(hip_position_m, Vec3, "hip_position", "m", always, t.device.positio
              "haptic interface point, world frame")
 TRACE_COLUMN(proxy_position_m, Vec3, "proxy_position", "m", always, t.out.proxy_W,
              proxy_or_tool("centre of the proxy, world frame", "centre of mass of the tool, world frame"))
-TRACE_COLUMN(force_N, Vec3, "force", "N", always, t.out.force_N, "force on the hand, world frame")
+TRACE_COLUMN(force_N, Vec3, "force", "N", always, t.out.force_N, "force of the renderer, world frame")
 TRACE_COLUMN(state, std::int32_t, "state", "1", always, t.out.state,
              proxy_or_tool("state of the proxy", "state of the tool"), names("free", "contact", "entrenched"))
 TRACE_COLUMN(normal, Vec3, "normal", "1", always, t.out.normal_W,

@@ -145,8 +145,8 @@ Panel radius_panel(Figure& figure, const std::vector<Needed>& all) {
           [](const Needed& n) { return least_radius_m(n.link); }},
          {"latest", "m", "bound without noise, the organ is seen a frame late",
           [](const Needed& n) { return latest_radius_m(n.link); }}}));
-    panel.curves.push_back({name, "delay", "least", CurveStyle::band, "derived, " + hz + " Hz", 0, "latest"});
-    panel.curves.push_back({name, "delay", "radius", CurveStyle::dots, "measured, " + hz + " Hz"});
+    panel.curves.push_back({name, "delay", "least", CurveStyle::band, hz + " Hz, derived", 0, "latest"});
+    panel.curves.push_back({name, "delay", "radius", CurveStyle::dots, hz + " Hz"});
   }
   return panel;
 }
@@ -214,7 +214,7 @@ Figure figure_steer_robot(FigureContext& context) {
   Figure figure{
       "steer-robot", "A slave behind a delay over an organ that moves",
       "A hand holds a slave robot over a plane that moves up and down with an amplitude of 20 mm at 0.5 "
-      "Hz; the points have 1 mm of noise. Upper panel: the radius of the forbidden region at which the "
+      "Hz; the points have 1 mm of noise, and frames arrive without a delay. Upper panel: the radius of the forbidden region at which the "
       "slave just does not touch the plane (dots), and the bounds derived from delay, bandwidth and age of "
       "the frames (bands). Lower panel: the largest force on the slave, for each force that the hand may "
       "feel. Simulated."};

@@ -43,7 +43,7 @@ TEST(ParameterDescription, OfASectionIsThatOfEveryEntryThatHasIt) {
 
 TEST(ParameterDescription, OfATraceIsThatOfAColumn) {
   EXPECT_EQ(described("trace.force"),
-            "trace.force: a column of a trace: force on the hand, world frame\n"
+            "trace.force: a column of a trace: force of the renderer, world frame\n"
             "  unit N; 3 in each row; in every run\n");
   EXPECT_HAS(described("trace.state"), "0 free, 1 contact, 2 entrenched\n  with a tool: ");
 }

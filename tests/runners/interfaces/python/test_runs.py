@@ -102,7 +102,7 @@ def test_no_column_is_copied():
 def test_units_names_and_coordinates():
     run = rt.run(PRESS)
     assert run.force.dims == ("time", "xyz") and list(run.xyz.values) == ["x", "y", "z"]
-    assert run.force.attrs["units"] == "N" and "force on the hand" in run.force.attrs["long_name"]
+    assert run.force.attrs["units"] == "N" and "force of the renderer" in run.force.attrs["long_name"]
     assert run.time.attrs["units"] == "s" and run.sizes["time"] == 200
     assert run.state.attrs["flag_meanings"] == "free contact entrenched"
     assert list(run.state.attrs["flag_values"]) == [0, 1, 2]
