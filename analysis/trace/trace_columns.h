@@ -123,7 +123,7 @@ TRACE_COLUMN(slave_peak_force_N, double, "slave_peak_force", "N", slave, t.slave
              "largest magnitude of this force in the last tick")
 TRACE_COLUMN(slave_clearance_m, double, "slave_clearance", "m", slave, t.slave->clearance_m,
              proxy_or_tool("distance of the slave's ball from the true surface, negative in contact",
-                           "distance of the slave's tool from the true surface, negative in contact"))
+                           "distance of the slave's tool from the true surface, negative behind it"))
 TRACE_COLUMN(command_packets, std::int32_t, "command_packets", "1", slave, t.slave->command_packets,
              "number of commands that were sent to the slave so far")
 TRACE_COLUMN(force_packets, std::int32_t, "force_packets", "1", slave, t.slave->force_packets,

@@ -152,6 +152,27 @@ void check_slave_tool(const ExperimentConfiguration& configuration) {
                      "force and position, not that of torque and rotation");
 }
 
+// Passivity control balances the work of the force that it commands, with the motion that the device
+// measures.
+void check_passive_device(const ExperimentConfiguration& configuration) {
+  if (!configuration.device || configuration.feedback->force != Feedback::passive_slave_force) return;
+  const DeviceSettings& d = *configuration.device;
+  const std::pair<std::string, bool> changed[] = {
+      {"force_x = false", !d.motors.force_x},
+      {"force_y = false", !d.motors.force_y},
+      {"force_z = false", !d.motors.force_z},
+      {"max_force_N = " + shown(d.motors.max_force_N), d.motors.max_force_N > 0},
+      {"position_resolution_m = " + shown(d.position_resolution_m), d.position_resolution_m > 0},
+      {"delay_ticks = " + std::to_string(d.delay_ticks), d.delay_ticks > 0},
+      {"contact_damping_Ns_per_m = " + shown(d.contact_damping_Ns_per_m), d.contact_damping_Ns_per_m != 0}};
+  for (const auto& [setting, is_changed] : changed)
+    if (is_changed)
+      throw InputError(
+          "device." + setting,
+          "expected the default with feedback.force = passive-slave-force: passivity control needs "
+          "the exact motion, and a device that exerts the whole force in the same tick");
+}
+
 }  // namespace
 
 bool renders_tool(const ExperimentConfiguration& configuration) {
@@ -180,6 +201,7 @@ void check_slave(ExperimentConfiguration& configuration) {
                      "expected 0, and a length as command_link.least: the size of a position depends on the "
                      "origin");
   if (renders_tool(configuration)) check_slave_tool(configuration);
+  check_passive_device(configuration);
 }
 
 void check_device(ExperimentConfiguration& configuration) {

@@ -17,31 +17,60 @@ namespace {
 // the scorecard.
 constexpr double kMuchEnergy_J = 5;
 
+bool is_started(const Trace& trace) {
+  return std::any_of(trace.received_command_m.begin(), trace.received_command_m.end(),
+                     [](const Vec3& command) { return command.allFinite(); });
+}
+
 // Returns true if every command that the slave had is the first one that it was meant to have, and later ones
-// were meant for it. Ticks before the first command have NaN.
+// were meant for it. Ticks before the first command have NaN. A command that is sent in the last tick cannot
+// move the slave any more.
 bool kept_first_command(const Trace& trace) {
   const auto first = std::find_if(trace.received_command_m.begin(), trace.received_command_m.end(),
                                   [](const Vec3& command) { return command.allFinite(); });
-  if (first == trace.received_command_m.end()) return false;
   const auto is_first = [&](const Vec3& command) { return command == *first; };
   const auto is_other = [&](const Vec3& command) { return command.allFinite() && command != *first; };
   return std::all_of(first, trace.received_command_m.end(), is_first) &&
-         std::any_of(trace.slave_command_m.begin(), trace.slave_command_m.end(), is_other);
+         std::any_of(trace.slave_command_m.begin(), trace.slave_command_m.end() - 1, is_other);
+}
+
+// Only a slave that the hand is to feel sends forces.
+bool sends_forces(const Trace& trace) {
+  return trace.force_packets.back() > 0;
+}
+
+bool feels_nothing(const Trace& trace) {
+  const auto is_zero = [](const Vec3& force) { return force.isZero(0); };
+  return !std::isnan(first_slave_contact_time_s(trace)) &&
+         std::all_of(trace.device_force_N.begin(), trace.device_force_N.end(), is_zero);
 }
 
 }  // namespace
 
 std::vector<Note> slave_notes(const Trace& trace) {
   std::vector<Note> notes;
-  if (!trace.has_slave()) return notes;
+  if (!trace.has_slave() || trace.length() == 0) return notes;
+  if (!is_started(trace))
+    return {{"slave without command", "the slave never started: no command was finite"}};
   const auto is_unknown = [](double clearance) { return std::isnan(clearance); };
   if (std::all_of(trace.slave_clearance_m.begin(), trace.slave_clearance_m.end(), is_unknown))
     notes.push_back({"slave without surface",
                      "the true surface is not known where the slave was, so it could not touch anything"});
+  else if (std::isnan(max_slave_force_N(trace)))
+    notes.push_back(
+        {"slave without surface",
+         "the normal of the true surface is not known where the slave was behind it, so there was "
+         "no force on it, and measures of its force have no value"});
   if (kept_first_command(trace))
     notes.push_back(
         {"slave without command",
          "the slave received no command after its first: all were lost, late or in the dead-band"});
+  if (!sends_forces(trace)) return notes;
+  if (feels_nothing(trace))
+    notes.push_back(
+        {"slave without command",
+         "the hand felt no force of the slave: all were lost, late, in the dead-band, or stopped by "
+         "gain or device"});
   if (const double given_J = max_energy_injected_J(trace); given_J > kMuchEnergy_J) {
     char text[160];
     std::snprintf(

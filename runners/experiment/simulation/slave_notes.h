@@ -11,10 +11,13 @@ namespace remote_touch {
 
 struct Trace;
 
-// Returns a note "slave without surface" if the true surface was not known wherever the slave was, and a note
-// "slave without command" if it received no command after its first one although others were meant for it,
-// and a note "slave loop gains energy" if the device gave the hand more than 5 J, as an unstable loop does.
-// Returns no notes for a run without a slave.
+// Returns these notes; none for a run without a slave.
+// - "slave without surface": the true surface was not known wherever the slave was, or its normal was not
+//   known in some tick in which the slave was behind it.
+// - "slave without command": the slave never started; or it received no command after its first one although
+//   others were meant for it; or it touched, and the hand, which was to feel it, felt no force.
+// - "slave loop gains energy": the device gave the hand more than 5 J, as an unstable loop does, while it
+//   returned the force on the slave.
 std::vector<Note> slave_notes(const Trace& trace);
 
 // Returns notes "setting without effect" on an experiment with a slave:

@@ -76,6 +76,20 @@ TEST(SlaveMeasures, IgnoreTicksBeforeTheFirstCommand) {
   EXPECT_EQ(min_slave_clearance_m(trace_of(ticks)), -0.002);
 }
 
+// The slave is behind the surface in the last tick, where the normal is not known.
+TEST(SlaveMeasures, HaveNoValueForAForceThatIsNotKnown) {
+  const Trace trace = trace_of({{0, 0, 0.001, 0}, {0, kUnknown, -0.001, 1}});
+  EXPECT_TRUE(std::isnan(max_slave_force_N(trace)));
+  EXPECT_TRUE(std::isnan(slave_touched(trace)));
+  EXPECT_TRUE(std::isnan(slave_contact_fraction(trace)));
+  EXPECT_TRUE(std::isnan(first_slave_contact_time_s(trace)));
+  EXPECT_EQ(min_slave_clearance_m(trace), -0.001);
+  const Trace later = trace_of({{0, 3, -0.001, 0}, {0, kUnknown, -0.001, 1}});
+  EXPECT_TRUE(std::isnan(max_slave_force_N(later)));
+  EXPECT_EQ(slave_touched(later), 1);
+  EXPECT_EQ(first_slave_contact_time_s(later), 0);
+}
+
 struct ToolTick {
   bool commands_tool;  // the slave is sent where the renderer's tool is, else where the device is
   double device_rad, tool_rad, slave_rad;

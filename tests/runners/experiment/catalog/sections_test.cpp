@@ -152,5 +152,33 @@ TEST(Sections, RenamedNamesAreThoseOfParametersMeasuresAndColumns) {
   for (const RenamedName& name : renamed_names()) EXPECT_TRUE(names.contains(name.new_name)) << name.new_name;
 }
 
+// Passivity control would balance another force than the device exerts, or another motion than the hand has.
+TEST(Sections, PassivityControlNeedsAnExactDevice) {
+  const auto why_with = [](const std::string& setting) {
+    return refusal([&] {
+      Experiment::load("steer-robot", {"feedback.force=passive-slave-force", "device=" + setting});
+    });
+  };
+  EXPECT_EQ(why_with("{}"), "no InputError");
+  EXPECT_EQ(why_with(R"({"friction_N": 0.1})"), "no InputError");
+  for (const char* setting :
+       {R"({"force_y": false})", R"({"max_force_N": 2})", R"({"position_resolution_m": 5e-5})",
+        R"({"delay_ticks": 1})", R"({"contact_damping_Ns_per_m": -1})"})
+    EXPECT_HAS(why_with(setting), "expected the default with feedback.force = passive-slave-force")
+        << setting;
+  EXPECT_HAS(why_with(R"({"max_force_N": 2})"), "device.max_force_N = 2");
+}
+
+TEST(Sections, TheOverrideThatRemovesTheSlaveRemovesItsLinks) {
+  const Json all = Json::parse(Experiment::load("steer-robot", {"slave=null"}).to_json());
+  for (const char* section :
+       {"slave", "command_link", "force_link", "frame_link", "feedback", "registration"})
+    EXPECT_TRUE(!all.contains(section) || all[section].is_null()) << section;
+  EXPECT_HAS(refusal([] {
+               Experiment::load("steer-robot", {"slave=null", "command_link.delay_s=1"});
+             }),
+             "command_link: expected only in an experiment with the section slave");
+}
+
 }  // namespace
 }  // namespace remote_touch::sections_test

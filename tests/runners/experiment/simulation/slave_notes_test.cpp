@@ -6,6 +6,9 @@
 
 #include <cmath>
 
+#include <cmath>
+
+#include "analysis/trace/trace.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
@@ -47,6 +50,45 @@ TEST(SlaveNotes, SayThatNoCommandArrived) {
             Kinds{"slave without command"});
   EXPECT_EQ(notes_of("steer-robot", {"duration_s=1", "command_link.delay_s=2"}),
             Kinds{"slave without command"});
+}
+
+// A command that is sent in the last tick cannot be received any more.
+TEST(SlaveNotes, AreNoneForARunThatEndsBeforeACommandCanArrive) {
+  EXPECT_EQ(notes_of("steer-robot", {"duration_s=0.002", "command_link.delay_s=0"}), Kinds{});
+}
+
+TEST(SlaveNotes, SayThatTheSlaveNeverStarted) {
+  Trace trace = simulate(Experiment::load("steer-robot", {"duration_s=0.05", "command_link.delay_s=0"}), {});
+  EXPECT_EQ(slave_notes(trace).size(), 0u);
+  const double unknown = std::nan("");
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    trace.received_command_m[i].setConstant(unknown);
+    trace.slave_clearance_m[i] = trace.slave_peak_force_N[i] = unknown;
+  }
+  const std::vector<Note> notes = slave_notes(trace);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_HAS(notes[0].text, "the slave never started");
+}
+
+TEST(SlaveNotes, SayThatNoForceArrived) {
+  const std::vector<std::string> set = {"duration_s=2.5", "feedback.force=slave-force", "feedback.gain=0.05",
+                                        "fixtures=[]"};
+  EXPECT_EQ(notes_of("steer-robot", set), Kinds{});
+  for (const char* link :
+       {"force_link.loss_probability=1", "force_link.delay_s=10", "force_link.least=100"}) {
+    std::vector<std::string> broken = set;
+    broken.emplace_back(link);
+    EXPECT_EQ(notes_of("steer-robot", broken), Kinds{"slave without command"}) << link;
+  }
+}
+
+// The force of a renderer does not pass through the slave, so the slave is not part of its loop.
+TEST(SlaveNotes, BlameTheSlaveOnlyForALoopThatItIsPartOf) {
+  const std::vector<std::string> set = {"duration_s=3", "feedback.force=slave-force"};
+  Trace trace = simulate(Experiment::load("steer-robot", set), {});
+  EXPECT_EQ(slave_notes(trace).size(), 1u);
+  trace.force_packets.assign(trace.length(), 0);
+  EXPECT_EQ(slave_notes(trace).size(), 0u);
 }
 
 // Position-force with the whole force and a delay is unstable against a stiff scene.
@@ -108,6 +150,17 @@ TEST(SlaveNotes, TheSummaryHasTheFirstContactAndTheLargestForce) {
 
 TEST(SlaveNotes, SayThatThereIsNoSurfaceToTouch) {
   EXPECT_EQ(notes_of("fig5.5", {"slave={}"}), Kinds{"slave without surface"});
+}
+
+TEST(SlaveNotes, SayThatTheNormalIsNotKnownBehindTheSurface) {
+  Trace trace = simulate(Experiment::load("steer-robot", {"duration_s=1"}), {});
+  trace.slave_clearance_m.back() = -0.001;
+  EXPECT_EQ(slave_notes(trace).size(), 0u);
+  trace.slave_peak_force_N.back() = std::nan("");
+  const std::vector<Note> notes = slave_notes(trace);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].kind, "slave without surface");
+  EXPECT_HAS(notes[0].text, "normal");
 }
 
 }  // namespace
