@@ -1,4 +1,4 @@
-// What is kept of the runs of one cell.
+// The tally of the runs of one cell.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace remote_touch {
 
-// What the cells of one sweep have in common.
+// The layout that all tallies of one sweep have.
 struct TallyLayout {
   std::size_t measures = 0;    // number of measures
   std::size_t note_kinds = 0;  // number of kinds of notes, at most 31

@@ -46,7 +46,7 @@ double MeasureTally::variance() const {
   const auto n = static_cast<double>(values);
   std::vector<double> scaled = sum.parts();
   for (double& part : scaled) part = std::ldexp(part, -power);
-  ExactSum numerator;
+  UnroundedSum numerator;
   for (const double part : squares.parts()) numerator.add_product(n, std::ldexp(part, -2 * power));
   for (const double a : scaled)
     for (const double b : scaled) numerator.add_product(-a, b);

@@ -1,12 +1,12 @@
-// What is kept of one measure in the runs of a cell.
+// The tally of one measure in the runs of a cell.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 #include <string>
 
-#include "analysis/tally/exact_sum.h"
 #include "analysis/tally/quantile_sketch.h"
+#include "analysis/tally/unrounded_sum.h"
 
 namespace remote_touch {
 
@@ -17,7 +17,8 @@ struct MeasureTally {
   std::int64_t infinite = 0;                               // infinity of either sign
   double least = std::numeric_limits<double>::infinity();  // infinity and -infinity without values
   double greatest = -std::numeric_limits<double>::infinity();
-  ExactSum sum, squares;  // of the values and of their squares; add_square() states the range of the latter
+  UnroundedSum sum,
+      squares;  // sums of the values and of their squares; add_square() states the range of the latter
   QuantileSketch sketch;
 
   void add(double value);  // any double; -0 counts as 0

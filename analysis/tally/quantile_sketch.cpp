@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kDroppedBits = 47;  // of the 52 of the mantissa
+constexpr int kDroppedBits = 47;  // number of the bits, of the 52 of the mantissa
 constexpr std::int32_t kLastBucket = 0x7ff << 5;
 
 }  // namespace

@@ -43,7 +43,7 @@ class QuantileSketch {
 
  private:
   std::vector<std::int32_t> buckets_;  // increasing
-  std::vector<std::int64_t> counts_;   // of these buckets; above 0
+  std::vector<std::int64_t> counts_;   // counts of these buckets; above 0
 };
 
 }  // namespace remote_touch

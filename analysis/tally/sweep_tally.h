@@ -16,15 +16,15 @@ namespace remote_touch {
 // replicates plus the replicate. The same runs in any order, and in any parts, give an equal tally.
 struct SweepTally {
   std::vector<Column> axes;             // one row for each value
-  int replicates = 1;                   // of every cell
+  int replicates = 1;                   // number of runs of every cell
   std::vector<Column> measures;         // name, unit and meaning; no values
-  std::vector<std::string> note_kinds;  // at most 31
+  std::vector<std::string> note_kinds;  // names of the kinds, at most 31
   bool keeps_events = false;            // keep = "events": the numbers of the runs in which an event happened
   std::vector<std::uint64_t> cells;     // the cells of which there are runs, increasing
   std::vector<CellTally> tallies;       // one for each of these cells
   RunRanges held;                       // the runs in the tallies, done or failed
 
-  std::uint64_t cell_count() const;  // of the whole sweep
+  std::uint64_t cell_count() const;  // number of cells of the whole sweep
   std::uint64_t run_count() const { return cell_count() * static_cast<std::uint64_t>(replicates); }
   bool is_whole() const { return held.count() == run_count(); }
   RunRanges missing() const { return held.missing_in({0, run_count()}); }

@@ -55,7 +55,7 @@ class ArrayBuilder {
   void add_notes();
   void add_measure(std::size_t measure);
   void add_sums(const std::string& name, const std::string& meaning, std::size_t measure,
-                ExactSum MeasureTally::*sum);
+                UnroundedSum MeasureTally::*sum);
   void add_sketch(std::size_t measure);
   void add_events(std::size_t measure);
   void add_runs();
@@ -145,7 +145,7 @@ void ArrayBuilder::add_measure(std::size_t measure) {
 }
 
 void ArrayBuilder::add_sums(const std::string& name, const std::string& meaning, std::size_t measure,
-                            ExactSum MeasureTally::*sum) {
+                            UnroundedSum MeasureTally::*sum) {
   const std::size_t cells = tally_.tallies.size();
   std::vector<double> values(parts_ * cells, 0.0);
   for (std::size_t i = 0; i < cells; ++i) {

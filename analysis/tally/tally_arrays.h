@@ -17,7 +17,7 @@ struct TallyArrays {
   };
   struct Group {
     std::string name;
-    std::vector<Column> columns;  // of equal length; their names are within the group
+    std::vector<Column> columns;  // columns of equal length; their names are within the group
   };
   std::vector<Column> scales;
   std::vector<Array> arrays;

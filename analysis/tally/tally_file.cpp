@@ -14,7 +14,8 @@ namespace remote_touch {
 
 namespace {
 
-std::string digest_of(const TallyArrays& arrays) {
+// Returns all columns, each with its path below /tally as its name.
+std::vector<Column> columns_of(const TallyArrays& arrays) {
   std::vector<Column> columns = arrays.scales;
   for (const auto& array : arrays.arrays) columns.push_back(array.column);
   for (const auto& group : arrays.groups)
@@ -22,7 +23,7 @@ std::string digest_of(const TallyArrays& arrays) {
       column.name = group.name + '/' + column.name;
       columns.push_back(std::move(column));
     }
-  return digest(columns);
+  return columns;
 }
 
 const char* keep_of(const SweepTally& tally) {
@@ -88,14 +89,14 @@ bool is_free_in_tallies(const std::string& name) {
 }
 
 std::string digest(const SweepTally& tally) {
-  return digest_of(arrays_of(tally));
+  return digest(columns_of(arrays_of(tally)));
 }
 
 std::string write_tally(const std::filesystem::path& file, const SweepTally& tally,
                         const TextAttributes& attributes) {
   require_distinct_names(file, tally);
   const TallyArrays arrays = arrays_of(tally);
-  const std::string sum = digest_of(arrays);
+  const std::string sum = digest(columns_of(arrays));
   Hdf5Writer hdf5;
   write_root(hdf5, tally, attributes);
   write_arrays(hdf5, tally, arrays);
@@ -124,7 +125,7 @@ class TallyReader {
     for (std::size_t i = 0; i < tally_.measures.size(); ++i) read_measure(i);
     read_lists();
     if (const std::string wrong = tally_.contradiction(); !wrong.empty()) hdf5_.damaged(wrong);
-    if (text("digest") != digest(tally_)) hdf5_.damaged("its digest does not match");
+    require_digest();
     return std::move(tally_);
   }
   std::string text(const std::string& name) const { return attribute(hdf5_.attributes(), name); }
@@ -150,11 +151,12 @@ class TallyReader {
   Int32s counts_or_zeros(const std::string& name) const {
     return has(name) ? values<std::int32_t>(name, cells_) : Int32s(cells_, 0);
   }
+  void require_digest() const;
   void read_plan();
   void read_runs();
   void read_notes();
   void read_measure(std::size_t measure);
-  void read_sums(const std::string& name, std::size_t measure, ExactSum MeasureTally::*sum);
+  void read_sums(const std::string& name, std::size_t measure, UnroundedSum MeasureTally::*sum);
   void read_sketch(std::size_t measure);
   void read_lists();
   CellTally& tally_of_run(std::uint64_t run);
@@ -242,13 +244,13 @@ void TallyReader::read_measure(std::size_t measure) {
   read_sketch(measure);
 }
 
-void TallyReader::read_sums(const std::string& name, std::size_t measure, ExactSum MeasureTally::*sum) {
+void TallyReader::read_sums(const std::string& name, std::size_t measure, UnroundedSum MeasureTally::*sum) {
   const auto all = values<double>(name);
   if (all.empty() || all.size() % cells_ != 0) hdf5_.damaged("/tally/" + name + " has another length");
   for (std::size_t i = 0; i < cells_; ++i) {
     std::vector<double> parts;
     for (std::size_t at = i; at < all.size() && all[at] != 0; at += cells_) parts.push_back(all[at]);
-    std::optional<ExactSum> read = ExactSum::from_parts(parts);
+    std::optional<UnroundedSum> read = UnroundedSum::from_parts(parts);
     if (!read) hdf5_.damaged("/tally/" + name + " is not a sum");
     tally_.tallies[i].measures[measure].*sum = std::move(*read);
   }
@@ -307,6 +309,15 @@ void TallyReader::read_lists() {
     if (!has(name)) continue;
     for (const std::uint64_t run : values<std::uint64_t>(name)) tally_of_run(run).events[i].push_back(run);
   }
+}
+
+// The stored arrays have the digest, and are those of the tally that was read: the means, too.
+void TallyReader::require_digest() const {
+  const std::vector<Column> expected = columns_of(arrays_of(tally_));
+  std::vector<Column> read;
+  for (const Column& each : expected) read.push_back(column(each.name));
+  if (digest(read) != text("digest") || digest(expected) != text("digest"))
+    hdf5_.damaged("its digest does not match");
 }
 
 // Returns the attributes that write_root() does not add itself.

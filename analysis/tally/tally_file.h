@@ -21,7 +21,7 @@ namespace remote_touch {
 //   MEASURE/unknown, infinite  number of NaN, of infinities; absent if there are none in any cell
 //   MEASURE/least, greatest, mean               of the finite values; NaN without such values
 //   MEASURE/standard_deviation                  of them; NaN with fewer than two; rounded to 16 bits
-//   MEASURE/sum, sum_of_squares                 over `part`, too: ExactSum::parts(), filled up with 0
+//   MEASURE/sum, sum_of_squares                 over `part`, too: UnroundedSum::parts(), filled up with 0
 //   MEASURE/median_bucket, bucket_values        the sketch: number of values in the bucket median_bucket +
 //                                               bucket_offset (its first axis); see quantile_sketch.h
 // and groups of lists, which are absent if they are empty:
@@ -30,7 +30,7 @@ namespace remote_touch {
 //   errors/run, error          of each cell with failed runs the first of them, and why it failed
 // Numbers of cells and runs are those of SweepTally.
 
-// Digest of axes, measures and everything that is counted: SHA-256 of the datasets in the order above.
+// SHA-256 of the names and values of all datasets: axes, held runs, and everything that is counted.
 std::string digest(const SweepTally& tally);
 
 // Writes the file and returns its digest. Equal tallies are equal bytes. attributes: configuration and
@@ -44,7 +44,7 @@ bool is_free_in_tallies(const std::string& name);
 
 struct StoredTally {
   SweepTally tally;
-  TextAttributes attributes;  // those of the caller of write_tally()
+  TextAttributes attributes;  // attributes of the caller of write_tally()
   std::string schema = {};
 };
 // Throws InputError, one line, for a file that is not a tally, or was changed since it was written.

@@ -62,7 +62,7 @@ bool Slave::is_far(const Vec3& reference_velocity) const {
 
 Vec3 Slave::contact_force(double before_s, double now_s) {
   const auto depth_at = [&](const Vec3& p_W) { return s_.radius_m - scene_.signed_distance(p_W, now_s); };
-  // After a jump, the speed is that of the ball over the new surface.
+  // The speed after a jump is that of the ball over the new surface.
   const double depth_before = scene_.jumps(before_s, now_s) ? depth_at(depth_W_) : depth_m_;
   depth_m_ = depth_at(state_.position_W), depth_W_ = state_.position_W;
   if (!(depth_m_ > 0) || s_.contact_stiffness_N_per_m == 0) return Vec3::Zero();

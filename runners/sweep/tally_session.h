@@ -31,7 +31,7 @@ class TallySession {
 
   const SweepTally& tally() const { return tally_; }
   std::uint64_t own_runs() const;                        // number of runs of the shard
-  const std::string& digest() const { return digest_; }  // of the file, after run()
+  const std::string& digest() const { return digest_; }  // digest of the file, after run()
 
  private:
   std::vector<std::uint64_t> next_runs(std::size_t count);

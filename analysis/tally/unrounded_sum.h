@@ -14,7 +14,7 @@ namespace remote_touch {
 // predicates", Discrete & Computational Geometry 18 (1997), theorem 10. Most sums fit into three doubles,
 // which are added to from the largest down. Only what these cannot hold goes to a list like Shewchuk's. Sums
 // above 2^1022 are exact, too: a number counts how often 2^1023 was taken out.
-class ExactSum {
+class UnroundedSum {
  public:
   // pre: the value is finite.
   void add(double value);
@@ -27,7 +27,7 @@ class ExactSum {
   // Adds a product of finite values. Exact if it is 0, or at least 2^-968 in magnitude; else it is rounded as
   // a square is. pre: the rounded product is finite.
   void add_product(double a, double b);
-  void add(const ExactSum& other);
+  void add(const UnroundedSum& other);
 
   // Returns the sum, correctly rounded to nearest (even), so infinity if it is above the largest double. The
   // sum of nothing is +0.
@@ -41,14 +41,14 @@ class ExactSum {
   // (-2^1022, 2^1022]. They are infinity alone if is_infinite().
   std::vector<double> parts() const;
   // Returns nothing unless the numbers are what parts() returns for some sum.
-  static std::optional<ExactSum> from_parts(std::span<const double> parts);
+  static std::optional<UnroundedSum> from_parts(std::span<const double> parts);
 
-  bool operator==(const ExactSum& other) const { return parts() == other.parts(); }
+  bool operator==(const UnroundedSum& other) const { return parts() == other.parts(); }
 
  private:
   std::array<double, 3> largest_{};  // their exact sum counts; they may overlap
-  std::vector<double> others_;       // what largest_ cannot hold: nonoverlapping, by increasing magnitude
-  std::int64_t units_ = 0;           // multiples of 2^1023
+  std::vector<double> others_;  // the rest that largest_ cannot hold: nonoverlapping, by increasing magnitude
+  std::int64_t units_ = 0;      // multiples of 2^1023
   bool is_infinite_ = false;
 };
 

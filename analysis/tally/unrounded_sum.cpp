@@ -1,4 +1,4 @@
-#include "analysis/tally/exact_sum.h"
+#include "analysis/tally/unrounded_sum.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,7 +117,7 @@ Total total_of(std::vector<double> others, const std::array<double, 3>& largest,
 
 }  // namespace
 
-void ExactSum::add(double value) {
+void UnroundedSum::add(double value) {
   constexpr std::size_t kMaxOthers = 64;  // more than make_short() leaves
   if (std::abs(value) > kLargest) {
     units_ += unit_taken_from(value);
@@ -133,32 +133,32 @@ void ExactSum::add(double value) {
   units_ += unit_taken_from(largest_[0]);
 }
 
-void ExactSum::add_product(double a, double b) {
+void UnroundedSum::add_product(double a, double b) {
   const double product = a * b;
   add(product);
   add(std::fma(a, b, -product));
 }
 
-void ExactSum::add_square(double value) {
+void UnroundedSum::add_square(double value) {
   if (std::isinf(value * value))
     is_infinite_ = true;
   else
     add_product(value, value);
 }
 
-void ExactSum::add(const ExactSum& other) {
-  const ExactSum terms = other;  // it may be this sum
+void UnroundedSum::add(const UnroundedSum& other) {
+  const UnroundedSum terms = other;  // it may be this sum
   for (const double term : terms.largest_) add(term);
   for (const double term : terms.others_) add(term);
   units_ += terms.units_;
   is_infinite_ = is_infinite_ || terms.is_infinite_;
 }
 
-double ExactSum::value() const {
+double UnroundedSum::value() const {
   return is_infinite_ ? kInfinity : total_of(others_, largest_, units_).value();
 }
 
-std::vector<double> ExactSum::parts() const {
+std::vector<double> UnroundedSum::parts() const {
   if (is_infinite_) return {kInfinity};
   Total rest = total_of(others_, largest_, units_);
   if (std::isinf(rest.value())) return rest.beyond_doubles();
@@ -167,8 +167,8 @@ std::vector<double> ExactSum::parts() const {
   return parts;
 }
 
-std::optional<ExactSum> ExactSum::from_parts(std::span<const double> parts) {
-  ExactSum sum;
+std::optional<UnroundedSum> UnroundedSum::from_parts(std::span<const double> parts) {
+  UnroundedSum sum;
   std::size_t first = 0;
   if (!parts.empty() && std::isinf(parts[0])) {
     sum.is_infinite_ = parts.size() == 1;
