@@ -127,8 +127,10 @@ std::string session_experiment(const SessionReader& session, const std::string& 
   if (!json.is_object())
     throw InputError(path, "damaged (its configuration): expected a file of remote-touch live --record");
   for (const char* part : {"scenario", "trajectory"}) json[part] = {{"name", "live-session"}, {"path", path}};
-  // The hand is the recorded one, and frames come as recorded and at the recorded times.
-  for (const char* section : {"faults", "operator", "device", "live", "safety"}) json.erase(section);
+  // The hand is the recorded one. The frames that come are those that came to the renderer, at the recorded
+  // times.
+  for (const char* section : {"faults", "operator", "device", "live", "safety", "frame_link"})
+    json.erase(section);
   for (const char* setting : {"duration_s", "frame_latency_s", "frame_jitter_s", "frame_drop_probability"})
     json[setting] = 0;
   add_changes(session, json);

@@ -7,14 +7,10 @@
 namespace remote_touch {
 
 // Forgets older positions: a renderer drops a frame that is older than another one, whatever is sent.
-Vec3 FrameLink::slave_at(double time_s) {
+Vec3 FrameSender::slave_at(double time_s) {
   while (slave_.size() > 1 && slave_[1].first <= time_s + kSameArrival_s) slave_.pop_front();
   const bool is_known = !slave_.empty() && slave_.front().first <= time_s + kSameArrival_s;
   return is_known ? slave_.front().second : Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
-}
-
-void FrameLink::on_frame(const Frame& frame) {
-  if (dead_band_.sends(frame, slave_at(frame.captured_s), kernels_)) renderer_.on_frame(frame);
 }
 
 }  // namespace remote_touch

@@ -20,7 +20,7 @@ constexpr std::size_t kReservedForReason = 256;
 CameraFeed::CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing processing,
                        const Renderer& renderer, const RigidTransform& registration, const Clock& clock,
                        std::int64_t start_ns, TripleBuffer<LiveFrame>& out, FrameSink sink,
-                       std::function<void(const Frame&)> on_frame)
+                       std::function<void(const Frame&)> on_frame, FrameChoice sends)
     : source_(std::move(source)),
       processing_(std::move(processing)),
       renderer_(renderer),
@@ -30,6 +30,7 @@ CameraFeed::CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing proc
       out_(out),
       sink_(std::move(sink)),
       on_frame_(std::move(on_frame)),
+      sends_(std::move(sends)),
       newest_s_(start_s_) {
   why_.reserve(kReservedForReason);
 }
@@ -118,8 +119,13 @@ void CameraFeed::handle(SensorFrame& sensed) {
   ++index_;
   processing_.fill(frame, sensed, source_->view(), X_WC_, off);
   processing_.needs.check(frame);
-  renderer_.prepare(frame);
-  send(std::move(frame), sensed.captured_s);
+  if (sends_ && !sends_(frame)) {
+    ++counts_.held_back;
+    newest_s_.store(clock_.now_s(), std::memory_order_relaxed);
+  } else {
+    renderer_.prepare(frame);
+    send(std::move(frame), sensed.captured_s);
+  }
   counts_.processing_s += clock_.now_s() - begin_s;
   sensed_points_.add(sensed, source_->view());  // done after the frame was sent, so as not to delay it
 }

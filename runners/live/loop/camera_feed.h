@@ -24,11 +24,15 @@ struct CameraCounts {
   int skipped = 0;     // frame numbers that never came: not sent, or a newer frame came first
   int reversed = 0;    // not newer than the frame before; dropped
   int incomplete = 0;  // colours that the sensor's view promises are missing, or the size differs; dropped
+  int held_back = 0;   // not sent, because the dead-band of frames did not let them pass
   int overtaken = 0;   // ready, but replaced by a newer one before the servo took them
   int unrecorded = 0;  // dropped, because the recorder's queue was full
   double max_pause_s = 0;
   double processing_s = 0;  // sum over the frames
 };
+
+// Returns true if a processed frame has to be sent to the servo.
+using FrameChoice = std::function<bool(const Frame&)>;
 
 // Frames that the renderer may hold are also held here until nothing else holds them, so that their memory is
 // freed by the thread that calls step().
@@ -39,7 +43,8 @@ class CameraFeed {
 
   CameraFeed(std::unique_ptr<DepthSource> source, FrameProcessing processing, const Renderer& renderer,
              const RigidTransform& registration, const Clock& clock, std::int64_t start_ns,
-             TripleBuffer<LiveFrame>& out, FrameSink sink, std::function<void(const Frame&)> on_frame = {});
+             TripleBuffer<LiveFrame>& out, FrameSink sink, std::function<void(const Frame&)> on_frame = {},
+             FrameChoice sends = {});
 
   // Waits at most patience_s for the next frame and passes it on. Returns false if there will be no more. It
   // checks each frame against the needs of the renderer and the rules, as FrameStream does in a simulated
@@ -51,7 +56,8 @@ class CameraFeed {
   std::string ended() const;    // reason why there are no more frames; empty while there may be more
   // True if an input error has ended the frames: a frame cannot be used, and ended() names it.
   bool has_refused() const { return refused_.load(std::memory_order_acquire); }
-  // The time of the clock when the newest frame was ready; the start of the run before the first frame.
+  // The time of the clock when the newest frame was ready, sent or not; the start of the run before the first
+  // frame.
   double newest_s() const { return newest_s_.load(std::memory_order_relaxed); }
   // True if a frame was sent to the servo.
   bool has_sent() const { return has_sent_.load(std::memory_order_acquire); }
@@ -73,6 +79,7 @@ class CameraFeed {
   TripleBuffer<LiveFrame>& out_;
   const FrameSink sink_;
   const std::function<void(const Frame&)> on_frame_;  // called with every frame that is sent; may be empty
+  const FrameChoice sends_;                           // empty: all frames are sent
   SensorFrame sensed_;
   CameraCounts counts_;
   SensedPoints sensed_points_;  // points in the frames that were sent

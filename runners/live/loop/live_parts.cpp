@@ -77,13 +77,14 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
   const std::int64_t start_ns = clock_.now_ns();
   ends_ns_ = end_ns(start_ns, options.duration_s);
   camera_ = std::make_unique<CameraFeed>(std::move(source), std::move(processing), *renderer_, registration,
-                                         clock_, start_ns, frames_, sink, on_frame);
+                                         clock_, start_ns, frames_, sink, on_frame,
+                                         [this](const Frame& frame) { return slave_.sends(frame); });
   force_scale_ = force_scale(experiment.max_stiffness_N_per_m(), experiment.live().device_scale,
                              device_->traits().max_stiffness_N_per_m);
   servo_ = std::make_unique<Servo>(
       ServoLinks{*device_, *renderer_, frames_, rows_, clock_, stop_, options.stop, ends_ns_,
                  &experiment.changes(), options.controls ? &options.controls->requested() : nullptr,
-                 slave_.remote()},
+                 slave_.remote(), slave_.places()},
       DevicePlacement(experiment.live(), force_scale_), limits_for(experiment.safety(), device_->traits()),
       rate_hz_, start_ns, options.stall_s);
   if (options.controls && device_->traits().actuated_axes > 0 && !options.device.starts_with("sim:"))

@@ -131,6 +131,7 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
                    {"frames skipped: not sent, or replaced unprocessed", number(camera.skipped)},
                    {"frames reversed or repeated by the sensor, dropped", number(camera.reversed)},
                    {"frames without all their pixels or colours, dropped", number(camera.incomplete)},
+                   {"frames not sent, within the dead-band", number(camera.held_back)},
                    {"frames replaced before the haptic loop used them", number(camera.overtaken)},
                    {"frames dropped for the recorder", number(camera.unrecorded)},
                    {"frames used in the wrong order", number(log.reversed_frames)},

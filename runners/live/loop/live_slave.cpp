@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/session_file.h"
 
 namespace remote_touch {
@@ -28,15 +27,24 @@ bool knows_surface(const Scenario& scenario) {
 
 LiveSlave::LiveSlave(const Experiment& experiment, const std::string& depth, const Kernels& kernels)
     : touched_(depth == kSimulatedDepth ? experiment.build_simulated_scene(kernels) : nullptr),
-      remote_(experiment.build_teleoperation(touched_.get(), Experiment::Hand::real)) {
-  if (const double least_m = experiment.frame_dead_band().least_motion_m; least_m > 0)
-    throw InputError("frame_link.least_motion_m = " + std::to_string(least_m),
-                     "expected 0 in a live session, which uses every frame");
+      remote_(experiment.build_teleoperation(touched_.get(), Experiment::Hand::real)),
+      sender_(experiment.frame_dead_band(), kernels) {
+  if (remote_ && experiment.frame_dead_band().least_motion_m > 0) places_.emplace(kMostPlaces);
   if (!remote_ || (touched_ && knows_surface(*touched_))) return;
   const std::string source =
       depth == kSimulatedDepth ? "this scenario, played in real time," : "the camera " + depth;
   why_ = "slave without surface: " + source +
          " has no true surface, so the slave moves but cannot touch anything";
+}
+
+// A full queue has lost the positions after those in it.
+bool LiveSlave::sends(const Frame& frame) {
+  if (!places_) return true;
+  std::size_t count = 0;
+  for (; const SlavePlace* const place = places_->oldest(); places_->pop(), ++count)
+    sender_.observe_slave(place->position_W, place->time_s);
+  if (count >= kMostPlaces) sender_.lose_slave();
+  return sender_.sends(frame);
 }
 
 }  // namespace remote_touch

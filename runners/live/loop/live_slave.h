@@ -1,4 +1,4 @@
-// The slave of a live session: what it touches, and why it may touch nothing.
+// The slave of a live session: what it touches, why it may touch nothing, and which frames it sends.
 #pragma once
 
 #include <memory>
@@ -6,7 +6,9 @@
 #include <string>
 
 #include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/teleoperation/frame_link.h"
 #include "runners/experiment/teleoperation/teleoperation.h"
+#include "runners/live/loop/servo.h"
 
 namespace remote_touch {
 
@@ -16,10 +18,13 @@ namespace remote_touch {
 //
 // The mass of the hand is not known, whatever the section operator says, because a replay of the session has
 // no operator. Passivity control then uses the published rule.
+//
+// The dead-band of frames needs memory and time, so the thread of the camera decides which frames are sent.
+// The haptic loop passes it the positions of the slave. A recording stores which frames the renderer
+// received, so a replay needs no decision.
 class LiveSlave {
  public:
-  // depth: the address of the sensor; kSimulatedDepth: the scenario is the camera. Throws InputError if the
-  // experiment has a dead-band of frames, because the loop uses every frame.
+  // depth: the address of the sensor; kSimulatedDepth: the scenario is the camera.
   LiveSlave(const Experiment& experiment, const std::string& depth, const Kernels& kernels);
   LiveSlave(const LiveSlave&) = delete;
   LiveSlave& operator=(const LiveSlave&) = delete;
@@ -30,9 +35,19 @@ class LiveSlave {
   // Returns a line that says why the slave cannot touch anything; empty if it can, or if there is no slave.
   const std::string& why_untouching() const { return why_; }
 
+  // The queue for the position of the slave at every tick. Only the haptic loop may write to it. Null if
+  // every frame is sent.
+  Ring<SlavePlace>* places() { return places_ ? &*places_ : nullptr; }
+  // Returns true if a frame that was captured has to be sent to the renderer. Only the thread of the camera
+  // may call it. If no frame came for kMostPlaces ticks, the next one is sent.
+  bool sends(const Frame& frame);
+  static constexpr std::size_t kMostPlaces = 1 << 12;  // 4 s at 1 kHz
+
  private:
   const std::unique_ptr<const Scenario> touched_;
   std::optional<Teleoperation> remote_;
+  FrameSender sender_;
+  std::optional<Ring<SlavePlace>> places_;
   std::string why_;
 };
 

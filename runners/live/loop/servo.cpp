@@ -142,6 +142,10 @@ void Servo::one_tick() {
   row_.out = links_.renderer.step(row_.device, time_s);
   row_.command = commanded_wrench(links_.remote, row_.device, row_.out, time_s);
   if (links_.remote) row_.slave = links_.remote->state(), row_.slave->frame_packets = frames_taken_;
+  if (SlavePlace* const place = links_.places ? links_.places->next_slot() : nullptr) {
+    *place = {time_s, row_.slave->position_W};
+    links_.places->push();
+  }
   const double command_time_s = links_.clock.now_s();
   row_.step_s = static_cast<float>(command_time_s - read_s);
 

@@ -46,6 +46,12 @@ struct LiveTick {
   float waited_s = 0;           // if a frame was taken: its time from ready to taken
 };
 
+// Where a slave was after a tick, world frame.
+struct SlavePlace {
+  double time_s = 0;
+  Vec3 position_W = Vec3::Zero();
+};
+
 // The objects that the servo shares with other parts. All must outlive it.
 struct ServoLinks {
   HapticDevice& device;
@@ -61,7 +67,8 @@ struct ServoLinks {
   // Changes of the experiment, and changes that the user requests while it runs; null: none.
   const std::vector<RendererChange>* scripted = nullptr;
   Ring<ParameterChanges>* requested = nullptr;
-  Teleoperation* remote = nullptr;  // null: no slave, so the hand feels the force of the renderer
+  Teleoperation* remote = nullptr;     // null: no slave, so the hand feels the force of the renderer
+  Ring<SlavePlace>* places = nullptr;  // where the slave was, for the thread of the camera; null: not needed
 };
 
 // The servo allocates nothing, takes no lock, opens no file and reads no clock but the given one, except in
