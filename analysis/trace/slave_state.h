@@ -21,7 +21,7 @@ struct SlaveState {
   Vec3 position_W = Vec3::Zero();  // centre of its ball, or centre of mass of its tool
   Vec3 force_N = Vec3::Zero();     // mean force of the scene on it in the last tick
   double peak_force_N = 0;         // largest magnitude of that force in the last tick
-  double clearance_m = 0;          // distance of ball or tool from the true surface, negative in contact
+  double clearance_m = 0;          // distance of ball or tool from the true surface, negative behind it
   // Packets so far: commands and forces that were sent, and frames that have arrived.
   std::int32_t command_packets = 0, force_packets = 0, frame_packets = 0;
   std::optional<SlaveToolState> tool;  // present in all ticks of a run whose slave has a tool

@@ -6,9 +6,6 @@
 
 #include <cmath>
 
-#include <cmath>
-
-#include "analysis/trace/trace.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
