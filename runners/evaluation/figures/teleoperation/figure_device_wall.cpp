@@ -32,7 +32,7 @@ Wall wall(std::size_t renderer, double damping_Ns_per_m, int delay_ticks) {
                          "device.delay_ticks=" + std::to_string(delay_ticks)});
   };
   return {renderer, damping_Ns_per_m, delay_ticks,
-          WallLimit(experiment, linear_wall_N_per_m(damping_Ns_per_m, delay_ticks))};
+          WallLimit(experiment, linear_wall(damping_Ns_per_m, delay_ticks))};
 }
 
 std::vector<Wall> walls(FigureContext& context) {
@@ -68,10 +68,8 @@ Panel panel(Figure& figure, const std::vector<Wall>& all, int delay_ticks) {
     figure.tables.push_back(table_over<Wall>(
         name, std::string("limits of ") + kRenderers[renderer], list,
         {{"damping", "N s/m", "damping of the device", [](const Wall& w) { return w.damping_Ns_per_m; }},
-         {"stiffness", "N/m", "largest stable stiffness",
-          [](const Wall& w) { return w.limit.middle_N_per_m(); }},
-         {"expected", "N/m", "limit of a linear wall",
-          [](const Wall& w) { return w.limit.expected_N_per_m; }}}));
+         {"stiffness", "N/m", "largest stable stiffness", [](const Wall& w) { return w.limit.middle(); }},
+         {"expected", "N/m", "limit of a linear wall", [](const Wall& w) { return w.limit.expected(); }}}));
     if (renderer == 0)
       made.curves.push_back({name, "damping", "expected", CurveStyle::line, "b / (T / 2 + delay)"});
     made.curves.push_back({name, "damping", "stiffness", CurveStyle::dots, kRenderers[renderer]});

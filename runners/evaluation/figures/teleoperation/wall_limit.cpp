@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/geometry/rotation.h"
+
 namespace remote_touch {
 
 namespace {
@@ -14,14 +16,31 @@ constexpr int kHalvings = 7;
 constexpr double kWindow_s[] = {2.0, 2.8, 3.6};
 // Smaller oscillations are the last steps of a proxy, 0.02 mm and less, and not an instability.
 constexpr double kLeastSwing_m = 5e-5;
+constexpr double kLeastSwing_rad = 5e-4;  // moves the border of a plate by 0.01 mm
 
-double swing_m(const Trace& trace, double from_s, double to_s) {
+double hand_height_m(const Trace& trace, std::size_t i) {
+  return trace.hip_position_m[i].y();
+}
+// The rotation about z, an axis in the plane.
+double hand_turn_rad(const Trace& trace, std::size_t i) {
+  return rotation_vector(trace.hip_orientation[i]).z();
+}
+
+template <class Value>
+double swing(const Trace& trace, const Value& value, double from_s, double to_s) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     if (trace.time_s[i] < from_s || trace.time_s[i] >= to_s) continue;
-    low = std::min(low, trace.hip_position_m[i].y()), high = std::max(high, trace.hip_position_m[i].y());
+    low = std::min(low, value(trace, i)), high = std::max(high, value(trace, i));
   }
   return high - low;
+}
+
+template <class Value>
+bool grows(const Trace& trace, const Value& value, double least) {
+  const double first = swing(trace, value, kWindow_s[0], kWindow_s[1]);
+  const double second = swing(trace, value, kWindow_s[1], kWindow_s[2]);
+  return second > least && second > first;
 }
 
 bool opens(const Trace& trace, double from_s) {
@@ -33,24 +52,23 @@ bool opens(const Trace& trace, double from_s) {
 // An oscillation that grows until the hand leaves the surface no longer grows, so a contact that opens counts
 // too.
 bool is_unstable(const Trace& trace) {
-  const double first = swing_m(trace, kWindow_s[0], kWindow_s[1]);
-  const double second = swing_m(trace, kWindow_s[1], kWindow_s[2]);
-  return (second > kLeastSwing_m && second > first) || opens(trace, kWindow_s[1]);
+  return grows(trace, hand_height_m, kLeastSwing_m) ||
+         (trace.has_tool() && grows(trace, hand_turn_rad, kLeastSwing_rad)) || opens(trace, kWindow_s[1]);
 }
 
 }  // namespace
 
-double linear_wall_N_per_m(double damping_Ns_per_m, int delay_ticks) {
-  return damping_Ns_per_m / (kTick_s / 2 + delay_ticks * kTick_s);
+double linear_wall(double damping, int delay_ticks) {
+  return damping / (kTick_s / 2 + delay_ticks * kTick_s);
 }
 
 void bisect(FigureContext& context, const std::vector<WallLimit*>& limits) {
   for (int halving = 0; halving < kHalvings; ++halving) {
     std::vector<Experiment> runs;
-    for (const WallLimit* limit : limits) runs.push_back(limit->experiment_(limit->middle_N_per_m()));
+    for (const WallLimit* limit : limits) runs.push_back(limit->experiment_(limit->middle()));
     const auto unstable = context.measure(runs, is_unstable);
     for (std::size_t i = 0; i < limits.size(); ++i)
-      (unstable[i] ? limits[i]->unstable_N_per_m_ : limits[i]->stable_N_per_m_) = limits[i]->middle_N_per_m();
+      (unstable[i] ? limits[i]->unstable_ : limits[i]->stable_) = limits[i]->middle();
   }
 }
 

@@ -10,28 +10,30 @@
 
 namespace remote_touch {
 
-// The limit of a linear wall without damping of its own, N/m: K T / 2 + K d = b, with the tick T of 1 ms, the
-// delay d and the damping b of device and hand.
-double linear_wall_N_per_m(double damping_Ns_per_m, int delay_ticks);
+// The limit of a linear wall without damping of its own: K T / 2 + K d = b, with the tick T of 1 ms, the
+// delay d and the damping b of device and hand. N/m for a damping in N s/m; N m/rad for one in N m s/rad.
+double linear_wall(double damping, int delay_ticks);
 
+// A stiffness along the normal of the plane, N/m, or of the rotation of a tool that lies on it, N m/rad.
 class WallLimit {
  public:
   // experiment: a run in which the hand rests on a plane from 1.6 s on, until 3.6 s, rendered with the given
-  // stiffness, N/m. expected_N_per_m: the limit of theory; the search is from 0.4 to 2.5 times this.
-  WallLimit(std::function<Experiment(double stiffness_N_per_m)> experiment, double expected)
-      : expected_N_per_m(expected),
+  // stiffness. expected: the limit of theory; the search is from 0.4 to 2.5 times this.
+  WallLimit(std::function<Experiment(double stiffness)> experiment, double expected)
+      : expected_(expected),
         experiment_(std::move(experiment)),
-        stable_N_per_m_(0.4 * expected),
-        unstable_N_per_m_(2.5 * expected) {}
+        stable_(0.4 * expected),
+        unstable_(2.5 * expected) {}
 
-  const double expected_N_per_m;
-  double middle_N_per_m() const { return std::sqrt(stable_N_per_m_ * unstable_N_per_m_); }
-  double ratio() const { return middle_N_per_m() / expected_N_per_m; }
+  double expected() const { return expected_; }
+  double middle() const { return std::sqrt(stable_ * unstable_); }
+  double ratio() const { return middle() / expected_; }
 
  private:
   friend void bisect(FigureContext& context, const std::vector<WallLimit*>& limits);
+  double expected_;
   std::function<Experiment(double)> experiment_;
-  double stable_N_per_m_, unstable_N_per_m_;
+  double stable_, unstable_;
 };
 
 // Makes seven steps for all limits together; they are then known to 1.4 %.
