@@ -73,9 +73,13 @@ double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, dou
     if (!with_regions) points.radius = nullptr;
     return kernels_.proxy.first_hit(points, p.data(), u.data(), radius);
   };
-  const CachedList& here = cache_[current_];
-  const bool covered = here.valid && (p - here.centre).norm() + limit + radius <= list_radius_;
-  if (covered) return std::min(limit, hit_in(here.points));
+  // The present list holds every point that can be met before `known`: its region meets the ball around p that
+  // contains the swept tube up to there.
+  if (const CachedList& here = cache_[current_]; here.valid) {
+    const double known = list_radius_ * (1 - 1e-9) - (p - here.centre).norm() - radius;
+    const double hit = known > 0 ? std::min(limit, hit_in(here.points)) : limit;
+    if (hit <= known) return hit;
+  }
 
   // A point whose region is met first between two hops lies within radius (plus r_f) of that part of the
   // axis, so it meets the ball of that hop. The root is computed from p itself for every hop, so the result
