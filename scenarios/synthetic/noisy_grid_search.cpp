@@ -9,18 +9,22 @@ namespace {
 // Points are made within a margin around a query, so that the next queries of a moving proxy find their
 // points ready. A query larger than a proxy's gets no margin: such queries come once a frame.
 constexpr double kSpareMargin_m = 0.010, kMaxOfProxy_m = 0.025;
+// The same for the near ones of these points, which are copied again more often.
+constexpr double kNearMargin_m = 0.004;
 // Tolerance that is far above the rounding of sums of metres.
 constexpr double kRounding_m = 1e-9;
 }  // namespace
 
 NoisyGridSearch::NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream)
     : grid_(grid), height_m_(height_m), sigma_m_(sigma_m), stream_(stream) {
-  index_.grow(size() + kLanes), x_bounds_.grow(static_cast<std::size_t>(grid.columns));
-  x_.grow(size()), y_.grow(size()), z_.grow(size());
+  // There is capacity for the points and for a copy of the near ones behind them.
+  const std::size_t capacity = 2 * (size() + kLanes);
+  index_.grow(capacity), x_bounds_.grow(static_cast<std::size_t>(grid.columns));
+  x_.grow(capacity), y_.grow(capacity), z_.grow(capacity);
 }
 
-bool NoisyGridSearch::Cylinder::holds(const Ball& ball) const {
-  return std::hypot(ball.centre.x() - x, ball.centre.z() - z) + ball.radius + kRounding_m <= radius_m;
+double NoisyGridSearch::Cylinder::margin_m(const Vec3& p) const {
+  return radius_m - kRounding_m - std::hypot(p.x() - x, p.z() - z);
 }
 
 // Returns the columns or rows whose coordinate without noise lies within reach of the centre.
@@ -53,6 +57,31 @@ void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) con
         bounds(grid_.z(row) - cylinder.z), index_.data() + candidates);
   make_points(candidates, cylinder, kernels);
   cached_cylinder_ = cylinder;
+  near_ball_.radius = -1;
+}
+
+PointRun NoisyGridSearch::run(std::size_t first, std::size_t count) const {
+  return {x_.data() + first,
+          y_.data() + first,
+          z_.data() + first,
+          nullptr,
+          nullptr,
+          index_.data() + first,
+          0,
+          count};
+}
+
+// Returns the points of the cylinder that are near the ball, the ball's own points included. pre: the
+// cylinder holds the ball.
+PointRun NoisyGridSearch::near(const Ball& ball, const Kernels& kernels) const {
+  if ((ball.centre - near_ball_.centre).norm() + ball.radius + kRounding_m > near_ball_.radius) {
+    near_ball_ = {ball.centre, std::min(ball.radius + kNearMargin_m, cached_cylinder_.margin_m(ball.centre))};
+    const PointSink behind{x_.data() + count_,    y_.data() + count_, z_.data() + count_, nullptr, nullptr,
+                           index_.data() + count_};
+    near_count_ =
+        kernels.gather.append_within(run(0, count_), near_ball_.centre.data(), near_ball_.radius, behind, 0);
+  }
+  return run(count_, near_count_);
 }
 
 // Computes the noisy points of the first `candidates` indices and keeps those inside the cylinder.
@@ -88,9 +117,10 @@ void NoisyGridSearch::make_points(std::size_t candidates, const Cylinder& cylind
 void NoisyGridSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const {
   const double reach = ball.radius + kMaxNormal * sigma_m_ + kRounding_m;
   if (!ball.centre.allFinite() || std::abs(ball.centre.y() - height_m_) > reach) return;
-  const double spare_m = ball.radius <= kMaxOfProxy_m ? kSpareMargin_m : 0;
-  if (!cached_cylinder_.holds(ball)) make({ball.centre.x(), ball.centre.z(), ball.radius + spare_m}, kernels);
-  out.add({x_.data(), y_.data(), z_.data(), nullptr, nullptr, index_.data(), 0, count_}, ball, kernels);
+  const bool is_of_proxy = ball.radius <= kMaxOfProxy_m;
+  if (cached_cylinder_.margin_m(ball.centre) < ball.radius)
+    make({ball.centre.x(), ball.centre.z(), ball.radius + (is_of_proxy ? kSpareMargin_m : 0)}, kernels);
+  out.add(is_of_proxy ? near(ball, kernels) : run(0, count_), ball, kernels);
 }
 
 }  // namespace remote_touch
