@@ -40,9 +40,11 @@ void Neighbourhood::reserve(std::size_t points, bool with_radius, bool with_stif
 }
 
 const GatheredPoints& Neighbourhood::around(const Vec3& p) {
+  // Most positions lie well inside the present cube. The slow test decides near its border.
+  const CachedList& present = cache_[current_];
+  if (present.valid && ((p - present.centre).array().abs() < 0.499 * pitch_).all()) return present.points;
   const Vec3 centre = (p / pitch_).array().round().matrix() * pitch_;
   const auto holds = [&](const CachedList& kept) { return kept.valid && centre == kept.centre; };
-  if (holds(cache_[current_])) return cache_[current_].points;
   for (std::size_t i = 0; i < cache_.size(); ++i)
     if (holds(cache_[i])) return cache_[current_ = i].points;
   current_ = (current_ + 1) % cache_.size();
@@ -73,8 +75,8 @@ double Neighbourhood::first_hit(const Vec3& p, const Vec3& u, double radius, dou
     if (!with_regions) points.radius = nullptr;
     return kernels_.proxy.first_hit(points, p.data(), u.data(), radius);
   };
-  // The present list holds every point that can be met before `known`: its region meets the ball around p that
-  // contains the swept tube up to there.
+  // The present list holds every point that can be met before `known`: its region meets the ball around p
+  // that contains the swept tube up to there.
   if (const CachedList& here = cache_[current_]; here.valid) {
     const double known = list_radius_ * (1 - 1e-9) - (p - here.centre).norm() - radius;
     const double hit = known > 0 ? std::min(limit, hit_in(here.points)) : limit;
