@@ -16,20 +16,22 @@ inline std::uint64_t bits(double t) {
   return __builtin_bit_cast(std::uint64_t, t);
 }
 
-// Combines the lanes in halves, so that the compiler keeps them in vectors.
-template <class Number, class Vector, class Combine>
-Number across(const Vector& v, Combine combine) {
-  Number lane[kWidth];
-  __builtin_memcpy(lane, &v, sizeof v);
-  for (std::size_t half = kWidth / 2; half > 0; half /= 2)
-    for (std::size_t i = 0; i < half; ++i) lane[i] = combine(lane[i], lane[i + half]);
-  return lane[0];
+// Combines the lanes in halves. They stay in vectors, because each half would wait for the stores of the
+// last.
+template <class Vector, class Combine>
+auto across(Vector v, Combine combine) {
+  if constexpr (sizeof v == 64)
+    return across(
+        combine(__builtin_shufflevector(v, v, 0, 1, 2, 3), __builtin_shufflevector(v, v, 4, 5, 6, 7)),
+        combine);
+  else if constexpr (sizeof v == 32)
+    return across(combine(__builtin_shufflevector(v, v, 0, 1), __builtin_shufflevector(v, v, 2, 3)), combine);
+  else
+    return combine(v[0], v[1]);
 }
-
 std::uint64_t total(const Bits& v) {
-  return across<std::uint64_t>(v, [](std::uint64_t a, std::uint64_t b) { return a + b; });
+  return across(v, [](auto a, auto b) { return a + b; });
 }
-
 // Returns the sum of count terms t, given the sum of the bit patterns of t + M. The bit patterns in M's
 // binade are integers that count steps of the grid. So the sum is exact, its order does not matter, and each
 // term is t rounded to the grid.
@@ -89,11 +91,17 @@ ContactQuery query_columns(const PointsView& points, const double p[3], const Pr
   }
   const std::size_t count = points.padded_count;
   const double M = regions.sum_grid;
-  return {across<double>(nearest, [](double a, double b) { return a < b ? a : b; }),
-          {exact_sum(sx, count, M), exact_sum(sy, count, M), exact_sum(sz, count, M)},
-          kStiffness ? exact_sum(weights, count, M) : 0.0,
-          kStiffness ? exact_sum(stiffness, count, stiffness_grid) : 0.0,
-          static_cast<double>(total(touching))};
+  // The first four numbers are written by one store, so that a wider load may read them at once.
+  using Four __attribute__((vector_size(32))) = double;
+  const Four first = {across(nearest, [](auto a, auto b) { return a < b ? a : b; }), exact_sum(sx, count, M),
+                      exact_sum(sy, count, M), exact_sum(sz, count, M)};
+  ContactQuery result;
+  static_assert(offsetof(ContactQuery, weight_sum) == sizeof first);
+  __builtin_memcpy(&result, &first, sizeof first);
+  result.weight_sum = kStiffness ? exact_sum(weights, count, M) : 0.0;
+  result.stiffness_sum = kStiffness ? exact_sum(stiffness, count, stiffness_grid) : 0.0;
+  result.touching_count = static_cast<double>(static_cast<std::int64_t>(total(touching)));
+  return result;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "core/dissertation/proxy/admissible_motion.h"
@@ -119,8 +120,10 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
 // result is kept while the proxy rests.
 const ProxyRenderer::LocalQuery& ProxyRenderer::local_query() {
   if (has_local_query_ && proxy_W_ == query_position_W_) return local_query_;
-  local_query_.points = near_.around(proxy_W_).view();
-  local_query_.query = query(local_query_.points, proxy_W_);
+  // The results are constructed in place. A copy would wait, in each step, until they are in the cache: the
+  // processor forwards no number to a load that is wider than the store.
+  const PointsView* const points = ::new (&local_query_.points) PointsView(near_.around(proxy_W_).view());
+  ::new (&local_query_.query) ContactQuery(query(*points, proxy_W_));
   local_query_.state = classify(local_query_.query.nearest, p_);
   query_position_W_ = proxy_W_;
   has_local_query_ = true;
