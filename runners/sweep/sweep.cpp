@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -239,6 +240,18 @@ SweepResult Sweep::outline() const {
   return result;
 }
 
+SweepResult Sweep::part(std::vector<std::uint64_t> runs) const {
+  SweepResult result = outline();
+  if (std::adjacent_find(runs.begin(), runs.end(), std::greater_equal<>()) != runs.end() ||
+      (!runs.empty() && runs.back() >= result.run_count()))
+    throw InputError(title(),
+                     "expected increasing numbers of its " + std::to_string(result.run_count()) + " runs");
+  result.part = std::move(runs);
+  result.start(false);
+  result.state.assign(result.held_count(), RunState::pending);
+  return result;
+}
+
 SweepResult Sweep::plan(const Shard& shard) const {
   if (keep() != Keep::runs)
     throw InputError(title(), std::string("keeps a tally (keep = ") + name_of(keep()) +
@@ -305,14 +318,6 @@ std::optional<RefinementRule> Sweep::refinement() const {
 
 Keep Sweep::keep() const {
   return definition_->keep;
-}
-
-SweepResult Sweep::plan_of(std::vector<std::uint64_t> runs) const {
-  SweepResult result = outline();
-  result.part = std::move(runs);
-  result.start(false);
-  result.state.assign(result.state.size(), RunState::pending);
-  return result;
 }
 
 std::string Sweep::to_json() const {

@@ -1,6 +1,7 @@
 // A parameter sweep: an experiment, axes along which its parameters change, and the measures of every run.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,9 @@ class Sweep {
   // with its runs of the first round. Throws InputError if it would have more than 1e7 runs, or if the sweep
   // keeps a tally.
   SweepResult plan(const Shard& shard = {}) const;
+  // Returns a part that holds these runs, all pending. Throws InputError unless their numbers increase and
+  // belong to runs of the sweep.
+  SweepResult part(std::vector<std::uint64_t> runs) const;
   // Returns the experiment of one run. It has the values that the result states for its cell; throws
   // InputError otherwise. The noise key contains cell and replicate, so each run has its own noise. For an
   // axis with common noise the key contains the cell of the first value, so runs that differ only on this
@@ -50,8 +54,6 @@ class Sweep {
   bool needs_true_contact() const;  // true if one of its measures does
   std::optional<RefinementRule> refinement() const;
   Keep keep() const;
-  // Returns a part with these runs, pending. They are increasing.
-  SweepResult plan_of(std::vector<std::uint64_t> runs) const;
   std::string to_json() const;  // complete: read again, it makes the same sweep
   // Returns the sweep with every every-th value of each axis. A range, whose steps may not divide evenly, is
   // thinned approximately. The runs have other noise than those of the full sweep.

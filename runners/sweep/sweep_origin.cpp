@@ -25,6 +25,9 @@ void require_present_schema(const std::filesystem::path& file, const std::string
                                         ": expected a new file, in which the sweep starts again");
 }
 
+constexpr const char* kBuild[] = {"version", "git_commit", "git_dirty",      "source_digest", "compiler",
+                                  "flags",   "program",    "program_sha256", "plugins"};
+
 // Throws InputError for a file of another sweep, shard or build.
 void require_same(const std::filesystem::path& file, const TextAttributes& theirs,
                   const TextAttributes& ours) {
@@ -34,14 +37,21 @@ void require_same(const std::filesystem::path& file, const TextAttributes& their
   };
   if (attribute(theirs, "config") != attribute(ours, "config"))
     refuse("is of another configuration, first in " + first_difference(theirs, ours));
-  for (const char* name : {"shard", "version", "git_commit", "git_dirty", "source_digest", "compiler",
-                           "flags", "program", "program_sha256", "plugins"})
+  const auto compare = [&](const std::string& name) {
     if (attribute(theirs, name) != attribute(ours, name))
-      refuse(std::string("has ") + name + " \"" + attribute(theirs, name) + "\", not \"" +
-             attribute(ours, name) + "\"");
+      refuse("has " + name + " \"" + attribute(theirs, name) + "\", not \"" + attribute(ours, name) + "\"");
+  };
+  compare("shard");
+  for (const char* name : kBuild) compare(name);
 }
 
 }  // namespace
+
+TextAttributes build_of(const TextAttributes& attributes) {
+  TextAttributes build;
+  for (const char* name : kBuild) build.emplace_back(name, attribute(attributes, name));
+  return build;
+}
 
 void require_same_sweep(const std::filesystem::path& file, const std::string& schema,
                         const TextAttributes& theirs, const TextAttributes& ours) {

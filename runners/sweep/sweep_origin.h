@@ -8,6 +8,9 @@
 
 namespace remote_touch {
 
+// Returns the attributes of the build that made a result. Runs of different builds are not put into one file.
+TextAttributes build_of(const TextAttributes& attributes);
+
 // Checks a file that a command continues. Throws InputError, which names the file, if it is of another sweep,
 // shard or build, or was written with an earlier schema, so that it is not overwritten.
 void require_same_sweep(const std::filesystem::path& file, const std::string& schema,

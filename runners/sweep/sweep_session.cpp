@@ -1,6 +1,8 @@
 #include "runners/sweep/sweep_session.h"
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/sweeps/sweep_in_progress.h"
@@ -93,12 +95,19 @@ bool SweepSession::add_round_if_whole() {
 }
 
 bool SweepSession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
+  const DoRuns here = [&](SweepResult& result, const std::function<void(std::size_t)>& stored) {
+    return do_pending_runs(sweep_, result, {&kernels, stop, stored});
+  };
+  return run(here, progress);
+}
+
+bool SweepSession::run(const DoRuns& do_runs, const Progress& progress) {
   const SweepResult before = plan_.result;
   bool is_finished = plan_.is_finished;
   try {
     while (!plan_.result.runs_in(RunState::pending).empty() || add_round_if_whole()) {
       is_finished = false;
-      do_round(kernels, stop, progress);
+      do_round(do_runs, progress);
     }
   } catch (...) {  // finished runs are in the file, whatever ended this call
     require_unchanged_inputs(before);
@@ -124,7 +133,26 @@ void SweepSession::require_unchanged_inputs(const SweepResult& before) {
   }
 }
 
-void SweepSession::do_round(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
+void SweepSession::forget(const std::vector<std::size_t>& places) {
+  SweepResult& result = plan_.result;
+  const bool is_refined = !result.round.empty();
+  std::int32_t first_round = std::numeric_limits<std::int32_t>::max();
+  const auto reset = [&](std::size_t place, RunState state) {
+    for (Column& measure : result.measures)
+      std::get<std::vector<double>>(measure.values)[place] = std::numeric_limits<double>::quiet_NaN();
+    result.state[place] = state, result.notes[place] = 0, result.error[place].clear();
+    if (state == RunState::not_sampled) result.round[place] = -1;
+  };
+  for (const std::size_t place : places) {
+    reset(place, RunState::pending);
+    if (is_refined) first_round = std::min(first_round, result.round[place]);
+  }
+  for (std::size_t place = 0; place < result.round.size(); ++place)
+    if (result.round[place] > first_round) reset(place, RunState::not_sampled);
+  write_sweep_in_progress(file_, result, plan_.attributes);
+}
+
+void SweepSession::do_round(const DoRuns& do_runs, const Progress& progress) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::seconds kBetweenFlushes{1};
   SweepInProgress storage(file_, plan_.result, plan_.attributes, plan_.in_progress);
@@ -140,7 +168,7 @@ void SweepSession::do_round(const Kernels& kernels, const std::atomic<bool>* sto
     storage.flush();
     flushed = Clock::now();
   };
-  const std::size_t without_memory = do_pending_runs(sweep_, plan_.result, {&kernels, stop, finished});
+  const std::size_t without_memory = do_runs(plan_.result, finished);
   storage.flush();
   if (without_memory > 0)
     throw InputError(file_.string(), "out of memory in " + std::to_string(without_memory) +

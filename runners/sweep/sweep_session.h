@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 #include "analysis/storage/file_lock.h"
 #include "analysis/sweeps/sweep_file.h"
@@ -39,12 +40,22 @@ class SweepSession {
   using Progress = std::function<void(std::size_t done, std::size_t total, std::size_t earlier)>;
   bool run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
 
+  // The same with runs that are done elsewhere. do_runs: puts the outcomes of the pending runs into the
+  // result, calls stored(place) after each, and returns the number of runs for which there was no memory.
+  using DoRuns =
+      std::function<std::size_t(SweepResult& result, const std::function<void(std::size_t)>& stored)>;
+  bool run(const DoRuns& do_runs, const Progress& progress);
+
+  // Makes these runs pending again, also in the file: their outcomes were wrong. The runs of later rounds of
+  // refinement depend on them, and are not sampled any more. do_runs may call it, and must then throw.
+  void forget(const std::vector<std::size_t>& places);
+
   const SweepResult& result() const { return plan_.result; }
 
  private:
   bool add_round_if_whole();
   void require_unchanged_inputs(const SweepResult& before);
-  void do_round(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
+  void do_round(const DoRuns& do_runs, const Progress& progress);
 
   const Sweep& sweep_;
   const Shard shard_;

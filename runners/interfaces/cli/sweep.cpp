@@ -134,7 +134,7 @@ int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const CommandLine& 
   const std::size_t cells = shard.cells_of(outline.cell_count()), tried = std::min(kSamples, cells);
   std::vector<std::uint64_t> runs;
   for (std::size_t i = 0; i < tried; ++i) runs.push_back(outline.run(shard.cell(i * cells / tried), 0));
-  const SweepResult sample = sweep.plan_of(runs);
+  const SweepResult sample = sweep.part(runs);
   return dry_run(sweep,
                  {cells * static_cast<std::size_t>(outline.replicates), 0,
                   "a tally of " + std::to_string(cells) + " cells", sample},

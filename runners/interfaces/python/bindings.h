@@ -13,6 +13,7 @@ void bind_clouds(pybind11::module_& module);   // Cloud, Frame, Device, Output, 
 void bind_classes(pybind11::module_& module);  // register_class
 void bind_experiments(pybind11::module_& module);
 void bind_sweeps(pybind11::module_& module);
+void bind_chunks(pybind11::module_& module);  // runs of a sweep in workers of an executor
 void bind_scorecards(pybind11::module_& module);
 void bind_results(pybind11::module_& module);  // files, comparisons, descriptions
 

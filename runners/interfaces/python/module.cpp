@@ -41,6 +41,7 @@ PYBIND11_MODULE(_core, module) {
   bind_classes(module);
   bind_experiments(module);
   bind_sweeps(module);
+  bind_chunks(module);
   bind_scorecards(module);
   bind_results(module);
   module.def("choose_kernels", &choose_python_kernels, py::arg("isa"),

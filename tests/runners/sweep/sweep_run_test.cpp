@@ -4,16 +4,20 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
 
+#include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
+#include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_replay.h"
+#include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_run_test {
@@ -144,6 +148,26 @@ TEST(SweepRuns, OfAShardHaveTheBitsOfTheWholeSweep) {
   }
 }
 
+TEST(SweepRuns, OfChosenNumbersHaveTheBitsOfTheWholeSweep) {
+  const Sweep sweep = quick();
+  const SweepResult whole = run_sweep(sweep, {});
+  SweepResult part = sweep.part({3, 4, 23});
+  ASSERT_EQ(part.runs_in(RunState::pending).size(), 3u);
+  do_pending_runs(sweep, part, {});
+  SweepResult others = whole;
+  others.part.emplace({3, 4, 23});
+  others.start(false);
+  for (std::size_t place = 0; place < 3; ++place) {
+    const std::size_t run = part.run_at(place);
+    others.state[place] = RunState::done, others.notes[place] = whole.notes[run];
+    for (Column& measure : others.measures)
+      std::get<std::vector<double>>(measure.values)[place] = whole.measure(measure.name)[run];
+  }
+  expect_same(part, others);
+  for (const std::vector<std::uint64_t>& wrong : {std::vector<std::uint64_t>{4, 3}, {3, 3}, {23, 24}})
+    EXPECT_THROW(sweep.part(wrong), InputError);
+}
+
 // An interrupted sweep has reported each run that is done, and the others are pending. A second thread may do
 // any number of runs after an exception, until the first one has passed it on.
 TEST(SweepRuns, EndEarlyWithoutLosingRuns) {
@@ -269,6 +293,38 @@ TEST(Refinement, AnInterruptedRefinementGivesTheSameResult) {
   } while (add_round(sweep, result));
   EXPECT_GT(ends, 0);
   expect_same(result, run_sweep(sweep, {}));
+}
+
+// Returns a file of a sweep whose session forgets a run of this round when the last round has been done.
+void make_forgetful(const Sweep& sweep, const std::filesystem::path& file, std::int32_t round) {
+  SweepSession session(sweep, {}, {{"config", sweep.to_json()}}, file);
+  const auto forget_at_the_end = [&](SweepResult& result, const auto& stored) -> std::size_t {
+    do_pending_runs(sweep, result, {nullptr, nullptr, stored});
+    SweepResult next = result;
+    if (add_round(sweep, next)) return 0;
+    const auto found = std::find(result.round.begin(), result.round.end(), round);
+    session.forget({static_cast<std::size_t>(found - result.round.begin())});
+    throw std::out_of_range("forgotten");
+  };
+  EXPECT_THROW(session.run(forget_at_the_end, [](auto...) {}), std::out_of_range);
+}
+
+// The runs of later rounds depend on the outcome that was wrong.
+TEST(Refinement, AForgottenRunTakesTheLaterRoundsWithIt) {
+  const Sweep sweep = refined();
+  const SweepResult whole = run_sweep(sweep, {});
+  const TestFolder folder("forgotten");
+  for (const std::int32_t round : {0, 1}) {
+    const auto file = folder / ("round" + std::to_string(round) + ".h5");
+    make_forgetful(sweep, file, round);
+    const StoredSweep stored = read_sweep(file);
+    EXPECT_TRUE(stored.in_progress);
+    EXPECT_EQ(*std::max_element(stored.result.round.begin(), stored.result.round.end()), round);
+    EXPECT_EQ(stored.result.runs_in(RunState::pending).size(), 1u);
+    SweepSession again(sweep, {}, {{"config", sweep.to_json()}}, file);
+    EXPECT_TRUE(again.run(kernels_for(best_isa()), nullptr, [](auto...) {}));
+    expect_same(again.result(), whole);
+  }
 }
 
 }  // namespace

@@ -28,17 +28,41 @@ def run(experiment, *, seed=None, set=None, output=None, force=False, timing=Fal
     return dataset.of_trace(result)
 
 
-def sweep(sweep, *, set=None, threads=None, output=None, progress=None):
+def sweep(sweep, *, set=None, threads=None, output=None, progress=None, executor=None, chunk=None):
     """Does all runs of a sweep; returns the measures as an xarray.Dataset over its axes and replicate.
 
     sweep: a name, a path of a JSON file, or a dict. set: settings of the sweep or of its experiment, by path. threads:
     of all processors if None; the result does not depend on it. output: a file that goes on where an interrupted call
     stopped. Failed runs are NaN, with their reason in the variable error, and a warning.
+
+    executor: a concurrent.futures.Executor, whose workers do the runs, one thread each, and this process the file `output`.
+    chunk: runs that a worker does in one call; None: as many as take about a second. The attributes checked_runs and
+    checked_by_another_worker count the runs that were made twice. Raises concurrent.futures.BrokenExecutor if the executor
+    does no more work, and RuntimeError if a run made twice differs; the same call continues.
     """
     from remote_touch import dataset
     subject, text = _subject(sweep)
+    if executor is not None:
+        return dataset.warned(_sweep_by(executor, chunk, subject, text, set, threads, output, progress), os.fsdecode(subject))
+    if chunk is not None:
+        raise InputError(f"chunk = {chunk!r}: expected an executor, too")
     result = _core.sweep(subject, text, _overrides(set), _threads(threads), _path(output), _report(progress, subject))
     return dataset.warned(dataset.of_sweep(result), os.fsdecode(subject))
+
+
+def _sweep_by(executor, chunk, subject, text, set, threads, output, progress):
+    import concurrent.futures
+    if not isinstance(executor, concurrent.futures.Executor):
+        raise InputError(f"executor = {executor!r}: expected a concurrent.futures.Executor, such as client.get_executor() of Dask")
+    if threads is not None or output is None:
+        raise InputError("executor: expected no threads, since each worker uses one, and an output, which keeps the runs when a "
+                         "worker is lost")
+    from remote_touch import chunks, dataset
+    chunk = None if chunk is None else _integer("chunk", chunk, 1, 10**7)
+    engine = chunks.Engine(executor, chunk, os.fspath(output), _report(progress, subject))
+    sweep = dataset.of_sweep(_core.sweep_in_chunks(subject, text, _overrides(set), _path(output), engine.do_round))
+    sweep.attrs.update(checked_runs=engine.checked, checked_by_another_worker=engine.checked_by_another)
+    return sweep
 
 
 def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None):

@@ -1,6 +1,7 @@
 import os
 from builtins import list as _List
 from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import Executor
 from typing import Any, Literal, Union
 
 import xarray
@@ -27,6 +28,8 @@ def sweep(
     threads: int | None = None,
     output: _Path | None = None,
     progress: _Progress = None,
+    executor: Executor | None = None,
+    chunk: int | None = None,
 ) -> xarray.Dataset: ...
 def replay(
     sweep: _Path | xarray.Dataset,

@@ -1,0 +1,195 @@
+"""Sweeps whose runs the workers of a concurrent.futures.Executor do, in chunks. The calling process alone holds the file.
+
+A chunk is a pure function of the sweep and of the numbers of its runs. So a lost worker loses a chunk, which is submitted
+again, and nothing else.
+"""
+import collections
+import concurrent.futures
+import functools
+import os
+import socket
+import threading
+import time
+
+import numpy as np
+
+from remote_touch import _core
+from remote_touch._core import InputError
+
+CHUNK_S = 1.0  # time that a chunk should take
+LOSSES = 5  # times that a chunk is submitted again while no other succeeds
+
+_worker_sweep = functools.lru_cache(maxsize=2)(_core.WorkerSweep)
+
+
+def do_runs(config, runs, number):
+    """Does runs of a sweep, on one thread, and returns their outcomes, and who made them, as a dict of plain values.
+
+    config: the complete JSON of the sweep. runs: an array of their numbers. number: of the chunk, which changes nothing;
+    but an engine that remembers results by arguments has to compute this chunk.
+    """
+    made = {"build": _core.build(), "worker": f"{socket.gethostname()}/{os.getpid()}", "thread": threading.get_native_id()}
+    try:
+        sweep = _worker_sweep(config)
+    except InputError as error:  # of another build, or without the recording
+        return {**made, "problem": str(error)}
+    begin_s = time.perf_counter()
+    states, values, notes, errors = sweep.do_runs(runs)
+    return {**made, "inputs": sweep.inputs, "states": states, "values": values, "notes": notes, "errors": errors,
+            "seconds": time.perf_counter() - begin_s}
+
+
+class _Chunk:
+    def __init__(self, runs, first=None):
+        self.runs = runs
+        self.first = first  # the outcome of its only run, and its worker, if the run is made again as a check
+        self.repeats = self.losses = self.successes = 0
+
+
+class Engine:
+    """One call of rt.sweep with an executor. do_round() is called for the runs of each round."""
+
+    def __init__(self, executor, chunk, output, report):
+        self.executor, self.fixed, self.output, self.report = executor, chunk, output, report
+        self.size, self.number = chunk or 1, 0
+        self.build = _core.build()
+        self.made_by = collections.defaultdict(list)  # worker: the runs of its chunks
+        self.seen = {}  # (worker, thread): when its last chunk arrived, the latest last
+        self.checked = self.checked_by_another = self.successes = 0
+        self._submit(os.getpid)  # starts forked workers before the file is locked: they would hold the lock, too
+
+    def do_round(self, config, inputs, pending, done, store, forget):
+        """Does the pending runs. done: number of runs that are done. store and forget: see sweep_chunks.cpp."""
+        self.config, self.inputs, self.pending, self.store, self.forget = config, inputs, pending, store, forget
+        self.done, self.ended, self.total, self.next = done, done, done + len(pending), 0
+        self.to_check, self.again, flying = _chosen(pending), collections.deque(), {}
+        try:
+            while True:
+                # Three chunks for each worker that answered lately. More workers answer, so that this number grows.
+                while len(flying) < 4 + 3 * len(self.seen) and (chunk := self._next_chunk()):
+                    self.number += 1
+                    flying[self._submit(do_runs, config, chunk.runs, self.number)] = chunk
+                if not flying:
+                    return
+                ready, _ = concurrent.futures.wait(flying, return_when=concurrent.futures.FIRST_COMPLETED)
+                for future in sorted(ready, key=_is_lost):
+                    chunk = flying.pop(future)
+                    if _is_lost(future):
+                        error = concurrent.futures.CancelledError() if future.cancelled() else future.exception()
+                        self._lose(chunk, f"{type(error).__name__}: {error}", error)
+                    else:
+                        self._take(chunk, future.result())
+        finally:
+            for future in flying:
+                future.cancel()
+
+    def _submit(self, *call):
+        try:
+            return self.executor.submit(*call)
+        except Exception as error:
+            raise self._end(f"{type(error).__name__}: {error}") from error
+
+    def _next_chunk(self):
+        if self.again:
+            return self.again.popleft()
+        runs = self.pending[self.next:self.next + self.size]
+        self.next += len(runs)
+        return _Chunk(runs) if len(runs) else None
+
+    def _lose(self, chunk, why, error=None):
+        if chunk.successes != self.successes:
+            chunk.losses, chunk.successes = 0, self.successes
+        chunk.losses += 1
+        if isinstance(error, concurrent.futures.BrokenExecutor) or chunk.losses > LOSSES:
+            raise self._end(why) from error
+        self.again.append(chunk)
+
+    def _end(self, why):
+        stored = f"{self.done} of {self.total} runs are" if hasattr(self, "done") else "no new run is"
+        why = " ".join(why.split())
+        return concurrent.futures.BrokenExecutor(f"{self.output}: {stored} stored, and the same call continues; the executor "
+                                                 f"does no more work ({why})")
+
+    def _take(self, chunk, made):
+        worker = made["worker"]
+        for (name, ours), (_, theirs) in zip(self.build, made["build"]):
+            self._require_same(worker, name, theirs, ours)
+        if "problem" in made:
+            self._lose(chunk, f"worker {worker}: {made['problem']}")
+            return
+        self._require_same(worker, "recordings", made["inputs"], self.inputs)
+        self.successes += 1
+        self._see(worker, made)
+        if chunk.first:
+            self._compare(chunk, made)
+        else:
+            self._store(chunk.runs, made)
+
+    def _require_same(self, worker, name, theirs, ours):
+        if theirs != ours:
+            raise InputError(f"worker {worker}: its {name} is {theirs!r}, here it is {ours!r}: expected workers with the same "
+                             "build, classes and recordings")
+
+    def _see(self, worker, made):
+        now_s = time.monotonic()
+        self.seen.pop((worker, made["thread"]), None)
+        self.seen[worker, made["thread"]] = now_s
+        while self.seen[oldest := next(iter(self.seen))] < now_s - 20 * max(CHUNK_S, made["seconds"]):
+            del self.seen[oldest]
+
+    def _store(self, runs, made):
+        self.store(runs, made["states"], made["values"], made["notes"], made["errors"])
+        self.made_by[made["worker"]].append(runs)
+        self.done += int((made["states"] == 2).sum())
+        self.ended += len(runs)
+        for at in np.flatnonzero(np.isin(runs, self.to_check)):
+            self.again.append(_Chunk(runs[at:at + 1], (_outcome(made, at), made["worker"])))
+        if not self.fixed:  # small at the end, so that all workers end at the same time
+            fair = (len(self.pending) - self.next) / (2 * len(self.seen))
+            self.size = int(max(1, min(CHUNK_S * len(runs) / max(made["seconds"], 1e-9), 4 * len(runs), fair)))
+        if self.report:
+            self.report(self.ended / self.total)
+
+    def _compare(self, chunk, made):
+        (outcome, worker), again = chunk.first, _outcome(made, 0)
+        if again != outcome:
+            self._refuse(int(chunk.runs[0]), outcome, worker, again, made["worker"])
+        is_another = made["worker"] != worker
+        if not is_another and len(self.made_by) > 1 and chunk.repeats < 2:  # another one may have it next time
+            chunk.repeats += 1
+            self.again.append(chunk)
+            return
+        self.checked += 1
+        self.checked_by_another += is_another
+
+    def _refuse(self, run, outcome, worker, again, other):
+        runs = np.unique(np.concatenate(self.made_by[worker] + (self.made_by[other] if other != worker else [])))
+        self.forget(runs)
+        raise RuntimeError(f"{self.output}: run {run} has {_text(outcome)} by worker {worker}, but {_text(again)} by worker "
+                           f"{other}: one of them computes wrongly; the {len(runs)} runs that they made are pending again: "
+                           f"{_ranges(runs)}")
+
+
+def _is_lost(future):
+    return future.cancelled() or future.exception() is not None
+
+
+def _chosen(runs):
+    """One run of each thousand numbers, and at least one of 100 runs."""
+    chosen = runs[runs % 1000 == (99 + 7 * (runs // 1000)) % 1000]
+    return chosen if len(chosen) or len(runs) < 100 else runs[:1]
+
+
+def _outcome(made, at):
+    return int(made["states"][at]), made["values"][:, at].tobytes(), int(made["notes"][at])
+
+
+def _text(outcome):
+    state, values, notes = outcome
+    return f"state {state}, values {np.frombuffer(values).tolist()} and notes {notes}"
+
+
+def _ranges(runs):
+    parts = np.split(runs, np.flatnonzero(np.diff(runs) > 1) + 1)
+    texts = [str(part[0]) if len(part) == 1 else f"{part[0]}-{part[-1]}" for part in parts]
+    return ", ".join(texts[:20]) + (f" and {len(texts) - 20} more ranges" if len(texts) > 20 else "")
