@@ -1,5 +1,6 @@
 #include "runners/sweep/shard_folder.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 
 #include <algorithm>
