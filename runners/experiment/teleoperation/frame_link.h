@@ -18,9 +18,7 @@ class FrameSender {
       : dead_band_(settings), kernels_(kernels) {}
 
   // Returns true if the frame has to be sent, and then keeps its points until the next one has to.
-  bool sends(const Frame& frame) {
-    return dead_band_.sends(frame, slave_at(frame.captured_s), kernels_);
-  }
+  bool sends(const Frame& frame) { return dead_band_.sends(frame, slave_at(frame.captured_s), kernels_); }
   // Must be called once per tick, after the slave has moved, with increasing times.
   void observe_slave(const Vec3& slave_W, double time_s) { slave_.emplace_back(time_s, slave_W); }
   // Forgets where the slave was. Until it is observed again, every frame is sent.
