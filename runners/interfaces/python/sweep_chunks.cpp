@@ -1,5 +1,6 @@
 // Sweeps whose runs are done by the workers of an executor: chunks of runs in a worker, and the file in the
 // process that submits them.
+#include <malloc.h>
 #include <omp.h>
 #include <pybind11/stl.h>
 
@@ -49,6 +50,9 @@ class WorkerSweep {
   explicit WorkerSweep(const std::string& config) {
     const py::gil_scoped_release without_lock;
     const OneThread one_thread;
+    // Runs then do not return memory to the system and get it back each time, see program.cpp.
+    mallopt(M_TRIM_THRESHOLD, 256 << 20);
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
     sweep_.emplace(Sweep::from_json(config, "config"));
     inputs_ = input_hashes(sweep_->inputs());
   }
