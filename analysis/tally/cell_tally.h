@@ -21,7 +21,7 @@ struct TallyLayout {
 // Runs with a note of one kind.
 struct NoteTally {
   std::int64_t runs = 0;
-  std::uint64_t first = 0;  // lowest number of such a run; 0 without runs
+  std::uint64_t first = 0;  // lowest number of such a run; without meaning (0) if there is none
 
   bool operator==(const NoteTally&) const = default;
 };
@@ -35,7 +35,7 @@ struct CellTally {
 
   std::int64_t done = 0;
   std::int64_t failed = 0;
-  std::uint64_t first_failed = 0;  // lowest number of a failed run; 0 if none failed
+  std::uint64_t first_failed = 0;  // lowest number of a failed run; without meaning (0) if none failed
   std::string first_error;         // why that run failed
   std::vector<MeasureTally> measures;
   std::vector<NoteTally> notes;  // one for each kind
@@ -52,7 +52,8 @@ struct CellTally {
   // pre: both tallies were made for the same layout.
   void add(const CellTally& other);
 
-  // Returns what contradicts what, for a tally of unknown origin; empty if nothing does.
+  // Checks a tally of unknown origin. Returns what contradicts what, such as "the runs of a note exceed the
+  // finished runs"; empty if it is consistent.
   std::string contradiction() const;
   bool operator==(const CellTally&) const = default;
 };

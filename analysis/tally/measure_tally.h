@@ -12,9 +12,9 @@ namespace remote_touch {
 
 // Equal values in any order, and in any parts that are added to each other, give equal bits.
 struct MeasureTally {
-  std::int64_t values = 0;                                 // finite values; all members below are about these
-  std::int64_t unknown = 0;                                // NaN
-  std::int64_t infinite = 0;                               // infinity of either sign
+  std::int64_t values = 0;    // number of finite values; the members from least on are those of these values
+  std::int64_t unknown = 0;   // NaN
+  std::int64_t infinite = 0;  // infinity of either sign
   double least = std::numeric_limits<double>::infinity();  // infinity and -infinity without values
   double greatest = -std::numeric_limits<double>::infinity();
   UnroundedSum sum,
@@ -35,7 +35,8 @@ struct MeasureTally {
   // gives least and p = 1 greatest. NaN without values.
   double quantile(double p) const;
 
-  // Returns what contradicts what, for a tally of unknown origin; empty if nothing does.
+  // Checks a tally of unknown origin. Returns what contradicts what, such as "the runs of a note exceed the
+  // finished runs"; empty if it is consistent.
   std::string contradiction() const;
   bool operator==(const MeasureTally&) const = default;
 };

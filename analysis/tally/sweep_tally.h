@@ -42,7 +42,8 @@ struct SweepTally {
   // Adds another part of the same sweep. Throws InputError with the obstacle; then nothing is changed.
   void add(SweepTally other);
 
-  // Returns what contradicts what, for a tally of unknown origin; empty if nothing does.
+  // Checks a tally of unknown origin. Returns what contradicts what, such as "the runs of a note exceed the
+  // finished runs"; empty if it is consistent.
   std::string contradiction() const;
 
  private:

@@ -175,7 +175,7 @@ void TallyReader::read_plan() {
   const std::string replicates = text("replicates");
   const char* const end = replicates.data() + replicates.size();
   if (std::from_chars(replicates.data(), end, tally_.replicates).ptr != end || tally_.replicates < 1)
-    hdf5_.damaged("its attribute replicates is no number of runs");
+    hdf5_.damaged("its attribute replicates is not a number of runs");
   if (__builtin_mul_overflow(runs, static_cast<std::uint64_t>(tally_.replicates), &runs) || runs == 0)
     hdf5_.damaged("its axes have too many values, or none");
   tally_.keeps_events = text("keep") == "events";

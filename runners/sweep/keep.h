@@ -7,8 +7,8 @@
 
 namespace remote_touch {
 
-// runs: the measures of each run. tally: of each cell the counts, exact sums, extremes and quantiles of its
-// runs (analysis/tally). events: a tally, and the numbers of the runs in which an event happened.
+// runs: the measures of each run. tally: counts, exact sums, extremes and quantiles of each
+// cell (analysis/tally). events: a tally, and the numbers of the runs in which an event happened.
 enum class Keep { runs, tally, events };
 
 // Reads the key "keep" of a sweep; runs if it is missing. Throws InputError for another value, and for a

@@ -19,12 +19,12 @@ ShardSet take_shards(TextAttributes& attributes, const std::string& file) {
 void SeenShards::add(const std::string& file, const ShardSet& shards) {
   if (file_of_.empty()) first_file_ = file, all_.count = shards.count;
   if (shards.count != all_.count)
-    throw InputError(file, "is shard " + shards.text() + ": expected shards of " +
-                               std::to_string(all_.count) + ", as " + first_file_);
+    throw InputError(file, "is shard " + shards.text() + ": expected shards of a sweep in " +
+                               std::to_string(all_.count) + " shards, as " + first_file_ + " is");
   for (const int index : shards.indices)
     if (const auto [twin, is_new] = file_of_.emplace(index, file); !is_new)
-      throw InputError(file, "is shard " + Shard{index, shards.count}.text() + ", as is " + twin->second +
-                                 ": expected once");
+      throw InputError(file, "is shard " + Shard{index, shards.count}.text() + ", which is also in " +
+                                 twin->second + ": expected each shard once");
   all_.indices.insert(shards.indices.begin(), shards.indices.end());
 }
 

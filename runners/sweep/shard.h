@@ -14,7 +14,8 @@ namespace remote_touch {
 struct Shard {
   int index = 1;
   int count = 1;
-  // The number of its cells, of `all` in the first round; and its i-th cell.
+  // cells_of() returns how many of the `all` cells of the first round belong to the shard. cell() returns the
+  // number of its i-th cell, i from 0, in the order of the first round.
   std::size_t cells_of(std::size_t all) const {
     return (all + static_cast<std::size_t>(count - index)) / static_cast<std::size_t>(count);
   }

@@ -79,8 +79,9 @@ void add_runs(const std::string& file, const Hdf5Reader& hdf5, Partial partial, 
   const SweepResult part = without_others(read_sweep(hdf5).result);
   const std::size_t pending = part.runs_in(RunState::pending).size();
   if (partial == Partial::no)
-    throw InputError(file, "not finished (" + std::to_string(pending) +
-                               " runs are left): expected once its sweep command has ended, or --partial");
+    throw InputError(
+        file, "is not finished (" + std::to_string(pending) +
+                  " runs are left): expected a finished shard (repeat its sweep command), or --partial");
   spool.add(file, part.held_count(), values_in(part));
 }
 

@@ -13,9 +13,9 @@ namespace remote_touch {
 StoredSweep read_stored_sweep(const Hdf5Reader& file);
 StoredSweep read_stored_sweep(const std::filesystem::path& file);
 
-// The same of read_sweep_outline().
+// Reads an outline as read_sweep_outline() does, with present names.
 StoredSweep read_stored_outline(const Hdf5Reader& file);
-// The same, but a part remains a part.
+// Reads a sweep as read_stored_sweep() does, but a part stays a part.
 StoredSweep read_stored_part(const std::filesystem::path& file);
 
 }  // namespace remote_touch

@@ -20,8 +20,9 @@ void require_finished(const std::string& file, const ShardSet& shards, const Swe
   for (const int index : shards.indices) cells += Shard{index, shards.count}.cells_of(tally.cell_count());
   const std::uint64_t runs = cells * static_cast<std::uint64_t>(tally.replicates);
   if (tally.held.count() < runs)
-    throw InputError(file, "not finished (" + std::to_string(runs - tally.held.count()) +
-                               " runs are left): expected once its sweep command has ended, or --partial");
+    throw InputError(
+        file, "is not finished (" + std::to_string(runs - tally.held.count()) +
+                  " runs are left): expected a finished shard (repeat its sweep command), or --partial");
 }
 
 // Throws InputError if the file holds runs that the shards do not.

@@ -43,7 +43,7 @@ class TallySession {
   const FileLock lock_;
   TextAttributes attributes_;
   SweepTally tally_;
-  std::size_t next_cell_ = 0;  // number of runs of the shard: earlier ones are complete
+  std::size_t next_cell_ = 0;  // index, within the shard, of the first cell that may lack runs
   std::string digest_;
 };
 

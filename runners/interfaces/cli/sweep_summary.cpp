@@ -123,7 +123,7 @@ void print_failures(const SweepTally& tally, const SweepResult& outline) {
     if (cell.failed == 0) continue;
     ++cells;
     if (++printed > kMaxFailedCells) continue;
-    std::printf("  failed: %lld runs of a cell, the first: %s: %s\n", static_cast<long long>(cell.failed),
+    std::printf("  failed: %lld runs of one cell; the first is %s: %s\n", static_cast<long long>(cell.failed),
                 option_of_run(outline, static_cast<std::size_t>(cell.first_failed)).c_str(),
                 cell.first_error.c_str());
   }

@@ -90,13 +90,13 @@ TEST_F(ShardMerge, OfSomeShardsIsAPartThatCanBeMergedAgain) {
   EXPECT_EQ(part.result.runs_in(RunState::done).size(), 16u) << "8 of 12 cells";
   EXPECT_EQ(read_stored_sweep(three).result.runs_in(RunState::elsewhere).size(), 8u);
   EXPECT_EQ(bytes_of(merged({two, three})), bytes_of(shard("1/1")));
-  EXPECT_HAS(why({three, all[1], two}), "is shard 2/5, as is " + three + ": expected once");
+  EXPECT_HAS(why({three, all[1], two}), "is shard 2/5, which is also in " + three);
 }
 
 TEST_F(ShardMerge, TakesAnUnfinishedShardOnlyAsAPart) {
   const std::atomic<bool> stop{true};
   const std::string one = shard("1/2"), two = shard("2/2", {}, &stop);
-  EXPECT_HAS(why({one, two}), "2o2.h5: not finished (12 runs are left)");
+  EXPECT_HAS(why({one, two}), "2o2.h5: is not finished (12 runs are left)");
   const StoredSweep early = read_sweep(merged({one, two}, Partial::yes));
   EXPECT_EQ(early.result.runs_in(RunState::done).size(), 12u);
   EXPECT_EQ(early.result.runs_in(RunState::pending).size(), 12u);
@@ -105,8 +105,8 @@ TEST_F(ShardMerge, TakesAnUnfinishedShardOnlyAsAPart) {
 TEST_F(ShardMerge, RefusesWhatDoesNotBelongTogether) {
   const std::string one = shard("1/2"), two = shard("2/2");
   EXPECT_HAS(why({one}), "merge: shard 2/2 is missing");
-  EXPECT_HAS(why({one, one}), "is shard 1/2, as is");
-  EXPECT_HAS(why({one, shard("2/3")}), "is shard 2/3: expected shards of 2, as " + one);
+  EXPECT_HAS(why({one, one}), "is shard 1/2, which is also in");
+  EXPECT_HAS(why({one, shard("2/3")}), "is shard 2/3: expected shards of a sweep in 2 shards, as " + one);
   EXPECT_HAS(why({one, shard("2/2", {"replicates=3"})}), "has another config than");
   EXPECT_HAS(why({one, shard("1/1")}), "is the result of a whole sweep");
   EXPECT_HAS(why({one, file("absent.h5")}), "absent.h5: no such file");

@@ -111,13 +111,13 @@ TEST_F(TallySessions, ThatAreUnfinishedAreMergedOnlyAsAPart) {
   EXPECT_HAS(refusal([&] {
                merge_tallies({{one, two}, file("m.h5")});
              }),
-             "1.h5: not finished (" + std::to_string(left) + " runs are left)");
+             "1.h5: is not finished (" + std::to_string(left) + " runs are left)");
   EXPECT_EQ(merge_tallies({{one, two}, file("m.h5"), Partial::yes}).tally.held.count(), 60 - left);
   EXPECT_HAS(refusal([&] {
                merge_tallies({{two}, file("m.h5"), Partial::yes});
              }),
              "holds runs that the shards do not");
-  EXPECT_HAS(refusal([&] { merge_tallies({{two, two}, file("x.h5")}); }), "is shard 2/2, as is");
+  EXPECT_HAS(refusal([&] { merge_tallies({{two, two}, file("x.h5")}); }), "is shard 2/2, which is also in");
 }
 
 // Limits and means of a tally are those of its runs; what needs single runs is refused.
