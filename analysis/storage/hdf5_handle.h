@@ -31,6 +31,11 @@ class Handle {
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   operator hid_t() const { return id_; }
+  // Closes the object now. Throws if the library cannot, for example because it cannot write the last values.
+  void finish() {
+    const herr_t result = close_(std::exchange(id_, -1));
+    if (result < 0) throw_refusal();
+  }
 
  private:
   hid_t id_;

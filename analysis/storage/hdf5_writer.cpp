@@ -30,6 +30,7 @@ std::size_t max_length(const std::vector<std::string>& texts) {
 }
 
 [[noreturn]] void refuse_target(const std::filesystem::path& target, const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error)) throw std::bad_alloc();
   throw InputError(target.string(), std::string("cannot be written (") + error.what() +
                                         "): expected a writable folder with free space for the file");
 }
@@ -59,7 +60,9 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& target)
   remove_leftovers(target);
   try {
     create();
-  } catch (const std::exception& error) {
+  } catch (const std::exception& error) {  // the destructor does not run for a constructor that throws
+    std::error_code gone;
+    std::filesystem::remove(on_disk_, gone);
     refuse_target(target, error);
   }
 }
@@ -196,9 +199,9 @@ void Hdf5Writer::dataset(const std::string& path, const Column& column, Extent e
   {
     const Handle type = stored_type(file_, column), space = space_of(extent);
     const Handle creation = creation_of(extent, column.length(), storage);
-    const Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                      H5Dclose);
+    Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
     write_values(made, type, column.values, length);
+    made.finish();  // writes what the library still holds
   }
   describe(path, column, extent);
 }
@@ -211,8 +214,7 @@ void Hdf5Writer::block_dataset(const std::string& path, const Column& column, Ex
   {
     const Handle type = stored_type(file_, column), space = space_of(extent);
     const Handle creation = creation_of(extent, rows, Storage::compact);
-    const Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                      H5Dclose);
+    Handle made(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose);
     std::size_t first = 0;
     for (ChunkWalk walk(extent, rows > kMaxContiguous ? chunk_of(extent) : extent); !walk.ended();
          walk.next()) {
@@ -223,6 +225,7 @@ void Hdf5Writer::block_dataset(const std::string& path, const Column& column, Ex
       write_values(made, type, values(first, count), length, {memory, space});
       first += count;
     }
+    made.finish();  // writes what the library still holds
   }
   describe(path, column, extent);
 }

@@ -23,8 +23,11 @@ constexpr std::uint64_t kUnset = ~std::uint64_t{0};
 
 // Opens a file without a name in the folder of that file. Returns -1 with errno set on failure.
 int open_nameless(const std::filesystem::path& beside) {
-  const std::filesystem::path folder = resolved(beside).parent_path();
-  std::string name = ((folder.empty() ? "." : folder) / ".remote-touch-merge-XXXXXX").string();
+  const std::filesystem::path parent = resolved(beside).parent_path(), folder = parent.empty() ? "." : parent;
+  const int nameless = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (nameless >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL)) return nameless;
+  // Some file systems, such as NFS, have no files without a name.
+  std::string name = (folder / ".remote-touch-merge-XXXXXX").string();
   const int file = ::mkostemp(name.data(), O_CLOEXEC);
   if (file >= 0) ::unlink(name.c_str());
   return file;

@@ -17,7 +17,7 @@ struct SlaveToolState {
 
 // The slave of a run with teleoperation, world frame, and the packets that were sent to it and by it.
 struct SlaveState {
-  Vec3 command_W = Vec3::Zero();   // where the command that it has received last sends it
+  Vec3 command_W = Vec3::Zero();   // position to which the command that it has received last sends it
   Vec3 position_W = Vec3::Zero();  // centre of its ball, or centre of mass of its tool
   Vec3 force_N = Vec3::Zero();     // mean force of the scene on it in the last tick
   double peak_force_N = 0;         // largest magnitude of that force in the last tick

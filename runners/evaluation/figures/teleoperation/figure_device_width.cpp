@@ -139,7 +139,7 @@ constexpr const char* kSigns[] = {"minus", "plus", "none"};
 constexpr int kSeeds = 4;
 
 struct Energy {
-  double value;   // of what varies
+  double value;   // value of what varies
   double mean_J;  // mean over the seeds of the energy per frame update
 };
 

@@ -11,7 +11,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kNoisyDamping_Ns_per_m = 2, kNoisyMass_kg = 0.3, kNoisyFrame_s = 1.0 / 30;
-constexpr double kAtRest_s = 1.6;  // from then on
+constexpr double kAtRest_s = 1.6;  // time from which the hand rests
 constexpr double kSoft_N_per_m = 200;
 constexpr int kNoiseSeeds = 4, kNoiseHalvings = 7;
 
