@@ -17,8 +17,8 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kWindow = 1 << 20;  // places that are loaded together
-constexpr std::size_t kBlock = 1 << 16;   // values that are copied together
+constexpr std::size_t kWindow = RunSpool::kWindow;  // places that are loaded together
+constexpr std::size_t kBlock = 1 << 16;             // values that are copied together
 constexpr std::uint64_t kUnset = ~std::uint64_t{0};
 
 // Opens a file without a name in the folder of that file. Returns -1 with errno set on failure.

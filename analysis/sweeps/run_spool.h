@@ -17,6 +17,8 @@ namespace remote_touch {
 // all runs.
 class RunSpool {
  public:
+  // Blocks of this many places, from multiples of it on, are read fastest.
+  static constexpr std::size_t kWindow = 1 << 17;
   // Returns the values at `count` places from `first` on of an array of a part: a measure, state, notes,
   // error or run.
   using PartValues = std::function<Values(const std::string& array, std::size_t first, std::size_t count)>;

@@ -49,11 +49,10 @@ class FrameDeadBand {
   // - it is the first, or least_motion_m is 0;
   // - slave_W is not finite, because the slave has not started;
   // - the surface near slave_W has moved by more than least_motion_m since the last frame that was sent;
-  // - the radius of a region or the stiffness of a point differs from that frame, or a guidance target.
-  // Points
+  // - the radius of a region, the stiffness of a point or a guidance target differs from that frame. Points
   //   with the same index are compared, if both were measured. If the frames have different sizes, they
   //   differ unless all points of both have the same values.
-  // With a band, a frame that was not captured after the last one that was sent is never sent, because
+  // If there is a band, a frame that was not captured after the last one that was sent is never sent, because
   // renderers drop it.
   bool sends(const Frame& frame, const Vec3& slave_W, const Kernels& kernels);
   // Returns the number of frames that had to be sent.

@@ -19,8 +19,6 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kBlock = 1 << 17;  // runs
-
 // A file of some shards, without its runs.
 struct ShardFile {
   std::string file;
@@ -91,8 +89,8 @@ void for_each_block(RunSpool& spool, const EachBlock& each) {
   SweepResult block;
   block.axes = outline.axes, block.replicates = outline.replicates;
   block.measures = outline.measures, block.note_kinds = outline.note_kinds;
-  for (std::size_t first = 0; first < outline.held_count(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, outline.held_count() - first);
+  for (std::size_t first = 0; first < outline.held_count(); first += RunSpool::kWindow) {
+    const std::size_t count = std::min(RunSpool::kWindow, outline.held_count() - first);
     const auto numbers = [&](const char* array) {
       return std::get<std::vector<std::int32_t>>(spool.values(array, first, count));
     };

@@ -120,8 +120,8 @@ RenderOutput ProxyRenderer::step(const DeviceState& device, double time_s) {
 // result is kept while the proxy rests.
 const ProxyRenderer::LocalQuery& ProxyRenderer::local_query() {
   if (has_local_query_ && proxy_W_ == query_position_W_) return local_query_;
-  // The results are constructed in place. A copy would wait, in each step, until they are in the cache: the
-  // processor forwards no number to a load that is wider than the store.
+  // The results are constructed in place. A copy would wait, in each step, until they are in the cache: a
+  // processor cannot forward a stored number to a load that is wider than the store.
   const PointsView* const points = ::new (&local_query_.points) PointsView(near_.around(proxy_W_).view());
   ::new (&local_query_.query) ContactQuery(query(*points, proxy_W_));
   local_query_.state = classify(local_query_.query.nearest, p_);

@@ -141,8 +141,10 @@ int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const CommandLine& 
                  line, request);
 }
 
-int make_runs(const CommandLine& line, const SweepRequest& request, const std::string& file,
-              SweepSession session) {
+// Does what is left of a session, with progress. Returns false if it was interrupted.
+template <class Session>
+bool run_session(const CommandLine& line, const SweepRequest& request, const std::string& file,
+                 Session& session) {
   Progress progress(request.sweep, line.quiet);
   try {
     const bool any = session.run(*line.kernels, line.stop, [&](auto done, auto total, auto earlier) {
@@ -150,9 +152,16 @@ int make_runs(const CommandLine& line, const SweepRequest& request, const std::s
     });
     if (!any) std::printf("%s: nothing left to do\n", printable(file).c_str());
   } catch (const Interrupted&) {
-    return print_interrupted(file, session.result().runs_in(RunState::done).size());
+    return false;
   }
   print_replaced(request.overrides);
+  return true;
+}
+
+int make_runs(const CommandLine& line, const SweepRequest& request, const std::string& file,
+              SweepSession session) {
+  if (!run_session(line, request, file, session))
+    return print_interrupted(file, session.result().runs_in(RunState::done).size());
   const int code = print_summary(file, session.result());
   if (request.strict) refuse_notes(session.result());
   return code;
@@ -160,16 +169,8 @@ int make_runs(const CommandLine& line, const SweepRequest& request, const std::s
 
 int make_tally(const CommandLine& line, const SweepRequest& request, const std::string& file,
                TallySession session) {
-  Progress progress(request.sweep, line.quiet);
-  try {
-    const bool any = session.run(*line.kernels, line.stop, [&](auto done, auto total, auto earlier) {
-      progress.update(done, total, earlier, "runs");
-    });
-    if (!any) std::printf("%s: nothing left to do\n", printable(file).c_str());
-  } catch (const Interrupted&) {
+  if (!run_session(line, request, file, session))
     return print_interrupted(file, session.tally().held.count());
-  }
-  print_replaced(request.overrides);
   const int code = print_summary(file, session.tally(), session.digest());
   if (request.strict) refuse_notes(session.tally());
   return code;

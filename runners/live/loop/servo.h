@@ -46,7 +46,7 @@ struct LiveTick {
   float waited_s = 0;           // if a frame was taken: its time from ready to taken
 };
 
-// Where a slave was after a tick, world frame.
+// The place of a slave after a tick, world frame.
 struct SlavePlace {
   double time_s = 0;
   Vec3 position_W = Vec3::Zero();

@@ -10,7 +10,7 @@
 namespace remote_touch::run_spool_test {
 namespace {
 
-constexpr std::size_t kCells = 1'100'000;  // more than one window
+constexpr std::size_t kCells = 1'100'000;  // several windows
 constexpr std::size_t kParts = 3;
 
 SweepResult outline() {
@@ -57,7 +57,7 @@ TEST(RunSpool, ReturnsTheRunsOfAllPartsInOrder) {
   spool.complete(true);
   ASSERT_EQ(spool.outline().held_count(), kCells);
   EXPECT_EQ(spool.longest_error(), 11u) << "run 1000000";
-  // Blocks over the boundary of the windows, and in any order.
+  // Blocks over a boundary of two windows, and in any order.
   for (const std::size_t first : {1'048'570u, 0u, 1'099'990u}) {
     const auto forces = std::get<std::vector<double>>(spool.values("force", first, 10));
     const auto states = std::get<std::vector<std::int32_t>>(spool.values("state", first, 10));
@@ -101,7 +101,7 @@ TEST(RunSpool, WithoutAPartOrWithOneTwiceIsRefused) {
   EXPECT_HAS(refusal([&] { doubled.complete(false); }), "b: holds run 0, as another part does");
 }
 
-// With refinement, runs that no part holds are not sampled.
+// Runs that no part holds are not sampled, if the sweep has refinement.
 TEST(RunSpool, WithRefinementMayLackRuns) {
   const TestFolder folder("run_spool_test");
   RunSpool spool(outline(), true, folder / "out.h5");

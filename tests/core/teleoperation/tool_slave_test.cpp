@@ -314,7 +314,7 @@ TEST(ToolSlave, ForceAndTorqueAreContinuousWhileThePlateRocks) {
   EXPECT_LT(torques, 0.1 * (right - left));
 }
 
-// Behind a surface whose normal is not known, the force is not known either.
+// The force is not known behind a surface whose normal is not known.
 TEST(ToolSlave, TouchesNothingWhereTheSurfaceIsNotKnown) {
   for (const bool knows_distance : {false, true}) {
     const SlaveScene scene = knows_distance ? plane() : nothing();

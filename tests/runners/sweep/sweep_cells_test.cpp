@@ -1,4 +1,4 @@
-// Which cells of a sweep are checked, and which belong to its first round.
+// The cells of a sweep that are checked, and those of its first round.
 #include "runners/sweep/sweep_cells.h"
 
 #include <gtest/gtest.h>

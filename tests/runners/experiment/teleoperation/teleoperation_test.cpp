@@ -67,7 +67,7 @@ TEST(Teleoperation, TheCommandIsWhatIsSent) {
     EXPECT_EQ(Teleoperation(with(force), {}, kTick_s, ground()).command(device, out), device.position_W);
 }
 
-// What is not known is not shown as zero, but the hand feels no NaN.
+// An unknown force is not shown as zero, but the hand feels no NaN.
 TEST(Teleoperation, AForceWithoutANormalIsNotKnown) {
   SlaveScene scene = ground();
   scene.normal = [](const Vec3&, double) { return Vec3(Vec3::Constant(std::nan(""))); };
