@@ -330,6 +330,10 @@ TextAttributes of_caller(const TextAttributes& all) {
 
 }  // namespace
 
+bool is_tally(const Hdf5Reader& file) {
+  return is_schema_of(attribute(file.attributes(), "schema"), "tally");
+}
+
 StoredTally read_tally(const Hdf5Reader& file) {
   TallyReader reader(file);
   return {reader.tally(), of_caller(file.attributes()), reader.text("schema")};

@@ -42,6 +42,8 @@ std::string write_tally(const std::filesystem::path& file, const SweepTally& tal
 // True if an axis or a measure may have that name.
 bool is_free_in_tallies(const std::string& name);
 
+bool is_tally(const Hdf5Reader& file);
+
 struct StoredTally {
   SweepTally tally;
   TextAttributes attributes;  // attributes of the caller of write_tally()

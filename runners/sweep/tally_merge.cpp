@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/schema.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/seen_shards.h"
@@ -42,10 +41,6 @@ void require_nothing_more(const MergeRequest& request, const SweepTally& merged)
 }
 
 }  // namespace
-
-bool is_tally(const std::string& file) {
-  return is_schema_of(attribute(Hdf5Reader(file).attributes(), "schema"), "tally");
-}
 
 MergedTally merge_tallies(const MergeRequest& request) {
   std::optional<StoredTally> merged;

@@ -8,9 +8,6 @@
 
 namespace remote_touch {
 
-// True if the file is a tally. Throws InputError if it cannot be read.
-bool is_tally(const std::string& file);
-
 struct MergedTally {
   SweepTally tally;
   std::string digest;

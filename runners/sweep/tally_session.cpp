@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
-#include <mutex>
 #include <new>
 
 #include "analysis/storage/atomic_file.h"
@@ -20,7 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxCells = 1'000'000;
-constexpr std::size_t kLeastBatch = 16, kMostBatch = 65536;  // runs that are added together
+constexpr std::size_t kLeastPart = 16, kMostPart = 1 << 20;  // runs that are added together
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -34,32 +32,17 @@ SweepTally without_runs(const Sweep& sweep) {
   return tally;
 }
 
-// Does the runs, in parallel. Runs that were not done, because the batch ended early, are pending; failure is
-// the reason.
-std::vector<RunOutcome> outcomes_of(const Sweep& sweep, const SweepTally& tally,
-                                    const std::vector<std::uint64_t>& runs, const SweepRunOptions& options,
-                                    std::exception_ptr& failure) {
-  const auto replicates = static_cast<std::uint64_t>(tally.replicates);
-  std::vector<RunOutcome> outcomes(runs.size());
-  std::mutex one_at_a_time;
-  std::atomic<bool> ends{false};
-  options.runs(runs.size(), [&](std::size_t i) {
-    if (ends) return;
-    try {
-      outcomes[i] = do_run(sweep, options, static_cast<std::size_t>(runs[i] / replicates),
-                           static_cast<int>(runs[i] % replicates));
-    } catch (...) {
-      const std::lock_guard lock(one_at_a_time);
-      if (!ends.exchange(true)) failure = std::current_exception();
-    }
-  });
-  return outcomes;
-}
-
-void add(const TallyLayout& layout, std::uint64_t run, const RunOutcome& outcome, SweepTally& tally) {
-  if (outcome.state == RunState::done)
-    tally.add_done(layout, run, outcome.values, static_cast<std::uint32_t>(outcome.notes));
-  if (outcome.state == RunState::failed) tally.add_failed(layout, run, outcome.error);
+// Adds the runs of the part that were made.
+void add(const SweepResult& part, const TallyLayout& layout, SweepTally& tally) {
+  std::vector<double> values(part.measures.size());
+  for (std::size_t place = 0; place < part.held_count(); ++place) {
+    for (std::size_t m = 0; m < values.size(); ++m)
+      values[m] = std::get<std::vector<double>>(part.measures[m].values)[place];
+    if (part.state[place] == RunState::done)
+      tally.add_done(layout, part.run_at(place), values, static_cast<std::uint32_t>(part.notes[place]));
+    if (part.state[place] == RunState::failed)
+      tally.add_failed(layout, part.run_at(place), part.error[place]);
+  }
 }
 
 }  // namespace
@@ -118,31 +101,37 @@ void TallySession::store() {
 }
 
 bool TallySession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
-  SweepRunOptions options;
-  options.kernels = &kernels, options.stop = stop;
+  const DoPart here = [&](SweepResult& part) {
+    if (do_pending_runs(sweep_, part, {&kernels, stop}) > 0) throw std::bad_alloc();
+  };
+  return run(here, 2, progress);
+}
+
+bool TallySession::run(const DoPart& do_part, double part_s, const Progress& progress) {
   const TallyLayout layout = tally_.layout();
   const std::size_t earlier = tally_.held.count();
-  std::size_t batch = kLeastBatch;
+  std::size_t size = kLeastPart;
   auto stored = Clock::now();
   double storing_s = 0.5;
   for (;;) {
-    const std::vector<std::uint64_t> runs = next_runs(batch);
-    if (runs.empty()) break;
+    SweepResult part = sweep_.part(next_runs(size));
+    if (part.held_count() == 0) break;
     const auto start = Clock::now();
-    std::exception_ptr failure;
-    const std::vector<RunOutcome> outcomes = outcomes_of(sweep_, tally_, runs, options, failure);
-    for (std::size_t i = 0; i < runs.size(); ++i) add(layout, runs[i], outcomes[i], tally_);
-    if (failure) {
+    try {
+      do_part(part);
+    } catch (...) {
+      add(part, layout, tally_);
       if (tally_.held.count() > earlier) store();
-      std::rethrow_exception(failure);
+      throw;
     }
+    add(part, layout, tally_);
     progress(tally_.held.count(), own_runs(), earlier);
-    if (seconds_since(start) < 1) batch = std::min(2 * batch, kMostBatch);
-    if (seconds_since(start) > 3) batch = std::max(batch / 2, kLeastBatch);
+    if (seconds_since(start) < part_s / 2) size = std::min(2 * size, kMostPart);
+    if (seconds_since(start) > 1.5 * part_s) size = std::max(size / 2, kLeastPart);
     if (seconds_since(stored) < std::max(10.0, 20 * storing_s)) continue;
     const auto began = Clock::now();
     store();
-    stored = Clock::now(), storing_s = std::chrono::duration<double>(stored - began).count();
+    stored = Clock::now(), storing_s = seconds_since(began);
   }
   if (tally_.held.count() == earlier) {
     digest_ = remote_touch::digest(tally_);

@@ -29,9 +29,15 @@ class TallySession {
   using Progress = std::function<void(std::size_t done, std::size_t total, std::size_t earlier)>;
   bool run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
 
+  // The same with runs that are done elsewhere, a part of about part_s seconds after the other. do_part: puts
+  // the outcomes of the pending runs into the part. Runs that are still pending when it throws are not made.
+  using DoPart = std::function<void(SweepResult& part)>;
+  bool run(const DoPart& do_part, double part_s, const Progress& progress);
+
   const SweepTally& tally() const { return tally_; }
-  std::uint64_t own_runs() const;                        // number of runs of the shard
-  const std::string& digest() const { return digest_; }  // digest of the file, after run()
+  const TextAttributes& attributes() const { return attributes_; }  // of the file, without the digest
+  std::uint64_t own_runs() const;                                   // number of runs of the shard
+  const std::string& digest() const { return digest_; }             // digest of the file, after run()
 
  private:
   std::vector<std::uint64_t> next_runs(std::size_t count);

@@ -15,7 +15,6 @@
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_notes.h"
-#include "runners/sweep/tally_merge.h"
 
 namespace remote_touch {
 
@@ -107,7 +106,8 @@ int command_analyse(const CommandLine& line, const AnalyseRequest& request) {
   const std::string ending = std::filesystem::path(request.output).extension().string();
   if (!request.output.empty() && ending != ".h5" && ending != ".csv")
     throw InputError("--output " + request.output, "expected a file that ends with .h5 or .csv");
-  const Answer answer = is_tally(request.sweep) ? answer_of_tally(request) : answer_of_runs(request);
+  const Answer answer =
+      is_tally(Hdf5Reader(request.sweep)) ? answer_of_tally(request) : answer_of_runs(request);
   if (ending == ".h5") write_hdf5(line, request, answer);
   if (ending == ".csv") write_tables(line, request, answer.figure);
   std::fputs(answer_text(answer.figure, answer.done, answer.asked).c_str(), stdout);

@@ -16,7 +16,6 @@
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_replay.h"
-#include "runners/sweep/tally_merge.h"
 #include "runners/sweep/tally_outline.h"
 
 namespace remote_touch {
@@ -25,7 +24,7 @@ namespace {
 
 // Returns the sweep in the file; without runs if it is a tally.
 StoredSweep stored_in(const std::string& file) {
-  if (!is_tally(file)) return read_stored_part(file);
+  if (!is_tally(Hdf5Reader(file))) return read_stored_part(file);
   StoredTally tally = read_tally(Hdf5Reader(file));
   return {outline_of(tally.tally), std::move(tally.attributes), false, tally.schema};
 }

@@ -48,21 +48,22 @@ py::dict open_result(const std::string& file) {
   std::vector<Column> columns;
   TextAttributes attributes;
   StoredSweep sweep;
+  StoredTally tally;
   {
     const py::gil_scoped_release without_lock;
     const FileTurn turn;
     const Hdf5Reader reader(file);
-    kind = kind_of(reader);
+    kind = is_tally(reader) ? "tally" : kind_of(reader);
     attributes = present_attributes(reader.attributes());
     if (kind == "sweep") sweep = read_stored_sweep(reader);
+    if (kind == "tally") tally = read_tally(reader);
     if (kind == "trace") columns = all_columns(StoredTrace(reader));
     if (kind == "figure") columns = all_columns(StoredFigure(reader));
   }
   if (kind == "hashes") throw InputError(file, "is a file of hashes: expected a trace, a sweep or a figure");
+  if (kind == "tally") return to_python(tally);
   if (kind != "sweep") return as_dict(kind.c_str(), std::move(columns), attributes);
-  py::dict all = to_python(std::move(sweep));
-  all["kind"] = "sweep";
-  return all;
+  return to_python(std::move(sweep));
 }
 
 Tolerances tolerances_of(const py::dict& given) {

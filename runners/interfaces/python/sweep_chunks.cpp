@@ -16,6 +16,7 @@
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_origin.h"
 #include "runners/sweep/sweep_session.h"
+#include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
 
@@ -92,7 +93,8 @@ class WorkerSweep {
   std::string inputs_;
 };
 
-// Puts the outcomes of a chunk into the result. Throws InputError for one that no worker of this build makes.
+// Puts the outcomes of a chunk into the result, and calls stored with each place. Throws InputError for a
+// chunk that no worker of this build makes.
 void store(SweepResult& result, const std::function<void(std::size_t)>& stored,
            const Array<std::uint64_t>& runs, const Array<std::int32_t>& states, const Array<double>& values,
            const Array<std::int32_t>& notes, const Texts& errors) {
@@ -100,15 +102,18 @@ void store(SweepResult& result, const std::function<void(std::size_t)>& stored,
   bool fits = states.size() == count && notes.size() == count && values.ndim() == 2 &&
               values.shape(0) == static_cast<py::ssize_t>(result.measures.size()) &&
               values.shape(1) == count && errors.size() == static_cast<std::size_t>(count);
+  std::vector<std::size_t> places;
   for (py::ssize_t i = 0; fits && i < count; ++i) {
     const auto state = static_cast<RunState>(states.data()[i]);
-    fits = runs.data()[i] < result.state.size() && result.state[runs.data()[i]] == RunState::pending &&
+    const auto place = result.place_of(runs.data()[i]);
+    fits = place && *place < result.state.size() && result.state[*place] == RunState::pending &&
            (state == RunState::done || state == RunState::failed) && notes.data()[i] >= 0 &&
            notes.data()[i] >> result.note_kinds.size() == 0;
+    if (fits) places.push_back(*place);
   }
   if (!fits) throw InputError("a chunk", "damaged: expected an outcome for each of its runs");
   for (py::ssize_t i = 0; i < count; ++i) {
-    const std::size_t place = runs.data()[i];
+    const std::size_t place = places[static_cast<std::size_t>(i)];
     for (std::size_t m = 0; m < result.measures.size(); ++m)
       std::get<std::vector<double>>(result.measures[m].values)[place] =
           values.at(static_cast<py::ssize_t>(m), i);
@@ -119,37 +124,75 @@ void store(SweepResult& result, const std::function<void(std::size_t)>& stored,
   }
 }
 
-// Does a sweep by calls of do_round(config, inputs, pending, done, store, forget), a function in Python: one
-// call for each round, on this thread, so that Ctrl-C arrives in it.
+// A sweep whose runs others do, by calls of a function in Python, do_round(config, inputs, pending, done,
+// total, is_tally, store, forget), on this thread, so that Ctrl-C arrives in it. pending: the numbers of the
+// runs to do. done, total: the number of finished runs, now and in the end. is_tally: earlier runs cannot be
+// forgotten, because they are added up. store, forget: see store() and SweepSession::forget().
+struct WorkElsewhere {
+  const Sweep& sweep;
+  const std::string inputs;
+  const py::function& do_round;
+
+  void operator()(SweepResult& result, std::size_t done, std::size_t total,
+                  const std::function<void(std::size_t)>& stored,
+                  const std::function<void(const std::vector<std::size_t>&)>& forget) const {
+    const py::gil_scoped_acquire lock;
+    std::vector<std::uint64_t> pending;
+    for (const std::size_t place : result.runs_in(RunState::pending)) pending.push_back(result.run_at(place));
+    const auto count = static_cast<py::ssize_t>(pending.size());
+    do_round(py::bytes(sweep.to_json()), inputs, owning_array(std::move(pending), {count}), done, total,
+             sweep.keep() != Keep::runs,
+             py::cpp_function(
+                 [&](const Array<std::uint64_t>& runs, const Array<std::int32_t>& states,
+                     const Array<double>& values, const Array<std::int32_t>& notes,
+                     const Texts& errors) { store(result, stored, runs, states, values, notes, errors); }),
+             py::cpp_function([&](const std::vector<std::size_t>& runs) { forget(runs); }));
+  }
+};
+
+SweepResult runs_elsewhere(SweepSession session, const WorkElsewhere& work) {
+  const auto do_runs = [&](SweepResult& result, const std::function<void(std::size_t)>& stored) {
+    const std::size_t done = result.runs_in(RunState::done).size();
+    work(result, done, done + result.runs_in(RunState::pending).size(), stored,
+         [&](const std::vector<std::size_t>& runs) { session.forget(runs); });
+    return std::size_t{0};
+  };
+  session.run(do_runs, [](auto...) {});
+  return session.result();
+}
+
+// A part of a tally takes half a minute, because the workers wait for each other at its end.
+StoredTally tally_elsewhere(TallySession session, const WorkElsewhere& work) {
+  constexpr double kPart_s = 30;
+  const auto do_part = [&](SweepResult& part) {
+    work(
+        part, session.tally().held.count(), session.own_runs(), [](std::size_t) {},
+        [&](const std::vector<std::size_t>& runs) {
+          for (const std::size_t run : runs)
+            if (const auto place = part.place_of(run)) part.state[*place] = RunState::pending;
+        });
+  };
+  session.run(do_part, kPart_s, [](auto...) {});
+  return {session.tally(), session.attributes()};
+}
+
 py::dict sweep_in_chunks(const std::string& subject, const std::optional<std::string>& text,
                          const Texts& overrides, const std::string& output, const py::function& do_round) {
   StoredSweep all;
+  std::optional<StoredTally> tally;
   {
     const py::gil_scoped_release without_lock;
     const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
-    const std::string inputs = input_hashes(sweep.inputs());
-    all.attributes = provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", inputs);
+    const WorkElsewhere work{sweep, input_hashes(sweep.inputs()), do_round};
+    all.attributes = provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", work.inputs);
     require_writable(output);
     const FileTurn turn(FileTurn::For::a_sweep);
-    SweepSession session(sweep, Shard{}, all.attributes, output);
-    const auto do_runs = [&](SweepResult& result, const std::function<void(std::size_t)>& stored) {
-      const py::gil_scoped_acquire lock;
-      const std::vector<std::size_t> pending = result.runs_in(RunState::pending);
-      do_round(py::bytes(sweep.to_json()), inputs,
-               owning_array(std::vector<std::uint64_t>(pending.begin(), pending.end()),
-                            {static_cast<py::ssize_t>(pending.size())}),
-               result.runs_in(RunState::done).size(),
-               py::cpp_function(
-                   [&](const Array<std::uint64_t>& runs, const Array<std::int32_t>& states,
-                       const Array<double>& values, const Array<std::int32_t>& notes,
-                       const Texts& errors) { store(result, stored, runs, states, values, notes, errors); }),
-               py::cpp_function([&](const std::vector<std::size_t>& runs) { session.forget(runs); }));
-      return std::size_t{0};
-    };
-    session.run(do_runs, [](auto...) {});
-    all.result = session.result();
+    if (sweep.keep() == Keep::runs)
+      all.result = runs_elsewhere(SweepSession(sweep, Shard{}, all.attributes, output), work);
+    else
+      tally = tally_elsewhere(TallySession(sweep, Shard{}, all.attributes, output), work);
   }
-  return to_python(std::move(all));
+  return tally ? to_python(*tally) : to_python(std::move(all));
 }
 
 }  // namespace

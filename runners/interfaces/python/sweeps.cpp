@@ -9,6 +9,7 @@
 #include "analysis/storage/schema.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
@@ -21,6 +22,7 @@
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_session.h"
+#include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
 
@@ -54,17 +56,35 @@ SweepResult in_file(const Sweep& sweep, const TextAttributes& origin, const std:
   return session.result();
 }
 
+StoredTally tally_in_file(const Sweep& sweep, const TextAttributes& origin, const std::string& file,
+                          const LongWork& work) {
+  if (file.empty())
+    throw InputError(sweep.title(), "keeps a tally: expected an output, which the runs are added to");
+  require_writable(file);
+  const FileTurn turn(FileTurn::For::a_sweep);
+  TallySession session(sweep, Shard{}, origin, file);
+  session.run(work.kernels, &work.stop, [&](std::size_t done, std::size_t all, std::size_t) {
+    work.progress(static_cast<double>(done) / static_cast<double>(all));
+  });
+  return {session.tally(), session.attributes()};
+}
+
 py::dict run_sweep_of(const std::string& subject, const std::optional<std::string>& text,
                       const std::vector<std::string>& overrides, int threads, const std::string& output,
                       const py::object& report) {
   StoredSweep stored;
+  std::optional<StoredTally> tally;
   do_long_work(report, threads, [&](const LongWork& work) {
     const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
     stored.attributes =
         provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", input_hashes(sweep.inputs()));
-    stored.result = output.empty() ? in_memory(sweep, work) : in_file(sweep, stored.attributes, output, work);
+    if (sweep.keep() != Keep::runs)
+      tally = tally_in_file(sweep, stored.attributes, output, work);
+    else
+      stored.result =
+          output.empty() ? in_memory(sweep, work) : in_file(sweep, stored.attributes, output, work);
   });
-  return to_python(std::move(stored));
+  return tally ? to_python(*tally) : to_python(std::move(stored));
 }
 
 // parts: axes and measures as lists of columns, the states of the runs, the number of replicates, and the
@@ -86,20 +106,28 @@ SweepResult result_of(const py::tuple& parts) {
   return result;
 }
 
+Figure answer_of(const std::string& file, const SweepQuestion& question) {
+  const FileTurn turn;
+  const Hdf5Reader reader(file);
+  if (is_tally(reader)) {
+    const StoredTally stored = read_tally(reader);
+    return sweep_answer(stored.tally, attribute(stored.attributes, "config"), question);
+  }
+  const StoredSweep stored = read_stored_sweep(reader);
+  return sweep_answer(stored.result, attribute(stored.attributes, "config"), question);
+}
+
 // file: of a sweep, or empty for one in memory, which has parts and a configuration.
 py::dict analyse(const std::string& file, const py::tuple& parts, const std::string& config,
                  const SweepQuestion& question) {
-  StoredSweep stored;
-  if (file.empty()) stored.result = result_of(parts);
   Figure answer;
-  {
+  if (file.empty()) {
+    const SweepResult result = result_of(parts);
     const py::gil_scoped_release without_lock;
-    if (!file.empty()) {
-      const FileTurn turn;
-      stored = read_stored_sweep(file);
-    }
-    answer =
-        sweep_answer(stored.result, file.empty() ? config : attribute(stored.attributes, "config"), question);
+    answer = sweep_answer(result, config, question);
+  } else {
+    const py::gil_scoped_release without_lock;
+    answer = answer_of(file, question);
   }
   std::vector<Column> columns;
   for (const Table& table : answer.tables) {
@@ -127,6 +155,7 @@ py::dict to_python(StoredSweep stored) {
   for (const Column& axis : result.axes) shape.push_back(static_cast<py::ssize_t>(axis.length()));
   shape.push_back(result.replicates);
   py::dict all;
+  all["kind"] = "sweep";
   all["attributes"] = to_python(attributes);
   all["axes"] = to_python(std::move(result.axes));
   py::list measures;

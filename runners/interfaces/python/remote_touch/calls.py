@@ -33,7 +33,8 @@ def sweep(sweep, *, set=None, threads=None, output=None, progress=None, executor
 
     sweep: a name, a path of a JSON file, or a dict. set: settings of the sweep or of its experiment, by path. threads:
     of all processors if None; the result does not depend on it. output: a file that goes on where an interrupted call
-    stopped. Failed runs are NaN, with their reason in the variable error, and a warning.
+    stopped. Failed runs are NaN, with their reason in the variable error, and a warning. A sweep that keeps a tally needs an
+    output; its variables count the runs of each cell, and have the mean, standard_deviation, least and greatest of each measure.
 
     executor: a concurrent.futures.Executor, whose workers do the runs, one thread each, and this process the file `output`.
     chunk: runs that a worker does in one call; None: as many as take about a second. The attributes checked_runs and
@@ -104,7 +105,7 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
 
 
 def open(path):
-    """Reads a result: a trace or a sweep as a Dataset; a figure or a scorecard as a dict of Datasets, its tables.
+    """Reads a result: a trace, a sweep or a tally as a Dataset; a figure or a scorecard as a dict of Datasets, its tables.
 
     A folder of a scorecard stands for the file scorecard.h5 in it.
     """
@@ -113,7 +114,7 @@ def open(path):
     if os.path.isdir(file):
         file = os.path.join(file, b"scorecard.h5")
     result = _core.open(file)
-    return {"trace": dataset.of_trace, "sweep": dataset.of_sweep, "figure": dataset.of_figure}[result["kind"]](result)
+    return {"trace": dataset.of_trace, "sweep": dataset.of_sweep, "tally": dataset.of_tally, "figure": dataset.of_figure}[result["kind"]](result)
 
 
 class Comparison:

@@ -47,21 +47,25 @@ class _Chunk:
 
 
 class Engine:
-    """One call of rt.sweep with an executor. do_round() is called for the runs of each round."""
+    """One call of rt.sweep with an executor. do_round() is called for the runs of each round, or part of a tally."""
 
     def __init__(self, executor, chunk, output, report):
         self.executor, self.fixed, self.output, self.report = executor, chunk, output, report
         self.size, self.number = chunk or 1, 0
         self.build = _core.build()
-        self.made_by = collections.defaultdict(list)  # worker: the runs of its chunks
+        self.made_by = collections.defaultdict(list)  # worker: the runs of its chunks that can be forgotten
+        self.made_for_good = set()  # workers whose earlier runs are added up in a tally
         self.seen = {}  # (worker, thread): when its last chunk arrived, the latest last
         self.checked = self.checked_by_another = self.successes = 0
         self._submit(os.getpid)  # starts forked workers before the file is locked: they would hold the lock, too
 
-    def do_round(self, config, inputs, pending, done, store, forget):
-        """Does the pending runs. done: number of runs that are done. store and forget: see sweep_chunks.cpp."""
+    def do_round(self, config, inputs, pending, done, total, is_tally, store, forget):
+        """Does the pending runs. The arguments: see WorkElsewhere in sweep_chunks.cpp."""
         self.config, self.inputs, self.pending, self.store, self.forget = config, inputs, pending, store, forget
-        self.done, self.ended, self.total, self.next = done, done, done + len(pending), 0
+        self.done, self.ended, self.total, self.next = done, done, total, 0
+        if is_tally:
+            self.made_for_good.update(self.made_by)
+            self.made_by.clear()
         self.to_check, self.again, flying = _chosen(pending), collections.deque(), {}
         try:
             while True:
@@ -155,7 +159,7 @@ class Engine:
         if again != outcome:
             self._refuse(int(chunk.runs[0]), outcome, worker, again, made["worker"])
         is_another = made["worker"] != worker
-        if not is_another and len(self.made_by) > 1 and chunk.repeats < 2:  # another one may have it next time
+        if not is_another and len(self.made_for_good.union(self.made_by)) > 1 and chunk.repeats < 2:  # another one may have it next time
             chunk.repeats += 1
             self.again.append(chunk)
             return
@@ -165,9 +169,10 @@ class Engine:
     def _refuse(self, run, outcome, worker, again, other):
         runs = np.unique(np.concatenate(self.made_by[worker] + (self.made_by[other] if other != worker else [])))
         self.forget(runs)
+        earlier = "; the tally also has earlier runs by them: expected a new file" if {worker, other} & self.made_for_good else ""
         raise RuntimeError(f"{self.output}: run {run} has {_text(outcome)} by worker {worker}, but {_text(again)} by worker "
                            f"{other}: one of them computes wrongly; the {len(runs)} runs that they made are pending again: "
-                           f"{_ranges(runs)}")
+                           f"{_ranges(runs)}{earlier}")
 
 
 def _is_lost(future):

@@ -42,15 +42,30 @@ def of_trace(result):
     return xr.Dataset(variables, coordinates, attributes)
 
 
-def of_sweep(result):
-    """Measures over the axes and the replicates."""
-    dimensions, coordinates = [], {}
+def _axes(result):
+    """The coordinates of the axes by name, in their order."""
+    coordinates = {}
     for name, units, long_name, values, value_names in result["axes"]:
         if value_names:
             values, units = np.array(value_names)[values], "1"
-        dimensions.append(name)
         coordinates[name] = (name, values, _attributes(units, long_name, []))
-    dimensions.append("replicate")
+    return coordinates
+
+
+def of_tally(result):
+    """Counts and statistics of the measures over the axes."""
+    coordinates = _axes(result)
+    variables = {name: ([*coordinates], values, _attributes(units, long_name, value_names))
+                 for name, units, long_name, values, value_names in result["columns"]}
+    return xr.Dataset(variables, coordinates, dict(result["attributes"]))
+
+
+def of_sweep(result):
+    """Measures over the axes and the replicates; of a sweep that keeps a tally, see of_tally()."""
+    if result["kind"] == "tally":
+        return of_tally(result)
+    coordinates = _axes(result)
+    dimensions = [*coordinates, "replicate"]
     coordinates["replicate"] = ("replicate", np.arange(result["replicates"]),
                                 _attributes("1", "number of the repeated run", []))
     variables = {name: (dimensions, values, _attributes(units, long_name, value_names))
@@ -68,6 +83,8 @@ def of_sweep(result):
 
 def warned(sweep, subject):
     """The same, after a warning if some of its runs failed."""
+    if "failed" in sweep and (failed := int(sweep["failed"].sum())):
+        warnings.warn(f"{subject}: {failed} of {int(sweep['runs'].sum())} runs failed", stacklevel=3)
     if "error" in sweep:
         failed = [text for text in sweep["error"].values.ravel() if text]
         warnings.warn(f"{subject}: {len(failed)} of {sweep['error'].size} runs failed, the first: {failed[0]}",

@@ -156,3 +156,27 @@ def test_an_analysis_of_a_file_and_of_a_data_set_are_the_same(tmp_path):
 def test_a_wrong_question_is_refused_in_one_line(question, problem):
     with pytest.raises(rt.InputError, match=problem):
         rt.analyse(rt.sweep({**SWEEP, "axes": SWEEP["axes"][:1]}), **question)
+
+
+def test_a_tally_has_the_counts_and_means_of_the_runs(tmp_path, command_line):
+    plan = {**SWEEP, "keep": "events", "replicates": 20}
+    file = tmp_path / "plan.json"
+    file.write_text(json.dumps(plan))
+    tally = rt.sweep(file, output=tmp_path / "tally.h5", threads=2)
+    runs = rt.sweep({**plan, "keep": "runs"})
+    assert (tally.runs == 20).all() and (tally.failed == 0).all() and "replicate" not in tally.dims
+    np.testing.assert_allclose(tally.max_force_mean, runs.max_force.mean("replicate"), rtol=1e-15)
+    np.testing.assert_allclose(tally.max_force_standard_deviation, runs.max_force.std("replicate", ddof=1), atol=1e-13)
+    assert (tally.max_force_least == runs.max_force.min("replicate")).all()
+    assert (tally.max_force_greatest == runs.max_force.max("replicate")).all()
+    assert tally.max_force_mean.attrs["units"] == "N" and tally.equals(rt.open(tmp_path / "tally.h5"))
+    of_tally, of_runs = (rt.analyse(of, mean="max_force", by="noise_sigma_m")["mean_max_force"]
+                         for of in (tmp_path / "tally.h5", runs))
+    np.testing.assert_allclose(of_tally["mean"], of_runs["mean"], rtol=1e-14)
+    command_line("sweep", file, "-o", tmp_path / "command.h5")
+    assert_same_file(tmp_path / "tally.h5", tmp_path / "command.h5")
+
+
+def test_a_tally_needs_a_file():
+    with pytest.raises(rt.InputError, match="keeps a tally: expected an output"):
+        rt.sweep({**SWEEP, "keep": "tally"})
