@@ -1,5 +1,6 @@
 #include "runners/evaluation/figures/figures.h"
 
+#include "runners/evaluation/figures/studies/study_figures.h"
 #include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
 
 namespace remote_touch {
@@ -27,6 +28,9 @@ constexpr FigureEntry kFigures[] = {
      figure_first_touch, 1.3},
     {"proxy-rates", "whether (4.23), (4.24) and the 16 r_c/s of [1] can come from one machine",
      figure_proxy_rates, 20},
+    {"pop-through-law",
+     "from which acceleration on lifts pop through, over spacing, noise and speed: a law from 1e7 lifts",
+     figure_pop_through_law, 12},
     {"4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14, 0.15},
     {"4.15", "ramp and box as the points of a simulated depth camera, in 3-D", figure_4_15, 0.1},
     {"4.15-meshes",

@@ -8,7 +8,8 @@
 namespace remote_touch {
 
 // A new figure is one file, its name at the end of this header, and one line in figures.cpp. Those of
-// teleoperation are in a folder of their own, with their names in teleoperation_figures.h.
+// teleoperation and of studies are in folders of their own, with their names in teleoperation_figures.h and
+// study_figures.h.
 struct FigureEntry {
   const char* name;
   const char* summary;
