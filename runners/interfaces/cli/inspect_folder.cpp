@@ -3,7 +3,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/cli/commands.h"
-#include "runners/sweep/shard_folder.h"
+#include "runners/sweep/shards/shard_folder.h"
 
 namespace remote_touch {
 

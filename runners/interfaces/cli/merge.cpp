@@ -1,4 +1,4 @@
-#include "runners/sweep/shard_merge.h"
+#include "runners/sweep/shards/shard_merge.h"
 
 #include <optional>
 
@@ -7,7 +7,7 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/sweep/tally_merge.h"
+#include "runners/sweep/shards/tally_merge.h"
 
 namespace remote_touch {
 

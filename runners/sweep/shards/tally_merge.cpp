@@ -1,4 +1,4 @@
-#include "runners/sweep/tally_merge.h"
+#include "runners/sweep/shards/tally_merge.h"
 
 #include <filesystem>
 #include <optional>
@@ -6,7 +6,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/sweep/seen_shards.h"
+#include "runners/sweep/shards/seen_shards.h"
 #include "runners/sweep/sweep_origin.h"
 
 namespace remote_touch {

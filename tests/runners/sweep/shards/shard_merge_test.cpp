@@ -1,5 +1,5 @@
 // Merging shards: the bytes of a whole sweep, some shards only, and what is refused.
-#include "runners/sweep/shard_merge.h"
+#include "runners/sweep/shards/shard_merge.h"
 
 #include <gtest/gtest.h>
 

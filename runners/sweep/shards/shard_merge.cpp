@@ -1,4 +1,4 @@
-#include "runners/sweep/shard_merge.h"
+#include "runners/sweep/shards/shard_merge.h"
 
 #include <algorithm>
 #include <map>
@@ -10,7 +10,7 @@
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/sweep/seen_shards.h"
+#include "runners/sweep/shards/seen_shards.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_origin.h"
 #include "scenarios/text_files/json_text.h"

@@ -1,5 +1,5 @@
 // How far the shards of a folder are: finished, running, stopped, absent.
-#include "runners/sweep/shard_folder.h"
+#include "runners/sweep/shards/shard_folder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runners/sweep/shard_folder.h"
+#include "runners/sweep/shards/shard_folder.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

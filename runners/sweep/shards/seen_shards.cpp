@@ -1,4 +1,4 @@
-#include "runners/sweep/seen_shards.h"
+#include "runners/sweep/shards/seen_shards.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "analysis/tally/sweep_tally.h"
-#include "runners/sweep/shard_merge.h"
+#include "runners/sweep/shards/shard_merge.h"
 
 namespace remote_touch {
 
