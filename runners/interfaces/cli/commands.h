@@ -125,6 +125,11 @@ struct ReplayRequest {
 };
 int command_replay(const CommandLine& line, const ReplayRequest& request);
 
+struct RecheckRequest {
+  std::vector<std::string> sweeps;  // finished sweeps, or shards
+};
+int command_recheck(const CommandLine& line, const RecheckRequest& request);
+
 struct CompareRequest {
   std::string baseline, candidate;
   std::vector<std::string> tolerances;  // "force=1e-9,1e-6"

@@ -104,7 +104,7 @@ void add_sweep(Subcommands& commands) {
                     "a note on a run is an error: exit code 2, after all runs are stored");
 }
 
-void add_merge_and_replay(Subcommands& commands) {
+void add_merge_replay_and_recheck(Subcommands& commands) {
   auto [command, merge] =
       commands.add("merge", "merge the shards (parts) of a sweep into one file", command_merge);
   command->add_option("shards", merge->shards, "the files of all shards")->required();
@@ -124,6 +124,10 @@ void add_merge_and_replay(Subcommands& commands) {
   again->add_option("-o,--output", replay->output, "the HDF5 file to write")->required();
   again->add_flag("--strict", replay->strict,
                   "a note on the run is an error: exit code 2, and nothing is written");
+
+  auto [check, recheck] = commands.add(
+      "recheck", "make one run in a thousand of a sweep again, and compare its bits", command_recheck);
+  check->add_option("sweeps", recheck->sweeps, "results of sweeps, or their shards")->required();
 }
 
 void add_analyse(Subcommands& commands) {
@@ -185,7 +189,7 @@ void add_commands_of_experiments(Subcommands& commands) {
   add_lists(commands);
   add_run(commands);
   add_sweep(commands);
-  add_merge_and_replay(commands);
+  add_merge_replay_and_recheck(commands);
   add_analyse(commands);
   add_figure(commands);
 }

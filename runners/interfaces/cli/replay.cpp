@@ -14,6 +14,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/sweep/cell_text.h"
+#include "runners/sweep/shards/recheck.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_replay.h"
 #include "runners/sweep/tally_outline.h"
@@ -59,15 +60,27 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
       std::printf("  from %s: %s; now %s\n", input.path.c_str(), input.before.c_str(), input.now.c_str());
 }
 
+Sweep sweep_of(const TextAttributes& attributes, const std::string& file) {
+  return read_configuration(attributes, file, [&] {
+    return Sweep::from_json(stored_configuration(attribute(attributes, "config")), file + " config");
+  });
+}
+
+Recheck recheck_of(const std::string& file, const RecheckOptions& options) {
+  if (const Hdf5Reader reader(file); is_tally(reader)) {
+    const StoredTally stored = read_tally(reader);
+    return recheck(stored.tally, sweep_of(stored.attributes, file), options);
+  }
+  const StoredSweep stored = read_stored_part(file);
+  return recheck(stored.result, sweep_of(stored.attributes, file), options);
+}
+
 }  // namespace
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.map});
   const StoredSweep stored = stored_in(request.map);
-  const Sweep sweep = read_configuration(stored.attributes, request.map, [&] {
-    return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
-                            request.map + " config");
-  });
+  const Sweep sweep = sweep_of(stored.attributes, request.map);
   const SweepResult& result = stored.result;
   sweep.require_fits(result, request.map);
   const std::size_t cell = cell_of({"--cell", request.cell}, result);
@@ -89,6 +102,24 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   if (agrees(sweep, result, run, replay.trace)) return kDone;
   print_origin(stored, sweep, replay.experiment);
   return kCheckFailed;
+}
+
+int command_recheck(const CommandLine& line, const RecheckRequest& request) {
+  int code = kDone;
+  for (const std::string& file : request.sweeps) {
+    Progress progress("recheck " + file, line.quiet);
+    const Recheck check = recheck_of(
+        file, {line.kernels, line.stop,
+               [&](std::size_t done, std::size_t total) { progress.update(done, total, 0, "runs"); }});
+    progress.clear();
+    std::printf("%s: %zu runs made again, ", printable(file).c_str(), check.made);
+    if (check.different.empty()) std::printf("all as stored\n");
+    if (!check.different.empty()) {
+      std::printf("%zu different\n", check.different.size()), code = kCheckFailed;
+      for (const std::string& text : check.different) std::printf("  %s\n", text.c_str());
+    }
+  }
+  return code;
 }
 
 }  // namespace remote_touch

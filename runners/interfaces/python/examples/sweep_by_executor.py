@@ -33,7 +33,8 @@ def executor_of(engine, *address):
 def main(engine, sweep, output, *address):
     with executor_of(engine, *address) as executor:
         result = rt.sweep(sweep, output=output, executor=executor)
-    print(f"{output}: {result.state.size} runs, {result.attrs['checked_runs']} of them made twice, "
+    runs = int(result.runs.sum()) if "runs" in result else result.state.size
+    print(f"{output}: {runs} runs, {result.attrs['checked_runs']} of them made twice, "
           f"{result.attrs['checked_by_another_worker']} by another worker")
 
 

@@ -1,0 +1,41 @@
+// Makes some runs of a stored sweep again: a machine that computes wrongly is found by another one.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
+#include "core/kernels/kernels.h"
+#include "runners/sweep/sweep.h"
+
+namespace remote_touch {
+
+// True for one number of each thousand, at another place of each.
+constexpr bool is_rechecked(std::uint64_t number) {
+  return number % 1000 == (99 + 7 * (number / 1000)) % 1000;
+}
+
+struct RecheckOptions {
+  const Kernels* kernels = nullptr;         // null: the machine's best
+  const std::atomic<bool>* stop = nullptr;  // when set, the check ends with Interrupted
+  std::function<void(std::size_t done, std::size_t total)> progress = {};
+};
+struct Recheck {
+  std::size_t made = 0;                // number of runs that were made again
+  std::vector<std::string> different;  // "run 99: max_force = 1.5, now 1.25", increasing
+};
+
+// Makes the finished and failed runs with is_rechecked() again, or the first one if there are none. Compares
+// state, values and notes, bit for bit. sweep: read from the configuration of the file. The part may also be
+// a whole sweep. Throws Interrupted, and std::bad_alloc.
+Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options);
+
+// The same of a tally, which does not have single runs: makes all runs of the cells with is_rechecked()
+// again, or of the first cell, and compares the tally of each.
+Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOptions& options);
+
+}  // namespace remote_touch

@@ -1,0 +1,89 @@
+// Runs of a sweep that are made again: equal where nothing is wrong; one wrong bit is found and named.
+#include "runners/sweep/shards/recheck.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "core/kernels/isa.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_run.h"
+#include "runners/sweep/tally_session.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::recheck_test {
+namespace {
+
+// A run takes a millisecond.
+constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
+  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
+  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3},
+           {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 7, "count": 4}],
+  "replicates": 10, "measures": ["max_penetration", "popped_through"]})";
+
+class Rechecks : public testing::Test {
+ protected:
+  const Sweep sweep_ = Sweep::from_json(kQuick, "quick.json");
+  SweepResult result_ = run_sweep(sweep_, {});
+
+  std::vector<std::string> different() const { return recheck(result_, sweep_, {}).different; }
+};
+
+TEST_F(Rechecks, FindNothingInEqualBits) {
+  const Recheck check = recheck(result_, sweep_, {});
+  EXPECT_EQ(check.made, 1u) << "run 99 of 120";
+  EXPECT_TRUE(check.different.empty());
+}
+
+TEST_F(Rechecks, NameARunWithAnotherBit) {
+  double& value = std::get<std::vector<double>>(result_.measures[0].values)[99];
+  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ 1);
+  ASSERT_EQ(different().size(), 1u);
+  EXPECT_HAS(different()[0], "run 99: max_penetration = ");
+  EXPECT_HAS(different()[0], ", now ");
+}
+
+TEST_F(Rechecks, CompareNotesAndStates) {
+  result_.notes[99] ^= 1;
+  EXPECT_EQ(different(), std::vector<std::string>{"run 99: has other notes now"});
+  result_.state[99] = RunState::failed;
+  EXPECT_EQ(different(), std::vector<std::string>{"run 99: failed, now is done"});
+}
+
+TEST_F(Rechecks, TakeOnlyTheRunsOfAPart) {
+  SweepResult part = sweep_.part({3, 5, 7});
+  part.state[0] = RunState::pending;
+  EXPECT_EQ(recheck(part, sweep_, {}).made, 0u) << "nothing was made";
+  ASSERT_EQ(do_pending_runs(sweep_, part, {}), 0u);
+  EXPECT_EQ(recheck(part, sweep_, {}).made, 1u) << "the first one, because no number is chosen";
+  EXPECT_TRUE(recheck(part, sweep_, {}).different.empty());
+}
+
+TEST_F(Rechecks, EndWhenTheyAreStopped) {
+  std::atomic<bool> stop{true};
+  EXPECT_THROW(recheck(result_, sweep_, {nullptr, &stop}), Interrupted);
+}
+
+TEST(TallyRechecks, CompareAWholeCell) {
+  const TestFolder folder{"recheck_test"};
+  const Sweep sweep = Sweep::from_json(kQuick, "quick.json", {"keep=events"});
+  TallySession session(sweep, {}, {{"config", sweep.to_json()}}, folder.path() / "t.h5");
+  session.run(kernels_for(best_isa()), nullptr, [](auto...) {});
+  SweepTally tally = session.tally();
+  EXPECT_EQ(recheck(tally, sweep, {}).made, 10u) << "the first cell, of 12";
+  EXPECT_TRUE(recheck(tally, sweep, {}).different.empty());
+  tally.tallies[0].measures[0].add(0.001);
+  EXPECT_EQ(recheck(tally, sweep, {}).different,
+            std::vector<std::string>{"cell 0: its tally is another one now"});
+}
+
+TEST(RecheckedNumbers, AreOneOfEachThousand) {
+  for (std::uint64_t thousand = 0; thousand < 2000; ++thousand) {
+    int chosen = 0;
+    for (std::uint64_t i = 0; i < 1000; ++i) chosen += is_rechecked(1000 * thousand + i);
+    ASSERT_EQ(chosen, 1) << thousand;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::recheck_test
