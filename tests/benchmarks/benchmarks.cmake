@@ -35,6 +35,9 @@ target_link_libraries(raster_benchmark PRIVATE core scenarios benchmark::benchma
 add_executable(mesh_distance_benchmark benchmarks/checked_benchmark.cpp benchmarks/mesh_distance_benchmark.cpp)
 target_link_libraries(mesh_distance_benchmark PRIVATE runners benchmark::benchmark)
 
+add_executable(sweep_growth benchmarks/sweep_growth.cpp)
+target_link_libraries(sweep_growth PRIVATE runners)
+
 add_executable(slave_benchmark benchmarks/checked_benchmark.cpp benchmarks/slave_benchmark.cpp)
 target_link_libraries(slave_benchmark PRIVATE runners benchmark::benchmark)
 
