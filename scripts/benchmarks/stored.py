@@ -1,0 +1,156 @@
+"""Stored measurements: one file for each kind of machine, data/benchmarks/NAME.json.
+
+{
+  "title": "AMD EPYC (Zen 4)", "origin": "measured",
+  "machine": {"processor": ..., "instruction_sets": ..., "cores": ..., "caches": ...},
+  "parts": {"proxy": {"date": ..., "commit": ..., "compiler": ..., "load": [before, after], "quantities": {KEY: ENTRY}}}
+}
+
+An entry has a value with its unit, or a ratio with what it is compared with, or both, and the aim of each with whether
+it is met. The origin is "measured", or says from which page the numbers were transcribed. null: not stated there.
+load: the mean number of running programs in the minute before and after, including the benchmark itself (after).
+"""
+import datetime
+import json
+import os
+import re
+
+from benchmarks.machine import commit, compiler, describe_machine, name_of
+from benchmarks.measuring import ROOT, BenchmarkError
+from benchmarks.quantities import PARTS, QUANTITIES, entries_of
+from benchmarks.quantity import entry
+
+FOLDER = ROOT / "data" / "benchmarks"
+MEASURED = "measured"
+FILE_KEYS = ("title", "origin", "machine", "parts")
+MACHINE_KEYS = ("processor", "instruction_sets", "cores", "caches")
+PART_KEYS = ("date", "commit", "compiler", "load", "quantities")
+
+
+def by_key():
+    """{key of an entry: (quantity, level)}."""
+    return {quantity.key_at(level): (quantity, level) for quantity in QUANTITIES for level in quantity.levels()}
+
+
+# --- reading ---
+
+def load(folder=FOLDER):
+    """{name: what is stored}: machines that were measured first, then transcribed ones."""
+    stored = {}
+    for path in sorted(folder.glob("*.json")):
+        try:
+            stored[path.stem] = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise BenchmarkError(f"{path.name}: {error}") from error
+        check(path.name, stored[path.stem])
+    return dict(sorted(stored.items(), key=lambda item: (item[1]["origin"] != MEASURED, item[0])))
+
+
+def check(name, stored):
+    """Raises a BenchmarkError if the file has not exactly what it should have."""
+    require_keys(name, stored, FILE_KEYS)
+    require_keys(f"{name}: machine", stored["machine"], MACHINE_KEYS)
+    is_measured = stored["origin"] == MEASURED
+    if not is_measured and not re.match(r"transcribed from \S", stored["origin"]):
+        raise BenchmarkError(f'{name}: origin: expected "{MEASURED}" or "transcribed from ..."')
+    known = by_key()
+    for part, content in stored["parts"].items():
+        place = f"{name}: {part}"
+        if part not in PARTS:
+            raise BenchmarkError(f"{place}: expected one of {', '.join(PARTS)}")
+        require_keys(place, content, PART_KEYS)
+        check_is_stated(place, content, is_measured)
+        for key, stored_entry in content["quantities"].items():
+            check_entry(f"{place}: {key}", stored_entry, part, *known.get(key, (None, None)))
+    if is_measured:
+        check_stated(f"{name}: machine", stored["machine"], MACHINE_KEYS)
+
+
+def require_keys(place, content, keys):
+    if not isinstance(content, dict) or set(content) != set(keys):
+        raise BenchmarkError(f"{place}: expected the keys {', '.join(keys)}, found {', '.join(content)}")
+
+
+def check_stated(place, content, keys):
+    for key in keys:
+        if content[key] in (None, "", []):
+            raise BenchmarkError(f"{place}: {key} is not stated")
+
+
+def check_is_stated(place, content, is_measured):
+    check_stated(place, content, PART_KEYS[:-1] if is_measured else ("date",))
+    if not re.fullmatch(r"\d{4}(-\d\d(-\d\d)?)?", content["date"]):
+        raise BenchmarkError(f"{place}: date: expected YYYY-MM-DD, YYYY-MM or YYYY")
+
+
+def check_entry(place, stored, part, quantity, level):
+    if quantity is None:
+        raise BenchmarkError(f"{place}: no such quantity in scripts/benchmarks/quantities.py")
+    if quantity.part != part:
+        raise BenchmarkError(f"{place}: belongs to {quantity.part}")
+    value, ratio = stored.get("value"), stored.get("ratio")
+    for number in (value, ratio):
+        if number is not None and not (isinstance(number, (int, float)) and 0 < number < float("inf")):
+            raise BenchmarkError(f"{place}: expected a positive number, found {number!r}")
+    if value is None and ratio is None:
+        raise BenchmarkError(f"{place}: expected a value or a ratio")
+    if ratio is not None and quantity.ratio is None:
+        raise BenchmarkError(f"{place}: this quantity has no ratio")
+    expected = entry(quantity, level, value, ratio)
+    if stored != expected:
+        raise BenchmarkError(f"{place}: expected {json.dumps(expected)}, found {json.dumps(stored)}")
+
+
+# --- writing ---
+
+def text_of(stored):
+    """JSON with one line for each entry, in the order of their keys."""
+    def line(content):
+        return json.dumps(content, ensure_ascii=False)
+    lines = ["{", f' "title": {line(stored["title"])},', f' "origin": {line(stored["origin"])},', ' "machine": {',
+             ",\n".join(f"  {line(key)}: {line(stored['machine'][key])}" for key in MACHINE_KEYS), " },", ' "parts": {']
+    parts = []
+    for part in (each for each in PARTS if each in stored["parts"]):
+        content = stored["parts"][part]
+        rows = [f"   {line(key)}: {line(content[key])}," for key in PART_KEYS[:-1]]
+        entries = ",\n".join(f"    {line(key)}: {line(each)}" for key, each in sorted(content["quantities"].items()))
+        parts.append("\n".join([f"  {line(part)}: {{", *rows, '   "quantities": {', entries, "   }", "  }"]))
+    return "\n".join([*lines, ",\n".join(parts), " }", "}"]) + "\n"
+
+
+def write(name, stored, folder=FOLDER):
+    check(f"{name}.json", stored)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{name}.json").write_text(text_of(stored), encoding="utf-8")
+
+
+def with_parts(before, machine, parts):
+    """The content of a file in which the parts replace earlier ones. before: the earlier content, or None."""
+    title = machine["title"]
+    described = {key: machine[key] for key in MACHINE_KEYS}
+    if before is None:
+        before = {"title": title, "origin": MEASURED, "machine": described, "parts": {}}
+    if before["origin"] != MEASURED:
+        raise BenchmarkError(f"{title}: a file of transcribed numbers does not get measured ones; give another name")
+    if before["machine"] != described:
+        raise BenchmarkError(f"{title}: the file is of another machine ({before['machine']}); give another name")
+    return before | {"parts": before["parts"] | parts}
+
+
+def load_average():
+    return round(os.getloadavg()[0], 1)
+
+
+def part_of(part, times, load_before):
+    """What is stored of a part that was just measured."""
+    return {"date": datetime.datetime.now(datetime.timezone.utc).date().isoformat(), "commit": commit(),
+            "compiler": compiler(), "load": [load_before, load_average()], "quantities": entries_of(part, times)}
+
+
+def store(parts, name=None, folder=FOLDER):
+    """Writes measured parts into the file of this machine; returns its path."""
+    machine = describe_machine()
+    name = name or name_of(machine["title"])
+    before = load(folder).get(name)
+    write(name, with_parts(before, machine, parts), folder)
+    return folder / f"{name}.json"
