@@ -15,7 +15,7 @@ ASKED_MAP_S = {(30, 1): 6, (30, 2): 3.5, (1000, 2): 20}
 ASKED_MAP_OF_PLAIN = 60
 # ms of a lift of that map with 30 steps per tick: the mean over all noises; each noise by itself, in mm.
 ASKED_LIFT_MEAN_MS = 1.8
-ASKED_LIFT_MS = {0: 3, 1: 3, 3: 3, 15: 3}
+ASKED_LIFT_MS = {0: None, 1: 3, 3: 3, 15: 3}
 
 # us of a quadratic program of six variables, by rows: asked, and of the published prototype.
 ASKED_PROGRAM_US = {6: 0.3, 50: 1.2}

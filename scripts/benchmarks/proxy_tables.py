@@ -183,7 +183,7 @@ def print_map(times):
     table(f"Fig 4.13: the whole map, s, {measured[0]['isa']}; CPU far below threads x measured: the machine was shared",
           ["", "steps a frame <=", "threads", "asked <=", "measured", "CPU", "ratio", "asked x map >=", "measured"],
           rows)
-    rows = [[f"{line['lift']} mm noise", ASKED_LIFT_MS[line["lift"]], f"{1000 * line['lift_cpu_s']:.2f}"]
+    rows = [[f"{line['lift']} mm noise", ASKED_LIFT_MS[line["lift"]] or "", f"{1000 * line['lift_cpu_s']:.2f}"]
             for line in times.lines if "lift" in line]
     table("Fig 4.13: a lift with six measures, 30 steps a tick, ms of CPU time", ["", "asked <=", "measured"], rows)
 

@@ -13,7 +13,7 @@ def proxy_quantities():
                    most(ASKED_STEP_NS), over(cpu("step_naive/grid"), step),
                    "the same written plainly over all 100 x 100 points: times as long",
                    least({level: ASKED_OF_NAIVE for level in ASKED_STEP_NS}))
-    yield Quantity("proxy_step_gathered/{level}", part, table, "the same when the points are gathered anew for every step",
+    yield Quantity("proxy_step_gathered/{level}", part, table, "proxy step, points gathered anew for every step",
                    "ns", cpu("step_with_search/grid/{level}"))
     yield Quantity("proxy_tick/{level}", part, table, "tick in contact, 30 steps of gamma 0.3", "us", tick)
     for steps, gamma in ((10, "0.3"), (8, "0.5")):
@@ -30,7 +30,7 @@ def proxy_quantities():
                    "proxy step in contact, 640 x 480 points, all r_f = 0.02 m: 1085 points", "us", cpu(contact), None,
                    over(per_point(contact), per_point(plain)),
                    "the same per point, relative to a cloud without regions", most(ASKED_OF_REGIONS))
-    yield Quantity("regions_tick/{level}", part, table, "tick of 30 such steps", "us", cpu("fixture_tick/all/{level}"))
+    yield Quantity("regions_tick/{level}", part, table, "tick of 30 such steps among regions", "us", cpu("fixture_tick/all/{level}"))
     for choose, which in ((min, "quickest"), (max, "slowest")):
         yield Quantity(f"fixture_rule_{which}", part, table, f"{which} fixture rule, per frame of 640 x 480 points", "ms",
                        extreme(choose, "fixture_assign/"))
@@ -56,11 +56,11 @@ def map_quantities():
         yield Quantity(f"map_{steps}_steps_two_cores/{{level}}", part, table,
                        f"map of 5396 lifts, {steps} steps per frame, two cores, wall-clock time", "s",
                        wall(f"map/{steps}/2/{{level}}"), most(ASKED_MAP_S[steps, 2]))
-    yield Quantity("lift_mean/{level}", part, table, "lift with six measures, 30 steps per tick: mean over the map", "ms",
+    yield Quantity("lift_mean/{level}", part, table, "lift with six measures, 30 steps per tick, mean over the map", "ms",
                    scaled(cpu("map/1000/1/{level}"), 1 / 5396), most(ASKED_LIFT_MEAN_MS))
     for noise_mm, aim in ASKED_LIFT_MS.items():
-        yield Quantity(f"lift_{noise_mm}_mm/{{level}}", part, table, f"the same with noise of {noise_mm} mm", "ms",
-                       cpu(f"lift/{noise_mm}/{{level}}"), most(aim))
+        yield Quantity(f"lift_{noise_mm}_mm/{{level}}", part, table, f"lift with six measures, noise of {noise_mm} mm", "ms",
+                       cpu(f"lift/{noise_mm}/{{level}}"), aim and most(aim))
 
 
 def sheet_quantities():
@@ -86,7 +86,7 @@ CONTINUOUS_CLOUDS = ("2500", "40000", "111556_dense")
 def tool_quantities():
     part = "tool"
     for where, key, text in (("contact", "tool_list", "collision list, 2500 points"),
-                             ("separated", "tool_list_clear", "the same, tool clear of the points")):
+                             ("separated", "tool_list_clear", "collision list, 2500 points, tool clear of them")):
         name, aims = f"tool_list/2500_{where}/{{level}}", {level: ASKED_LIST_US[each, level] for each, level in ASKED_LIST_US
                                                            if each == f"2500_{where}"}
         yield Quantity(f"{key}/{{level}}", part, "tool", text, "us", cpu(name), most(aims),
@@ -125,12 +125,12 @@ def sphere_quantities():
         own = cpu(f"region_contacts/{where}/{{level}}")
         yield Quantity(f"region_contacts/{where}/{{level}}", part, table, f"detection, 112 leaves, {text}", "us", own, None,
                        over(cpu(f"region_contacts_naive/{where}"), own), "the same, every pair of leaves: times as long")
-    for course, text in (("slide", "slides around the valves"),
-                         ("swallowed", "is inside the regions in every other frame, which is 30 mm nearer")):
+    for course, text in (("slide", "slide around the valves"),
+                         ("swallowed", "regions 30 mm nearer in every other frame")):
         for tool in ("key", "husky"):
             for what, value, aim in zip(("mean", "p99.9"), ("mean_ns", "p99_9_ns"), ASKED_REGION_TICK_US):
                 yield Quantity(f"region_tick_{what}/{tool}_{course}/{{level}}", part, table,
-                               f"tick, {what}, `{tool}` {text}", "us",
+                               f"tick, {what}, `{tool}`, {text}", "us",
                                counter(f"region_tick/{tool}_112_{course}/{{level}}", value), most(aim))
 
 
@@ -142,7 +142,8 @@ def depth_quantities():
     aims = [{level: ASKED_DEPTH_MS[each] for each in ASKED_DEPTH_MS for level in each[1:] if each[0] == n} for n in (1, 2)]
     yield Quantity("depth_frame/{level}", part, table, "filter and normals, 640 x 480 pixels, one core", "ms", own,
                    most(aims[0]), over(cpu("depth_plain"), own), "the same written plainly in double: times as long")
-    yield Quantity("depth_frame_two_cores/{level}", part, table, "the same, two cores, wall-clock time", "ms",
+    yield Quantity("depth_frame_two_cores/{level}", part, table,
+                   "filter and normals, 640 x 480 pixels, two cores, wall-clock time", "ms",
                    two_threads_wall("depth_frame/2/{level}"), most(aims[1]))
     yield Quantity("depth_region/{level}", part, table, "filter and normals of a region of 2500 points, one core", "us",
                    cpu("depth_region/1/{level}"))
@@ -151,19 +152,19 @@ def depth_quantities():
 def mesh_quantities():
     part, table = "meshes", "meshes"
     meshes = {"ball_15000": "a wavy ball, 15 000 triangles", "ball_70000": "a wavy ball, 70 000 triangles",
-              "dragon_14897": "the dragon of `visp_cube_dragon`, 15 000", "hand_15982": "a hand, 15 982",
-              "drill_15728": "a power drill, 15 728"}
+              "dragon_14897": "the dragon of `visp_cube_dragon`, 15 000 triangles", "hand_15982": "a hand, 15 982 triangles",
+              "drill_15728": "a power drill, 15 728 triangles"}
     for mesh, text in meshes.items():
         key, own = mesh.split("_")[0] if "ball" not in mesh else mesh, cpu(f"mesh_distance/{mesh}")
         yield Quantity(f"mesh_distance/{key}", part, table, f"signed distance to {text}", "us", own,
                        most(ASKED_MESH_DISTANCE_US), over(cpu(f"mesh_distance_plain/{mesh}"), own),
                        "the same by a loop over all triangles: times as long")
-        yield Quantity(f"mesh_distance_discs/{key}", part, table, "the same by a tree of discs, without a sign: times as long",
-                       TIMES, over(cpu(f"mesh_distance_by_discs/{mesh}"), own))
-        yield Quantity(f"mesh_distance_build/{key}", part, table, "construction", "ms", cpu(f"mesh_distance_build/{mesh}"))
-    for scene, text in (("ball", "a ball of 70 056 triangles that covers a quarter of the image"),
-                        ("ball_and_table", "the same above a table")):
-        yield Quantity(f"raster/{scene}", part, table, f"depth image, 640 x 480 pixels, of {text}", "ms",
+        yield Quantity(f"mesh_distance_discs/{key}", part, table,
+                       f"{text}: by a tree of discs, without a sign, times as long", TIMES, over(cpu(f"mesh_distance_by_discs/{mesh}"), own))
+        yield Quantity(f"mesh_distance_build/{key}", part, table, f"{text}: construction", "ms", cpu(f"mesh_distance_build/{mesh}"))
+    for scene, text in (("ball", "ball of 70 056 triangles that covers a quarter"),
+                        ("ball_and_table", "that ball above a table")):
+        yield Quantity(f"raster/{scene}", part, table, f"depth image, 640 x 480 pixels: {text}", "ms",
                        cpu(f"raster/{scene}"), most(ASKED_RASTER_MS))
 
 

@@ -11,6 +11,7 @@ it is met. The origin is "measured", or says from which page the numbers were tr
 load: the mean number of running programs in the minute before and after, including the benchmark itself (after).
 """
 import datetime
+import functools
 import json
 import os
 import re
@@ -27,6 +28,7 @@ MACHINE_KEYS = ("processor", "instruction_sets", "cores", "caches")
 PART_KEYS = ("date", "commit", "compiler", "load", "quantities")
 
 
+@functools.cache
 def by_key():
     """{key of an entry: (quantity, level)}."""
     return {quantity.key_at(level): (quantity, level) for quantity in QUANTITIES for level in quantity.levels()}
@@ -34,15 +36,24 @@ def by_key():
 
 # --- reading ---
 
+def read(path):
+    try:
+        return json.loads(path.read_text(encoding="utf-8"), object_pairs_hook=unique)
+    except ValueError as error:
+        raise BenchmarkError(f"{path.name}: {error}") from error
+
+
+def unique(pairs):
+    if len({key for key, _ in pairs}) < len(pairs):
+        raise ValueError(f"a key is there twice: {', '.join(key for key, _ in pairs)}")
+    return dict(pairs)
+
+
 def load(folder=FOLDER):
     """{name: what is stored}: machines that were measured first, then transcribed ones."""
-    stored = {}
-    for path in sorted(folder.glob("*.json")):
-        try:
-            stored[path.stem] = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise BenchmarkError(f"{path.name}: {error}") from error
-        check(path.name, stored[path.stem])
+    stored = {path.stem: read(path) for path in sorted(folder.glob("*.json"))}
+    for name, content in stored.items():
+        check(f"{name}.json", content)
     return dict(sorted(stored.items(), key=lambda item: (item[1]["origin"] != MEASURED, item[0])))
 
 
@@ -98,7 +109,8 @@ def check_entry(place, stored, part, quantity, level):
         raise BenchmarkError(f"{place}: this quantity has no ratio")
     expected = entry(quantity, level, value, ratio)
     if stored != expected:
-        raise BenchmarkError(f"{place}: expected {json.dumps(expected)}, found {json.dumps(stored)}")
+        raise BenchmarkError(f"{place}: expected {json.dumps(expected)}, found {json.dumps(stored)}; if the aim has "
+                             "changed, scripts/benchmark --page writes it")
 
 
 # --- writing ---
@@ -122,6 +134,25 @@ def write(name, stored, folder=FOLDER):
     check(f"{name}.json", stored)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.json").write_text(text_of(stored), encoding="utf-8")
+
+
+def renew_aims(folder=FOLDER):
+    """Writes the aims that quantities.py has now, and whether they are met, into all files. Numbers stay as they are."""
+    for path in sorted(folder.glob("*.json")):
+        stored = read(path)
+        require_keys(path.name, stored, FILE_KEYS)
+        for part, content in stored["parts"].items():
+            require_keys(f"{path.name}: {part}", content, PART_KEYS)
+            content["quantities"] = {key: with_aims_of_now(key, each) for key, each in content["quantities"].items()}
+        write(path.stem, stored, folder)
+
+
+def with_aims_of_now(key, stored_entry):
+    """The unit and the comparison stay, so that the check finds those that have changed."""
+    if key not in by_key():
+        return stored_entry
+    now = entry(*by_key()[key], stored_entry.get("value"), stored_entry.get("ratio"))
+    return now | {field: stored_entry[field] for field in ("unit", "compared_with") if field in stored_entry}
 
 
 def with_parts(before, machine, parts):
@@ -151,6 +182,6 @@ def store(parts, name=None, folder=FOLDER):
     """Writes measured parts into the file of this machine; returns its path."""
     machine = describe_machine()
     name = name or name_of(machine["title"])
-    before = load(folder).get(name)
-    write(name, with_parts(before, machine, parts), folder)
-    return folder / f"{name}.json"
+    path = folder / f"{name}.json"
+    write(name, with_parts(read(path) if path.exists() else None, machine, parts), folder)
+    return path
