@@ -65,20 +65,26 @@ def check(name, stored):
     if not is_measured and not re.match(r"transcribed from \S", stored["origin"]):
         raise BenchmarkError(f'{name}: origin: expected "{MEASURED}" or "transcribed from ..."')
     known = by_key()
-    for part, content in stored["parts"].items():
+    for part, content in require_object(f"{name}: parts", stored["parts"]).items():
         place = f"{name}: {part}"
         if part not in PARTS:
             raise BenchmarkError(f"{place}: expected one of {', '.join(PARTS)}")
         require_keys(place, content, PART_KEYS)
         check_is_stated(place, content, is_measured)
-        for key, stored_entry in content["quantities"].items():
+        for key, stored_entry in require_object(f"{place}: quantities", content["quantities"]).items():
             check_entry(f"{place}: {key}", stored_entry, part, *known.get(key, (None, None)))
     if is_measured:
         check_stated(f"{name}: machine", stored["machine"], MACHINE_KEYS)
 
 
+def require_object(place, content):
+    if not isinstance(content, dict):
+        raise BenchmarkError(f"{place}: expected an object, found {json.dumps(content)}")
+    return content
+
+
 def require_keys(place, content, keys):
-    if not isinstance(content, dict) or set(content) != set(keys):
+    if set(require_object(place, content)) != set(keys):
         raise BenchmarkError(f"{place}: expected the keys {', '.join(keys)}, found {', '.join(content)}")
 
 
@@ -99,7 +105,7 @@ def check_entry(place, stored, part, quantity, level):
         raise BenchmarkError(f"{place}: no such quantity in scripts/benchmarks/quantities.py")
     if quantity.part != part:
         raise BenchmarkError(f"{place}: belongs to {quantity.part}")
-    value, ratio = stored.get("value"), stored.get("ratio")
+    value, ratio = (require_object(place, stored).get(each) for each in ("value", "ratio"))
     for number in (value, ratio):
         if number is not None and not (isinstance(number, (int, float)) and 0 < number < float("inf")):
             raise BenchmarkError(f"{place}: expected a positive number, found {number!r}")
@@ -141,15 +147,16 @@ def renew_aims(folder=FOLDER):
     for path in sorted(folder.glob("*.json")):
         stored = read(path)
         require_keys(path.name, stored, FILE_KEYS)
-        for part, content in stored["parts"].items():
-            require_keys(f"{path.name}: {part}", content, PART_KEYS)
-            content["quantities"] = {key: with_aims_of_now(key, each) for key, each in content["quantities"].items()}
+        for content in require_object(path.name, stored["parts"]).values():
+            require_keys(path.name, content, PART_KEYS)
+            entries = require_object(path.name, content["quantities"])
+            content["quantities"] = {key: with_aims_of_now(key, each) for key, each in entries.items()}
         write(path.stem, stored, folder)
 
 
 def with_aims_of_now(key, stored_entry):
     """The unit and the comparison stay, so that the check finds those that have changed."""
-    if key not in by_key():
+    if key not in by_key() or not isinstance(stored_entry, dict):
         return stored_entry
     now = entry(*by_key()[key], stored_entry.get("value"), stored_entry.get("ratio"))
     return now | {field: stored_entry[field] for field in ("unit", "compared_with") if field in stored_entry}
