@@ -161,7 +161,7 @@ def with_tables(text, stored):
             raise BenchmarkError(f"no such table: {table}; expected one of {', '.join((MACHINES, *TABLES))}")
         before, begin, rest = text.partition(begin_of(table))
         old, end, after = rest.partition(end_of(table))
-        if not begin or not end or "<!--" in old:
+        if not begin or not end or "<!--" in old or begin in after:
             raise BenchmarkError(f"table {table}: expected {begin_of(table).strip()} and {end_of(table).strip()}")
         lines = machines_lines(stored) if table == MACHINES else table_lines(stored, table)
         text = before + begin + "\n".join(lines) + "\n" + end + after
