@@ -54,6 +54,9 @@ def load(folder=FOLDER):
     stored = {path.stem: read(path) for path in sorted(folder.glob("*.json"))}
     for name, content in stored.items():
         check(f"{name}.json", content)
+    titles = [(content["title"], content["origin"] == MEASURED) for content in stored.values()]
+    if len(set(titles)) < len(titles):
+        raise BenchmarkError(f"two machines have the same title: {', '.join(sorted(title for title, _ in titles))}")
     return dict(sorted(stored.items(), key=lambda item: (item[1]["origin"] != MEASURED, item[0])))
 
 
@@ -98,6 +101,13 @@ def check_is_stated(place, content, is_measured):
     check_stated(place, content, PART_KEYS[:-1] if is_measured else ("date",))
     if not re.fullmatch(r"\d{4}(-\d\d(-\d\d)?)?", content["date"]):
         raise BenchmarkError(f"{place}: date: expected YYYY-MM-DD, YYYY-MM or YYYY")
+    load_ = content["load"]
+    if load_ is not None and not (isinstance(load_, list) and len(load_) == 2 and all(is_number(each) for each in load_)):
+        raise BenchmarkError(f"{place}: load: expected two numbers, found {json.dumps(load_)}")
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < float("inf")
 
 
 def check_entry(place, stored, part, quantity, level):
@@ -107,7 +117,7 @@ def check_entry(place, stored, part, quantity, level):
         raise BenchmarkError(f"{place}: belongs to {quantity.part}")
     value, ratio = (require_object(place, stored).get(each) for each in ("value", "ratio"))
     for number in (value, ratio):
-        if number is not None and not (isinstance(number, (int, float)) and 0 < number < float("inf")):
+        if number is not None and not (is_number(number) and number > 0):
             raise BenchmarkError(f"{place}: expected a positive number, found {number!r}")
     if value is None and ratio is None:
         raise BenchmarkError(f"{place}: expected a value or a ratio")
@@ -186,8 +196,11 @@ def part_of(part, times, load_before):
 
 
 def store(parts, name=None, folder=FOLDER):
-    """Writes measured parts into the file of this machine; returns its path."""
+    """Writes measured parts into the file of this machine; returns its path. name: of the file, if it is not that of the
+    processor; it is also in the title."""
     machine = describe_machine()
+    if name:
+        machine["title"] += f", {name}"
     name = name or name_of(machine["title"])
     path = folder / f"{name}.json"
     write(name, with_parts(read(path) if path.exists() else None, machine, parts), folder)
