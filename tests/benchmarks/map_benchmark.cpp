@@ -200,6 +200,33 @@ struct MapTime {
   void print() const { benchmarks::print("map", steps, threads, map.lift_count(), min); }
 };
 
+// CPU time of a lift with one noise, in a sweep on one thread with the accelerations and measures of the map,
+// at 30 steps per tick.
+struct LiftTime {
+  explicit LiftTime(int noise_mm_)
+      : noise_mm(noise_mm_),
+        sweep(Sweep::load("fig4.13", {bound("from", noise_mm), bound("to", noise_mm), "axes.0.count=1"})) {}
+
+  void measure() {
+    omp_set_num_threads(1);
+    min.min(seconds([&] { lifts = run_sweep(sweep, {}).run_count(); }));
+  }
+  void print() const {
+    std::printf("{\"lift\": %d, \"lifts\": %zu, \"lift_cpu_s\": %.4g, \"isa\": \"%s\"}\n", noise_mm, lifts,
+                min.cpu / static_cast<double>(lifts), kernels_for(best_isa()).isa);
+  }
+
+  int noise_mm;
+  Sweep sweep;
+  std::size_t lifts = 0;
+  Seconds min = {};
+
+ private:
+  static std::string bound(const char* end, int noise_mm) {
+    return std::string("axes.0.") + end + "=" + std::to_string(1e-3 * noise_mm);
+  }
+};
+
 void time(const Map& at_30, const Map& at_1000, int repetitions) {
   const Kernels& kernels = kernels_for(best_isa());
   const std::vector<Cell> cells = sample(at_30, 3, Spread::middles);
@@ -207,14 +234,17 @@ void time(const Map& at_30, const Map& at_1000, int repetitions) {
       {"plain", [](const Cell& c) { naive::proxies(c.lift, naive::standard_noise(c.lift.scene, 1)); }},
       {"all noise", [&](const Cell& c) { simulate_with(c.experiment, kernels, all_noise_of(c, kernels)); }},
       {"sample", [](const Cell& c) { simulate(c.experiment); }}};
-  MapTime maps[] = {{at_30, 30, 1}, {at_30, 30, 2}, {at_1000, 1000, 2}};
+  MapTime maps[] = {{at_30, 30, 1}, {at_30, 30, 2}, {at_1000, 1000, 1}, {at_1000, 1000, 2}};
+  LiftTime lifts[] = {LiftTime(0), LiftTime(1), LiftTime(3), LiftTime(15)};
   for (int i = 0; i < repetitions; ++i) {
     for (SampledTime& each : sampled) each.measure(cells);
     for (MapTime& each : maps) each.measure();
+    for (LiftTime& each : lifts) each.measure();
   }
   report("the map on one thread and on two", maps[0].measures == maps[1].measures);
   for (const SampledTime& each : sampled) each.print(at_30.lift_count());
   for (const MapTime& each : maps) each.print();
+  for (const LiftTime& each : lifts) each.print();
 }
 
 }  // namespace
