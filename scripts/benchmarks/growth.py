@@ -1,4 +1,4 @@
-"""Pictures: how times grow with leaves and points, and the error of normals against their time."""
+"""Pictures: how times grow with leaves, points and runs, and the error of normals against their time."""
 import re
 
 from benchmarks.aims import ASKED_TOOL_TICK_MS, LEVELS
@@ -61,6 +61,25 @@ def draw_tool_growth(times, file):
     plot.figure.tight_layout()
     plot.figure.savefig(file, dpi=120)
     print(f"\nGrowth of steps and ticks of the tool with its points: {file}")
+
+
+def draw_sweep_growth(rows, file):
+    """How the time of the processor, memory and files of sweeps grow with the number of runs. rows: what sweep_growth prints."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    figure, plots = plt.subplots(1, 3, figsize=(12, 4))
+    for plot, (quantity, label) in zip(plots, (("processor_s", "time of the processor, s"), ("memory_MB", "memory, MB"), ("file_MB", "file, MB"))):
+        for number, what in enumerate(dict.fromkeys(row["what"] for row in rows)):
+            points = [(row["runs"], row[quantity]) for row in rows if row["what"] == what]
+            plot.loglog(*zip(*points), "os^Dv"[number] + "-", color=f"C{number}", label=what, markersize=4)
+        plot.set_xlabel("runs of the sweep")
+        plot.set_ylabel(label)
+        plot.grid(True, which="major", linewidth=0.3)
+    plots[0].legend(fontsize=7)
+    figure.tight_layout()
+    figure.savefig(file, dpi=120)
+    print(f"\nGrowth of sweeps with their runs: {file}")
 
 
 def draw_trade(trade, file):
