@@ -189,10 +189,15 @@ def load_average():
     return round(os.getloadavg()[0], 1)
 
 
-def part_of(part, times, load_before):
-    """What is stored of a part that was just measured."""
-    return {"date": datetime.datetime.now(datetime.timezone.utc).date().isoformat(), "commit": commit(),
-            "compiler": compiler(), "load": [load_before, load_average()], "quantities": entries_of(part, times)}
+def state():
+    """The commit and the load before a measurement."""
+    return {"commit": commit(), "load": load_average()}
+
+
+def part_of(part, times, before):
+    """What is stored of a part that was just measured. before: state() as it was before the build."""
+    return {"date": datetime.datetime.now(datetime.timezone.utc).date().isoformat(), "commit": before["commit"],
+            "compiler": compiler(), "load": [before["load"], load_average()], "quantities": entries_of(part, times)}
 
 
 def store(parts, name=None, folder=FOLDER):
