@@ -12,7 +12,7 @@ namespace remote_touch {
 
 // Equal values in any order, and in any parts that are added to each other, give equal bits.
 struct MeasureTally {
-  std::int64_t values = 0;    // number of finite values; the members from least on are those of these values
+  std::int64_t values = 0;    // number of finite values; least, greatest, sums and sketch are of these only
   std::int64_t unknown = 0;   // NaN
   std::int64_t infinite = 0;  // infinity of either sign
   double least = std::numeric_limits<double>::infinity();  // infinity and -infinity without values
@@ -31,12 +31,12 @@ struct MeasureTally {
   // of 1e154). Deviations below 1e-146 are lost.
   double variance() const;
   double standard_deviation() const;
-  // Returns the quantile of QuantileSketch, clipped to least .. greatest: within 1.6 % of a value. p = 0
-  // gives least and p = 1 greatest. NaN without values.
+  // Returns the quantile of QuantileSketch, clipped to least .. greatest: at most 1.6 % from the exact
+  // quantile. p = 0 gives least and p = 1 greatest. NaN without values.
   double quantile(double p) const;
 
-  // Checks a tally of unknown origin. Returns what contradicts what, such as "the runs of a note exceed the
-  // finished runs"; empty if it is consistent.
+  // Checks a tally of unknown origin. Returns what contradicts what, such as "the extremes are outside the
+  // sketch"; empty if it is consistent.
   std::string contradiction() const;
   bool operator==(const MeasureTally&) const = default;
 };

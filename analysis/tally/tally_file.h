@@ -23,9 +23,9 @@ namespace remote_touch {
 //   MEASURE/standard_deviation                  of them; NaN with fewer than two; rounded to 16 bits
 //   MEASURE/sum, sum_of_squares                 over `part`, too: UnroundedSum::parts(), filled up with 0
 //   MEASURE/median_bucket, bucket_values        the sketch: number of values in the bucket median_bucket +
-//                                               bucket_offset (its first axis); see quantile_sketch.h
+//                                               bucket_offset, over bucket_offset, too
 // and groups of lists, which are absent if they are empty:
-//   MEASURE/far_buckets/cell, bucket, values    buckets outside that range
+//   MEASURE/far_buckets/cell, bucket, values    buckets with another offset; see quantile_sketch.h
 //   MEASURE/events/run         the runs in which the event happened, increasing (keep "events")
 //   errors/run, error          of each cell with failed runs the first of them, and why it failed
 // Numbers of cells and runs are those of SweepTally.
@@ -43,6 +43,9 @@ std::string write_tally(const std::filesystem::path& file, const SweepTally& tal
 bool is_free_in_tallies(const std::string& name);
 
 bool is_tally(const Hdf5Reader& file);
+
+// The root attribute that says why runs of the tally are wrong; absent if nothing is known to be.
+inline constexpr const char* kDistrusted = "distrusted";
 
 struct StoredTally {
   SweepTally tally;

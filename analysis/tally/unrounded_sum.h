@@ -9,11 +9,11 @@
 
 namespace remote_touch {
 
-// The sum is a short list of doubles whose exact sum it is; adding a double changes the list without a
-// rounding. Source: J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric
-// predicates", Discrete & Computational Geometry 18 (1997), theorem 10. Most sums fit into three doubles,
-// which are added to from the largest down. Only what these cannot hold goes to a list like Shewchuk's. Sums
-// above 2^1022 are exact, too: a number counts how often 2^1023 was taken out.
+// The sum is kept as a short list of doubles; added exactly they give the sum. Adding a double changes the
+// list without a rounding. Source: J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast
+// robust geometric predicates", Discrete & Computational Geometry 18 (1997), theorem 10. Most sums fit into
+// three doubles, which are added to from the largest down. Only what these cannot hold goes to a list like
+// Shewchuk's. Sums above 2^1022 are exact, too: whole multiples of 2^1023 are counted apart.
 class UnroundedSum {
  public:
   // pre: the value is finite.

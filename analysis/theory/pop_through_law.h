@@ -17,7 +17,7 @@ struct LimitPoint {
 
 // limit = (1 - s^2 / 2)^(1/2) + (gain - loss s) sigma, for a spacing s and noise sigma. The first term is the
 // height at which the proxy rests in the middle of four points (first_touch.h); without noise (4.14) holds
-// with this height for r_1. gain and loss are fitted.
+// with this height in place of r_1. gain and loss are fitted.
 struct PopThroughLaw {
   double gain = 0, loss = 0;
 

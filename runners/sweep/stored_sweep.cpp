@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/schema.h"
+#include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"
+#include "runners/sweep/tally_outline.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
@@ -81,6 +83,12 @@ StoredSweep read_stored_outline(const Hdf5Reader& file) {
 
 StoredSweep read_stored_part(const std::filesystem::path& file) {
   return with_present_names(read_sweep(file));
+}
+
+StoredSweep read_runs_or_outline(const std::filesystem::path& file) {
+  if (!is_tally(Hdf5Reader(file))) return read_stored_part(file);
+  StoredTally tally = read_tally(Hdf5Reader(file));
+  return {outline_of(tally.tally), std::move(tally.attributes), false, tally.schema};
 }
 
 }  // namespace remote_touch

@@ -17,5 +17,7 @@ StoredSweep read_stored_sweep(const std::filesystem::path& file);
 StoredSweep read_stored_outline(const Hdf5Reader& file);
 // Reads a sweep as read_stored_sweep() does, but a part stays a part.
 StoredSweep read_stored_part(const std::filesystem::path& file);
+// The same; of a tally, which keeps no runs, the outline.
+StoredSweep read_runs_or_outline(const std::filesystem::path& file);
 
 }  // namespace remote_touch

@@ -18,7 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxCells = 1'000'000;
-constexpr std::size_t kLeastPart = 16, kMostPart = 1 << 20;  // runs that are added together
+constexpr std::size_t kLeastBatch = 16, kMostBatch = 1 << 20;  // runs that are added together
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -32,16 +32,16 @@ SweepTally without_runs(const Sweep& sweep) {
   return tally;
 }
 
-// Adds the runs of the part that were made.
-void add(const SweepResult& part, const TallyLayout& layout, SweepTally& tally) {
-  std::vector<double> values(part.measures.size());
-  for (std::size_t place = 0; place < part.held_count(); ++place) {
+// Adds the runs of the batch that were made.
+void add(const SweepResult& batch, const TallyLayout& layout, SweepTally& tally) {
+  std::vector<double> values(batch.measures.size());
+  for (std::size_t place = 0; place < batch.held_count(); ++place) {
     for (std::size_t m = 0; m < values.size(); ++m)
-      values[m] = std::get<std::vector<double>>(part.measures[m].values)[place];
-    if (part.state[place] == RunState::done)
-      tally.add_done(layout, part.run_at(place), values, static_cast<std::uint32_t>(part.notes[place]));
-    if (part.state[place] == RunState::failed)
-      tally.add_failed(layout, part.run_at(place), part.error[place]);
+      values[m] = std::get<std::vector<double>>(batch.measures[m].values)[place];
+    if (batch.state[place] == RunState::done)
+      tally.add_done(layout, batch.run_at(place), values, static_cast<std::uint32_t>(batch.notes[place]));
+    if (batch.state[place] == RunState::failed)
+      tally.add_failed(layout, batch.run_at(place), batch.error[place]);
   }
 }
 
@@ -68,6 +68,9 @@ TallySession::TallySession(const Sweep& sweep, const Shard& shard, const TextAtt
     throw InputError(file_.string(), "has runs on another recording " + input.path + " (" + input.before +
                                          "; now " + input.now +
                                          "): expected the same recording, or a new file");
+  if (const std::string why = attribute(stored.attributes, kDistrusted); !why.empty())
+    throw InputError(file_.string(), "has runs of a machine that computed wrongly (" + why +
+                                         "): expected a new file, without the wrong machine");
   tally_ = std::move(stored.tally);
   attributes_ = std::move(stored.attributes);
 }
@@ -101,33 +104,33 @@ void TallySession::store() {
 }
 
 bool TallySession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
-  const DoPart here = [&](SweepResult& part) {
-    if (do_pending_runs(sweep_, part, {&kernels, stop}) > 0) throw std::bad_alloc();
+  const DoBatch here = [&](SweepResult& batch) {
+    if (do_pending_runs(sweep_, batch, {&kernels, stop}) > 0) throw std::bad_alloc();
   };
   return run(here, 2, progress);
 }
 
-bool TallySession::run(const DoPart& do_part, double part_s, const Progress& progress) {
+bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& progress) {
   const TallyLayout layout = tally_.layout();
   const std::size_t earlier = tally_.held.count();
-  std::size_t size = kLeastPart;
+  std::size_t size = kLeastBatch;
   auto stored = Clock::now();
   double storing_s = 0.5;
   for (;;) {
-    SweepResult part = sweep_.part(next_runs(size));
-    if (part.held_count() == 0) break;
+    SweepResult batch = sweep_.part(next_runs(size));
+    if (batch.held_count() == 0) break;
     const auto start = Clock::now();
     try {
-      do_part(part);
+      do_batch(batch);
     } catch (...) {
-      add(part, layout, tally_);
+      add(batch, layout, tally_);
       if (tally_.held.count() > earlier) store();
       throw;
     }
-    add(part, layout, tally_);
+    add(batch, layout, tally_);
     progress(tally_.held.count(), own_runs(), earlier);
-    if (seconds_since(start) < part_s / 2) size = std::min(2 * size, kMostPart);
-    if (seconds_since(start) > 1.5 * part_s) size = std::max(size / 2, kLeastPart);
+    if (seconds_since(start) < batch_s / 2) size = std::min(2 * size, kMostBatch);
+    if (seconds_since(start) > 1.5 * batch_s) size = std::max(size / 2, kLeastBatch);
     if (seconds_since(stored) < std::max(10.0, 20 * storing_s)) continue;
     const auto began = Clock::now();
     store();
@@ -139,6 +142,11 @@ bool TallySession::run(const DoPart& do_part, double part_s, const Progress& pro
   }
   store();
   return true;
+}
+
+void TallySession::distrust(const std::string& why) {
+  attributes_.emplace_back(kDistrusted, why);
+  if (tally_.held.count() > 0) store();
 }
 
 }  // namespace remote_touch

@@ -20,7 +20,7 @@ class TallySession {
  public:
   // Takes the file's lock and reads what is there. attributes: configuration, provenance and shard. Throws
   // InputError if the file belongs to another sweep, shard or build, or to other recordings, if another
-  // process writes it, and if the shard has no cells or more than 1e6.
+  // process writes it, if distrust() was called for it, and if the shard has no cells or more than 1e6.
   TallySession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                const std::filesystem::path& file);
 
@@ -29,10 +29,15 @@ class TallySession {
   using Progress = std::function<void(std::size_t done, std::size_t total, std::size_t earlier)>;
   bool run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress);
 
-  // The same with runs that are done elsewhere, a part of about part_s seconds after the other. do_part: puts
-  // the outcomes of the pending runs into the part. Runs that are still pending when it throws are not made.
-  using DoPart = std::function<void(SweepResult& part)>;
-  bool run(const DoPart& do_part, double part_s, const Progress& progress);
+  // The same with runs that are done elsewhere, in consecutive batches of about batch_s seconds. do_batch:
+  // puts the outcomes of the pending runs into the batch. If it throws, the runs that are pending are not
+  // added.
+  using DoBatch = std::function<void(SweepResult& batch)>;
+  bool run(const DoBatch& do_batch, double batch_s, const Progress& progress);
+
+  // States in the file that some of its runs are wrong, which cannot be taken out of the sums. Nobody
+  // continues such a file. why: one line. do_batch may call it, and must then throw.
+  void distrust(const std::string& why);
 
   const SweepTally& tally() const { return tally_; }
   const TextAttributes& attributes() const { return attributes_; }  // of the file, without the digest

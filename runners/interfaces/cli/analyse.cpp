@@ -71,12 +71,15 @@ Answer answer_of_tally(const AnalyseRequest& request) {
   std::int64_t done = 0;
   for (const CellTally& cell : tally.tallies) done += cell.done;
   const std::string config = attribute(stored.attributes, "config");
+  std::vector<std::string> notes = note_lines(tally);
+  if (const std::string why = attribute(stored.attributes, kDistrusted); !why.empty())
+    notes.push_back("some runs are WRONG: " + why);
   return {sweep_answer(tally, config, question_of(request)),
           config,
           digest(tally),
           static_cast<std::size_t>(done),
           static_cast<std::size_t>(tally.run_count()),
-          note_lines(tally)};
+          std::move(notes)};
 }
 
 void write_hdf5(const CommandLine& line, const AnalyseRequest& request, const Answer& answer) {

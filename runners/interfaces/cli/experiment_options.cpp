@@ -126,7 +126,9 @@ void add_merge_replay_and_recheck(Subcommands& commands) {
                   "a note on the run is an error: exit code 2, and nothing is written");
 
   auto [check, recheck] = commands.add(
-      "recheck", "make one run in a thousand of a sweep again, and compare its bits", command_recheck);
+      "recheck",
+      "make one run in a thousand of a sweep again (of a tally one cell in a thousand), and compare the bits",
+      command_recheck);
   check->add_option("sweeps", recheck->sweeps, "results of sweeps, or their shards")->required();
 }
 

@@ -17,18 +17,10 @@
 #include "runners/sweep/shards/recheck.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_replay.h"
-#include "runners/sweep/tally_outline.h"
 
 namespace remote_touch {
 
 namespace {
-
-// Returns the sweep in the file; without runs if it is a tally.
-StoredSweep stored_in(const std::string& file) {
-  if (!is_tally(Hdf5Reader(file))) return read_stored_part(file);
-  StoredTally tally = read_tally(Hdf5Reader(file));
-  return {outline_of(tally.tally), std::move(tally.attributes), false, tally.schema};
-}
 
 // Prints each measure beside the stored one. Returns true if they agree bit for bit, or nothing is stored.
 bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
@@ -79,7 +71,7 @@ Recheck recheck_of(const std::string& file, const RecheckOptions& options) {
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.map});
-  const StoredSweep stored = stored_in(request.map);
+  const StoredSweep stored = read_runs_or_outline(request.map);
   const Sweep sweep = sweep_of(stored.attributes, request.map);
   const SweepResult& result = stored.result;
   sweep.require_fits(result, request.map);

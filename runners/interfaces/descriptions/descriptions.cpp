@@ -80,12 +80,13 @@ bool describe_sweep(const std::string& name, std::FILE* out) {
   for (const EmbeddedText& stored : embedded_sweeps()) {
     if (name != stored.name) continue;
     const Sweep sweep = Sweep::load(name);
-    const SweepResult plan = sweep.plan();
+    const SweepResult outline = sweep.outline();
+    const std::size_t runs =
+        sweep.keep() == Keep::runs ? sweep.plan().runs_in(RunState::pending).size() : outline.run_count();
     std::fprintf(out, "%s: a sweep: %s\n%s\n", stored.name, sweep.title().c_str(),
                  parse_json(sweep.to_json(), name).dump(2).c_str());
-    std::fprintf(out, "Axes: %zu cells; %zu runs in the first round\n", plan.cell_count(),
-                 plan.runs_in(RunState::pending).size());
-    for (const Column& axis : plan.axes)
+    std::fprintf(out, "Axes: %zu cells; %zu runs in the first round\n", outline.cell_count(), runs);
+    for (const Column& axis : outline.axes)
       std::fprintf(out, "  %-24s %zu values of %s\n", axis.name.c_str(), axis.length(),
                    axis.long_name.c_str());
     return true;

@@ -118,7 +118,7 @@ py::dict run_experiment(const std::string& subject, const std::optional<std::str
 
 StoredSweep stored_sweep(const std::string& file) {
   const FileTurn turn;
-  return read_stored_sweep(file);
+  return read_runs_or_outline(file);
 }
 
 // Returns a sweep that was run in this process. Only its attributes are known, so none of its runs is stored.
@@ -127,7 +127,7 @@ StoredSweep sweep_of(const TextAttributes& attributes) {
   stored.attributes = provenance_of(attributes);
   stored.result =
       Sweep::from_json(stored_configuration(attribute(attributes, "config")), "config of the data set")
-          .plan();
+          .outline();
   return stored;
 }
 

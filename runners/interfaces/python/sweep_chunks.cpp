@@ -133,9 +133,10 @@ struct WorkElsewhere {
   const std::string inputs;
   const py::function& do_round;
 
-  void operator()(SweepResult& result, std::size_t done, std::size_t total,
-                  const std::function<void(std::size_t)>& stored,
-                  const std::function<void(const std::vector<std::size_t>&)>& forget) const {
+  void operator()(
+      SweepResult& result, std::size_t done, std::size_t total,
+      const std::function<void(std::size_t)>& stored,
+      const std::function<void(const std::vector<std::size_t>&, const std::string&)>& forget) const {
     const py::gil_scoped_acquire lock;
     std::vector<std::uint64_t> pending;
     for (const std::size_t place : result.runs_in(RunState::pending)) pending.push_back(result.run_at(place));
@@ -146,7 +147,8 @@ struct WorkElsewhere {
                  [&](const Array<std::uint64_t>& runs, const Array<std::int32_t>& states,
                      const Array<double>& values, const Array<std::int32_t>& notes,
                      const Texts& errors) { store(result, stored, runs, states, values, notes, errors); }),
-             py::cpp_function([&](const std::vector<std::size_t>& runs) { forget(runs); }));
+             py::cpp_function(
+                 [&](const std::vector<std::size_t>& runs, const std::string& why) { forget(runs, why); }));
   }
 };
 
@@ -154,25 +156,26 @@ SweepResult runs_elsewhere(SweepSession session, const WorkElsewhere& work) {
   const auto do_runs = [&](SweepResult& result, const std::function<void(std::size_t)>& stored) {
     const std::size_t done = result.runs_in(RunState::done).size();
     work(result, done, done + result.runs_in(RunState::pending).size(), stored,
-         [&](const std::vector<std::size_t>& runs) { session.forget(runs); });
+         [&](const std::vector<std::size_t>& runs, const std::string&) { session.forget(runs); });
     return std::size_t{0};
   };
   session.run(do_runs, [](auto...) {});
   return session.result();
 }
 
-// A part of a tally takes half a minute, because the workers wait for each other at its end.
+// A batch of a tally takes half a minute, because the workers wait for each other at its end.
 StoredTally tally_elsewhere(TallySession session, const WorkElsewhere& work) {
-  constexpr double kPart_s = 30;
-  const auto do_part = [&](SweepResult& part) {
+  constexpr double kBatch_s = 30;
+  const auto do_batch = [&](SweepResult& batch) {
+    const auto forget = [&](const std::vector<std::size_t>& runs, const std::string& why) {
+      for (const std::size_t run : runs)
+        if (const auto place = batch.place_of(run)) batch.state[*place] = RunState::pending;
+      if (!why.empty()) session.distrust(why);
+    };
     work(
-        part, session.tally().held.count(), session.own_runs(), [](std::size_t) {},
-        [&](const std::vector<std::size_t>& runs) {
-          for (const std::size_t run : runs)
-            if (const auto place = part.place_of(run)) part.state[*place] = RunState::pending;
-        });
+        batch, session.tally().held.count(), session.own_runs(), [](std::size_t) {}, forget);
   };
-  session.run(do_part, kPart_s, [](auto...) {});
+  session.run(do_batch, kBatch_s, [](auto...) {});
   return {session.tally(), session.attributes()};
 }
 

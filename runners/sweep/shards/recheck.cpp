@@ -65,8 +65,18 @@ std::vector<std::size_t> chosen_cells(const SweepTally& tally) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < tally.cells.size(); ++i)
     if (is_rechecked(tally.cells[i])) chosen.push_back(i);
-  if (chosen.empty() && !tally.cells.empty()) chosen.push_back(0);
+  if (chosen.empty() && !tally.cells.empty()) chosen.push_back(tally.cells.size() / 2);
   return chosen;
+}
+
+// Returns what differs between the tallies of one cell; empty if nothing does.
+std::string difference(const std::vector<Column>& measures, const CellTally& then, const CellTally& now) {
+  if (then == now) return "";
+  for (std::size_t m = 0; m < measures.size(); ++m)
+    if (!(then.measures[m] == now.measures[m]))
+      return "mean of " + measures[m].name + " = " + digits(then.measures[m].mean()) + ", now " +
+             digits(now.measures[m].mean());
+  return "other failed runs, notes or events now";
 }
 
 // Returns the runs of a cell that the tally has.
@@ -107,8 +117,8 @@ Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOption
         now.add_failed(run, made.error[place]);
     });
     check.made += runs.size();
-    if (now != tally.tallies[i])
-      check.different.push_back("cell " + std::to_string(tally.cells[i]) + ": its tally is another one now");
+    const std::string how = difference(tally.measures, tally.tallies[i], now);
+    if (!how.empty()) check.different.push_back("cell " + std::to_string(tally.cells[i]) + ": " + how);
   }
   return check;
 }

@@ -29,13 +29,13 @@ struct Recheck {
   std::vector<std::string> different;  // "run 99: max_force = 1.5, now 1.25", increasing
 };
 
-// Makes the finished and failed runs with is_rechecked() again, or the first one if there are none. Compares
-// state, values and notes, bit for bit. sweep: read from the configuration of the file. The part may also be
-// a whole sweep. Throws Interrupted, and std::bad_alloc.
+// Makes the finished and failed runs with is_rechecked() again, or the first run if there is no such run.
+// Compares state, values and notes, bit for bit. part: a shard or a whole sweep. sweep: read from the
+// configuration of the file. Throws Interrupted, and std::bad_alloc.
 Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options);
 
 // The same of a tally, which does not have single runs: makes all runs of the cells with is_rechecked()
-// again, or of the first cell, and compares the tally of each.
+// again, or of the cell in the middle if there is no such cell, and compares the tally of each cell.
 Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOptions& options);
 
 }  // namespace remote_touch

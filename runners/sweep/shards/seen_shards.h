@@ -1,4 +1,4 @@
-// The shards of a sweep that the files of a merge have.
+// Which shards of a sweep the files of a merge hold.
 #pragma once
 
 #include <map>

@@ -23,7 +23,7 @@ struct ShardProgress {
   double runs_per_s = 0;                       // mean since the file was made; 0 if it is not known
 };
 
-// The shards of one sweep, by their lowest index. Each is in one file.
+// The shards of one sweep, sorted by their lowest index. Each is in one file.
 struct SweepProgress {
   std::string title;
   int shard_count = 1;

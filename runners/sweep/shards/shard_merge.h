@@ -27,8 +27,8 @@ using EachBlock = std::function<void(const SweepResult& block)>;
 
 // Writes the merged file and returns its digest. A whole sweep has the bytes that one process would have
 // written. pre: the caller holds the lock of the output. Throws InputError, which names the file, for a shard
-// that is missing, doubled, damaged, unfinished or of another sweep, build or recording, and for an output
-// that holds runs that the shards do not.
+// that is missing, given twice, damaged, unfinished or of another sweep, build or recording, and for an
+// output that holds runs that the shards do not.
 std::string merge_shards(const MergeRequest& request, const EachBlock& each_block);
 
 }  // namespace remote_touch

@@ -242,6 +242,7 @@ Figure figure_pop_through_law(FigureContext& context) {
       "and of 5 %, passes to the wrong side within six frames, over the noise, for five spacings of "
       "the points and four speeds at the start. r_c: contact radius, f_c: frame rate. Start at 0.67 "
       "r_c f_c unless stated; simulated."};
+  figure.source = "this project";
   add_spacings(figure, study, study.half, "50", law, true);
   add_spacings(figure, study, study.few, "5", law, false);
   add_map(figure, study, 0);

@@ -1,4 +1,4 @@
-"""Sweeps whose runs the workers of a concurrent.futures.Executor do, in chunks. The calling process alone holds the file.
+"""Lets the workers of a concurrent.futures.Executor do the runs of a sweep, in chunks. Only the calling process opens the file.
 
 A chunk is a pure function of the sweep and of the numbers of its runs. So a lost worker loses a chunk, which is submitted
 again, and nothing else.
@@ -25,8 +25,8 @@ _worker_sweep = functools.lru_cache(maxsize=2)(_core.WorkerSweep)
 def do_runs(config, runs, number):
     """Does runs of a sweep, on one thread, and returns their outcomes, and who made them, as a dict of plain values.
 
-    config: the complete JSON of the sweep. runs: an array of their numbers. number: of the chunk, which changes nothing;
-    but an engine that remembers results by arguments has to compute this chunk.
+    config: the complete JSON of the sweep. runs: an array of their numbers. number: another one in each call; the outcome
+    does not depend on it, but an engine that remembers results by arguments has to compute this chunk.
     """
     made = {"build": _core.build(), "worker": f"{socket.gethostname()}/{os.getpid()}", "thread": threading.get_native_id()}
     try:
@@ -47,7 +47,7 @@ class _Chunk:
 
 
 class Engine:
-    """One call of rt.sweep with an executor. do_round() is called for the runs of each round, or part of a tally."""
+    """One call of rt.sweep with an executor. do_round() is called for the runs of each round, or batch of a tally."""
 
     def __init__(self, executor, chunk, output, report):
         self.executor, self.fixed, self.output, self.report = executor, chunk, output, report
@@ -66,7 +66,7 @@ class Engine:
         if is_tally:
             self.made_for_good.update(self.made_by)
             self.made_by.clear()
-        self.to_check, self.again, flying = _chosen(pending), collections.deque(), {}
+        self.to_check, self.again, flying = _chosen(pending, 1 if is_tally else 100), collections.deque(), {}
         try:
             while True:
                 # Three chunks for each worker that answered lately. More workers answer, so that this number grows.
@@ -168,8 +168,9 @@ class Engine:
 
     def _refuse(self, run, outcome, worker, again, other):
         runs = np.unique(np.concatenate(self.made_by[worker] + (self.made_by[other] if other != worker else [])))
-        self.forget(runs)
-        earlier = "; the tally also has earlier runs by them: expected a new file" if {worker, other} & self.made_for_good else ""
+        is_late = bool({worker, other} & self.made_for_good)
+        self.forget(runs, f"run {run} differs between the workers {worker} and {other}" if is_late else "")
+        earlier = "; the tally also has earlier runs by them: expected a new file" if is_late else ""
         raise RuntimeError(f"{self.output}: run {run} has {_text(outcome)} by worker {worker}, but {_text(again)} by worker "
                            f"{other}: one of them computes wrongly; the {len(runs)} runs that they made are pending again: "
                            f"{_ranges(runs)}{earlier}")
@@ -179,10 +180,10 @@ def _is_lost(future):
     return future.cancelled() or future.exception() is not None
 
 
-def _chosen(runs):
-    """One run of each thousand numbers, and at least one of 100 runs."""
+def _chosen(runs, least):
+    """One run of each thousand numbers; the first run if that is none and there are at least so many."""
     chosen = runs[runs % 1000 == (99 + 7 * (runs // 1000)) % 1000]
-    return chosen if len(chosen) or len(runs) < 100 else runs[:1]
+    return chosen if len(chosen) or len(runs) < least else runs[:1]
 
 
 def _outcome(made, at):

@@ -122,6 +122,8 @@ def columns_of(trace):
 
 def parts_of_sweep(sweep):
     """The axes, measures, states, replicates and notes of a sweep that of_sweep() made, for an analysis."""
+    if isinstance(sweep, xr.Dataset) and "runs" in sweep and "failed" in sweep:
+        raise InputError("Dataset: of a tally: expected its file")
     dimensions = [*sweep["state"].dims] if isinstance(sweep, xr.Dataset) and "state" in sweep else []
     if len(dimensions) < 2 or dimensions[-1] != "replicate":
         raise InputError(f"{type(sweep).__name__}: expected a file, or what rt.sweep returned")

@@ -150,9 +150,10 @@ def test_an_executor_that_loses_everything_ends_the_call(plan, tmp_path):
     with pytest.raises(concurrent.futures.BrokenExecutor) as raised:
         rt.sweep(file, output=tmp_path / "map.h5", executor=workers, chunk=3)
     done, asked = done_and_asked(tmp_path / "map.h5")
-    assert done == 15
+    is_tally = "runs" in rt.open(tmp_path / "map.h5")
+    assert done == (12 if is_tally else 15)  # of a tally, one of the five chunks is a check
     assert str(raised.value) == (
-        f"{tmp_path / 'map.h5'}: 15 of {asked} runs are stored, and the same call continues; the executor does no "
+        f"{tmp_path / 'map.h5'}: {done} of {asked} runs are stored, and the same call continues; the executor does no "
         "more work (OSError: the worker is away)")
     assert workers.number <= 5 + (4 + 3 * 3) * (chunks.LOSSES + 1)
     rt.sweep(file, output=tmp_path / "map.h5", executor=Workers())
@@ -247,27 +248,45 @@ def test_a_run_that_differs_when_made_again_names_both_workers(plan, tmp_path):
         rt.sweep(file, output=output, executor=Workers(flip), chunk=2)
     text = str(raised.value)
     print(text)
-    form = (r"map\.h5: run 99 has state 2, values \[(.*)\] and notes (\d+) by worker (w\d), but state 2, values \[(.*)\] and "
+    is_tally = "runs" in rt.open(output)
+    form = (rf"map\.h5: run {0 if is_tally else 99} has state 2, values \[(.*)\] and notes (\d+) by worker (w\d), but state 2, values \[(.*)\] and "
             r"notes \2 by worker (w\d): one of them computes wrongly; the (\d+) runs that they made are pending again: ([-\d, ]+)"
-            r"( and \d+ more ranges)?(; the tally also has earlier runs by them: expected a new file)?$")
+            r"( and \d+ more ranges)?$")
     found = re.search(form, text)
     assert found and found.group(1) != found.group(4)
     done, asked = done_and_asked(output)
     assert asked - done >= int(found.group(6)) > 0 and done > 0  # of a third worker: it is still there
-    if found.group(9):
-        assert 99 in missing_in(output) and 47 not in missing_in(output)  # the third part begins with 48
-    else:
-        first = int(found.group(7).split("-")[0].split(",")[0])
-        assert states_in(output)[first] == 1
+    first = int(found.group(7).split("-")[0].split(",")[0])
+    assert first in missing_in(output) if is_tally else states_in(output)[first] == 1
     rt.sweep(file, output=output, executor=Workers())
     assert_same_file(output, expected)
+
+
+def test_a_tally_with_wrong_runs_is_not_continued(command_line, tmp_path):
+    """The sums of earlier batches cannot be taken back, so the file says why it is wrong, and nobody adds to it."""
+    (tmp_path / "sweep.json").write_text(json.dumps(TALLY))
+    output, checks = tmp_path / "tally.h5", []
+
+    def wrong_late(number, made, is_check):
+        checks.extend([number] * is_check)
+        if len(checks) == 2:
+            made["values"].view(np.uint64)[...] ^= 1
+        return made
+    with pytest.raises(RuntimeError, match="run 16 has .*; the tally also has earlier runs by them: expected a new file$"):
+        rt.sweep(tmp_path / "sweep.json", output=output, executor=Workers(wrong_late), chunk=2)
+    assert 15 not in missing_in(output) and 16 in missing_in(output)
+    assert rt.open(output).attrs["distrusted"].startswith("run 16 differs between the workers w")
+    assert "note: some runs are WRONG: run 16 differs" in command_line("analyse", output)
+    for again in ({"executor": Workers()}, {"threads": 1}):
+        with pytest.raises(rt.InputError, match="tally.h5: has runs of a machine that computed wrongly .run 16 differs"):
+            rt.sweep(tmp_path / "sweep.json", output=output, **again)
 
 
 def test_a_difference_in_a_later_round_takes_back_the_rounds_that_rest_on_it(command_line, tmp_path, monkeypatch):
     (tmp_path / "sweep.json").write_text(json.dumps(REFINED))
     command_line("sweep", tmp_path / "sweep.json", "-o", tmp_path / "command.h5")
     checks = []
-    monkeypatch.setattr(chunks, "_chosen", lambda runs: runs[:1])  # in each round
+    monkeypatch.setattr(chunks, "_chosen", lambda runs, least: runs[:1])  # in each round
 
     def wrong_late(number, made, is_check):
         if is_check:
@@ -325,11 +344,11 @@ def test_failed_runs_are_stored_with_their_reason(command_line, tmp_path):
 
 def test_one_run_of_a_thousand_is_checked():
     numbers = np.arange(10**6, dtype=np.uint64)
-    assert len(chunks._chosen(numbers)) == 1000
-    assert len(np.unique(chunks._chosen(numbers) // 1000)) == 1000
+    assert len(chunks._chosen(numbers, 100)) == 1000
+    assert len(np.unique(chunks._chosen(numbers, 100) // 1000)) == 1000
     for few in (numbers[:100], numbers[200:300], numbers[:7000:7][:100]):
-        assert len(chunks._chosen(few)) >= 1
-    assert len(chunks._chosen(numbers[:99])) == 0
+        assert len(chunks._chosen(few, 100)) >= 1
+    assert len(chunks._chosen(numbers[:99], 100)) == 0 and len(chunks._chosen(numbers[:99], 1)) == 1
 
 
 @pytest.mark.parametrize("arguments, problem", [

@@ -70,11 +70,15 @@ TEST(TallyRechecks, CompareAWholeCell) {
   TallySession session(sweep, {}, {{"config", sweep.to_json()}}, folder.path() / "t.h5");
   session.run(kernels_for(best_isa()), nullptr, [](auto...) {});
   SweepTally tally = session.tally();
-  EXPECT_EQ(recheck(tally, sweep, {}).made, 10u) << "the first cell, of 12";
+  EXPECT_EQ(recheck(tally, sweep, {}).made, 10u) << "one cell of 12";
   EXPECT_TRUE(recheck(tally, sweep, {}).different.empty());
-  tally.tallies[0].measures[0].add(0.001);
+  tally.tallies[6].measures[0].add(0.001);
+  ASSERT_EQ(recheck(tally, sweep, {}).different.size(), 1u);
+  EXPECT_HAS(recheck(tally, sweep, {}).different[0], "cell 6: mean of max_penetration = ");
+  tally = session.tally();
+  tally.tallies[6].notes[0].runs += 1;
   EXPECT_EQ(recheck(tally, sweep, {}).different,
-            std::vector<std::string>{"cell 0: its tally is another one now"});
+            std::vector<std::string>{"cell 6: other failed runs, notes or events now"});
 }
 
 TEST(RecheckedNumbers, AreOneOfEachThousand) {
