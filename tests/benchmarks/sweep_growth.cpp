@@ -1,6 +1,6 @@
-// How time, memory and files of sweeps grow with the number of runs: real runs as far as they take seconds,
-// and beyond that runs that compute nothing, whose values are made up. Prints a line of JSON for each
-// measurement:
+// Measures how time, memory and files of sweeps grow with the number of runs: real runs as far as they take
+// seconds, and beyond that runs that compute nothing, whose values are made up. Prints a line of JSON for
+// each measurement:
 // {"what": "tally", "runs": 1000, "processor_s": 0.01, "memory_MB": 12.3, "file_MB": 0.1}.
 //
 //     sweep_growth FOLDER [MOST_RUNS]     default of MOST_RUNS: 1e8. FOLDER: for the files, must be empty.
@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostReal = 100'000;     // of real runs, about 0.2 ms each
-constexpr std::uint64_t kMostKept = 10'000'000;  // of a file that keeps every run
+constexpr std::uint64_t kMostReal = 100'000;     // number of real runs; one takes about 0.2 ms
+constexpr std::uint64_t kMostKept = 10'000'000;  // number of runs of a file that keeps every run
 constexpr int kShards = 100;
 
 // A short press on a plane without noise, in ten cells for each thousand runs; at most 1000 cells.

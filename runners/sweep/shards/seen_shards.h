@@ -1,4 +1,4 @@
-// Which shards of a sweep the files of a merge hold.
+// Finds out which shards of a sweep the files of a merge hold.
 #pragma once
 
 #include <map>

@@ -10,7 +10,7 @@
 namespace remote_touch {
 
 struct EmbeddedFile {
-  const char* name;  // of the file, without its ending
+  const char* name;  // name of the file without its ending
   std::string_view bytes;
 };
 std::span<const EmbeddedFile> embedded_studies();
