@@ -60,6 +60,12 @@ TEST(ParameterDescription, RefusesAnUnknownOwner) {
     EXPECT_HAS(refused(name), "expected a name from `remote-touch list`, or NAME.PARAMETER") << name;
 }
 
+// A sweep that keeps a tally, for example, has no plan of its runs.
+TEST(Descriptions, AreThereOfEverySweepAndFigure) {
+  for (const char* kind : {"sweeps", "figures"})
+    for (const auto& row : named_kind(kind).rows) EXPECT_HAS(described(row.name), row.name + ": a ");
+}
+
 TEST(NamedKind, HasTheRowsOfTheList) {
   const NamedKind rules = named_kind("fixture rules");
   ASSERT_FALSE(rules.rows.empty());
