@@ -247,7 +247,6 @@ def test_a_run_that_differs_when_made_again_names_both_workers(plan, tmp_path):
     with pytest.raises(RuntimeError) as raised:
         rt.sweep(file, output=output, executor=Workers(flip), chunk=2)
     text = str(raised.value)
-    print(text)
     is_tally = "runs" in rt.open(output)
     form = (rf"map\.h5: run {0 if is_tally else 99} has state 2, values \[(.*)\] and notes (\d+) by worker (w\d), but state 2, values \[(.*)\] and "
             r"notes \2 by worker (w\d): one of them computes wrongly; the (\d+) runs that they made are pending again: ([-\d, ]+)"
