@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/run_spool.h"
 #include "analysis/sweeps/sweep_columns.h"
@@ -150,6 +151,7 @@ void require_nothing_more(const MergeRequest& request, RunSpool& spool) {
 }  // namespace
 
 std::string merge_shards(const MergeRequest& request, const EachBlock& each_block) {
+  require_no_device(request.output);
   std::optional<ShardFile> first;
   std::optional<RunSpool> spool;
   SeenShards seen;
