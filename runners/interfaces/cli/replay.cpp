@@ -9,6 +9,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/maker.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
@@ -16,6 +17,7 @@
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/shards/recheck.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_origin.h"
 #include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {
@@ -58,13 +60,35 @@ Sweep sweep_of(const TextAttributes& attributes, const std::string& file) {
   });
 }
 
-Recheck recheck_of(const std::string& file, const RecheckOptions& options) {
+// Throws InputError if a recording is missing or has changed since the runs read it: they would differ.
+void require_same_recordings(const std::string& file, const Sweep& sweep, const TextAttributes& attributes) {
+  for (const ChangedInput& input :
+       changed_inputs(attribute(attributes, "input_digests"), input_hashes(sweep.inputs())))
+    throw InputError(file, "has runs on the recording " + input.path + " (" + input.before + "; now " +
+                               input.now + "): expected the same recording");
+}
+
+Recheck recheck_of(const std::string& file, const RecheckOptions& options, TextAttributes& attributes) {
   if (const Hdf5Reader reader(file); is_tally(reader)) {
-    const StoredTally stored = read_tally(reader);
-    return recheck(stored.tally, sweep_of(stored.attributes, file), options);
+    StoredTally stored = read_tally(reader);
+    attributes = std::move(stored.attributes);
+    const Sweep sweep = sweep_of(attributes, file);
+    require_same_recordings(file, sweep, attributes);
+    return recheck(stored.tally, sweep, options);
   }
-  const StoredSweep stored = read_stored_part(file);
-  return recheck(stored.result, sweep_of(stored.attributes, file), options);
+  StoredSweep stored = read_stored_part(file);
+  attributes = std::move(stored.attributes);
+  const Sweep sweep = sweep_of(attributes, file);
+  require_same_recordings(file, sweep, attributes);
+  return recheck(stored.result, sweep, options);
+}
+
+// Prints the build that made the file, if it is another one: a reason for different bits.
+void print_other_build(const TextAttributes& attributes) {
+  for (const auto& [name, ours] : build_of(provenance("", "", "")))
+    if (const std::string theirs = attribute(attributes, name); theirs != ours)
+      std::printf("  made by another build: its %s is %s, here it is %s\n", name.c_str(),
+                  printable(theirs).c_str(), printable(ours).c_str());
 }
 
 }  // namespace
@@ -100,15 +124,16 @@ int command_recheck(const CommandLine& line, const RecheckRequest& request) {
   int code = kDone;
   for (const std::string& file : request.sweeps) {
     Progress progress("recheck " + file, line.quiet);
-    const Recheck check = recheck_of(
-        file, {line.kernels, line.stop,
-               [&](std::size_t done, std::size_t total) { progress.update(done, total, 0, "runs"); }});
+    TextAttributes attributes;
+    const auto show = [&](std::size_t done, std::size_t total) { progress.update(done, total, 0, "runs"); };
+    const Recheck check = recheck_of(file, {line.kernels, line.stop, show}, attributes);
     progress.clear();
     std::printf("%s: %zu runs made again, ", printable(file).c_str(), check.made);
     if (check.different.empty()) std::printf("all as stored\n");
     if (!check.different.empty()) {
       std::printf("%zu different\n", check.different.size()), code = kCheckFailed;
       for (const std::string& text : check.different) std::printf("  %s\n", text.c_str());
+      print_other_build(attributes);
     }
   }
   return code;

@@ -118,7 +118,7 @@ void store(SweepResult& result, const std::function<void(std::size_t)>& stored,
       std::get<std::vector<double>>(result.measures[m].values)[place] =
           values.at(static_cast<py::ssize_t>(m), i);
     result.notes[place] = notes.data()[i];
-    result.error[place] = errors[static_cast<std::size_t>(i)];
+    result.error[place] = printable(errors[static_cast<std::size_t>(i)]);
     result.state[place] = static_cast<RunState>(states.data()[i]);
     stored(place);
   }

@@ -67,6 +67,7 @@ class Engine:
             self.made_for_good.update(self.made_by)
             self.made_by.clear()
         self.to_check, self.again, flying = _chosen(pending, 1 if is_tally else 100), collections.deque(), {}
+        self.unchecked = len(self.to_check) if is_tally else 0
         try:
             while True:
                 # Three chunks for each worker that answered lately. More workers answer, so that this number grows.
@@ -83,9 +84,20 @@ class Engine:
                         self._lose(chunk, f"{type(error).__name__}: {error}", error)
                     else:
                         self._take(chunk, future.result())
+        except BaseException:
+            self._drop_unchecked()
+            raise
         finally:
             for future in flying:
                 future.cancel()
+
+    def _drop_unchecked(self):
+        """A tally adds the runs of a batch only after all checks of the batch have passed."""
+        if self.unchecked and self.made_by:
+            runs = np.concatenate([runs for of_worker in self.made_by.values() for runs in of_worker])
+            self.forget(runs, "")
+            self.done -= len(runs)
+            self.made_by.clear()
 
     def _submit(self, *call):
         try:
@@ -109,6 +121,8 @@ class Engine:
         self.again.append(chunk)
 
     def _end(self, why):
+        if hasattr(self, "done"):
+            self._drop_unchecked()
         stored = f"{self.done} of {self.total} runs are" if hasattr(self, "done") else "no new run is"
         why = " ".join(why.split())
         return concurrent.futures.BrokenExecutor(f"{self.output}: {stored} stored, and the same call continues; the executor "
@@ -164,6 +178,7 @@ class Engine:
             self.again.append(chunk)
             return
         self.checked += 1
+        self.unchecked -= 1
         self.checked_by_another += is_another
 
     def _refuse(self, run, outcome, worker, again, other):

@@ -1,0 +1,45 @@
+"""Workers that compute wrongly or vanish before a check: no wrong run is added to a tally without a word."""
+import concurrent.futures
+import json
+
+import h5py
+import numpy as np
+import pytest
+import remote_touch as rt
+from test_executors import TALLY, Workers
+
+
+def missing_in(tally):
+    with h5py.File(tally) as file:
+        held = file["tally/held_runs"][()].astype(int).reshape(-1, 2)
+    return {*range(240)} - {run for first, last in held for run in range(first, last + 1)}
+
+
+def test_a_tally_has_no_run_of_a_batch_whose_check_was_lost(tmp_path):
+    def lose_checks(number, made, is_check):
+        if is_check:
+            raise OSError("away")
+        return made
+    with pytest.raises(concurrent.futures.BrokenExecutor, match="tally.h5: 0 of 240 runs are stored"):
+        rt.sweep(TALLY, output=tmp_path / "tally.h5", executor=Workers(lose_checks), chunk=2)
+    assert not (tmp_path / "tally.h5").exists()
+
+
+def test_a_tally_with_wrong_runs_is_not_continued(command_line, tmp_path):
+    """The sums of earlier batches cannot be taken back, so the file says why it is wrong, and nobody adds to it."""
+    (tmp_path / "sweep.json").write_text(json.dumps(TALLY))
+    output, checks = tmp_path / "tally.h5", []
+
+    def wrong_late(number, made, is_check):
+        checks.extend([number] * is_check)
+        if len(checks) == 2:
+            made["values"].view(np.uint64)[...] ^= 1
+        return made
+    with pytest.raises(RuntimeError, match="run 16 has .*; the tally also has earlier runs by them: expected a new file$"):
+        rt.sweep(tmp_path / "sweep.json", output=output, executor=Workers(wrong_late), chunk=2)
+    assert 15 not in missing_in(output) and 16 in missing_in(output)
+    assert rt.open(output).attrs["distrusted"].startswith("run 16 differs between the workers w")
+    assert "note: some runs are WRONG: run 16 differs" in command_line("analyse", output)
+    for again in ({"executor": Workers()}, {"threads": 1}):
+        with pytest.raises(rt.InputError, match="tally.h5: has runs of a machine that computed wrongly .run 16 differs"):
+            rt.sweep(tmp_path / "sweep.json", output=output, **again)
