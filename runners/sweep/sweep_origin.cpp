@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
@@ -73,16 +72,6 @@ void require_same_origin(const MergedFile& part, const MergedFile& first) {
        changed_inputs(attribute(theirs, "input_digests"), attribute(ours, "input_digests")))
     throw InputError(part.file, "has runs on another recording " + input.path + " (" + input.now + "; " +
                                     first.file + ": " + input.before + "): expected shards of one sweep");
-}
-
-void require_no_other_sweep(const std::filesystem::path& output, const std::string& config) {
-  std::error_code unreachable;
-  if (!std::filesystem::is_regular_file(output, unreachable) ||
-      std::filesystem::file_size(output, unreachable) == 0)
-    return;
-  if (attribute(Hdf5Reader(output).attributes(), "config") != config)
-    throw InputError(output.string(),
-                     "is a result with another configuration: expected another file, or --force");
 }
 
 }  // namespace remote_touch

@@ -24,8 +24,4 @@ struct MergedFile {
 };
 void require_same_origin(const MergedFile& part, const MergedFile& first);
 
-// Checks the output of a merge. Throws InputError if it is there, not empty, and the result of a sweep with
-// another configuration.
-void require_no_other_sweep(const std::filesystem::path& output, const std::string& config);
-
 }  // namespace remote_touch

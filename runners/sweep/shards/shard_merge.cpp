@@ -176,7 +176,6 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
   TextAttributes attributes = first->outline.attributes;
   if (!seen.are_complete()) attributes.emplace_back("shard", seen.all().text());
   spool->complete(seen.are_complete());
-  if (!request.force) require_no_other_sweep(request.output, attribute(attributes, "config"));
   require_nothing_more(request, *spool);
   for_each_block(*spool, each_block);
   const auto values = [&](const std::string& array, std::size_t at, std::size_t count) {

@@ -119,18 +119,6 @@ TEST_F(ShardMerge, RefusesWhatDoesNotBelongTogether) {
   EXPECT_HAS(why({one, folder_.write("flipped.h5", bytes)}), "flipped.h5: damaged or modified");
 }
 
-TEST_F(ShardMerge, DoesNotReplaceAnotherSweep) {
-  const std::string one = shard("1/2"), two = shard("2/2"), other = shard("1/1", {"seed=2"});
-  const std::string before = bytes_of(other);
-  EXPECT_HAS(refusal([&] {
-               merge_shards({{one, two}, other}, [](const SweepResult&) {});
-             }),
-             "is a result with another configuration: expected another file, or --force");
-  EXPECT_TRUE(bytes_of(other) == before);
-  merge_shards({{one, two}, other, Partial::no, true}, [](const SweepResult&) {});
-  EXPECT_FALSE(bytes_of(other) == before);
-}
-
 // A forged shard, with the seal of this program: its runs are those of another shard, or are not all there.
 TEST_F(ShardMerge, NamesAShardThatHoldsOtherRuns) {
   const std::string one = shard("1/2");
