@@ -86,8 +86,9 @@ StoredSweep read_stored_part(const std::filesystem::path& file) {
 }
 
 StoredSweep read_runs_or_outline(const std::filesystem::path& file) {
-  if (!is_tally(Hdf5Reader(file))) return read_stored_part(file);
-  StoredTally tally = read_tally(Hdf5Reader(file));
+  const Hdf5Reader reader(file);
+  if (!is_tally(reader)) return read_stored_part(file);
+  StoredTally tally = read_tally(reader);
   return {outline_of(tally.tally), std::move(tally.attributes), false, tally.schema};
 }
 

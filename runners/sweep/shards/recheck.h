@@ -14,7 +14,7 @@
 
 namespace remote_touch {
 
-// True for one number of each thousand, at another place of each.
+// True for one number in each thousand; its place differs from one thousand to the next.
 constexpr bool is_rechecked(std::uint64_t number) {
   return number % 1000 == (99 + 7 * (number / 1000)) % 1000;
 }
@@ -25,8 +25,10 @@ struct RecheckOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 struct Recheck {
-  std::size_t made = 0;                // number of runs that were made again
-  std::vector<std::string> different;  // "run 99: max_force = 1.5, now 1.25", increasing
+  std::size_t made = 0;  // number of runs that were made again
+  // Each run that differs, "run 99: max_force = 1.5, now 1.25"; of a tally each cell, "cell 3: mean of
+  // max_force = 1.5, now 1.25".
+  std::vector<std::string> different;
 };
 
 // Makes the finished and failed runs with is_rechecked() again, or the first run if there is no such run.

@@ -195,14 +195,14 @@ void add_claims(Figure& figure, const Study& study, const PopThroughLaw& law, co
   const std::size_t last_noise = study.axes.noise.size() - 1, widest = study.axes.spacing.size() - 1;
   claims.at_most(
       "with noise of 0.05 r_c half of the lifts pop through at e f_c^2, where e is the height of the proxy "
-      "amid four points: largest difference over five spacings, in r_c f_c^2",
+      "amid four points: largest difference over five spacings",
       away_without_noise(study), 0.1, "r_c f_c^2", "0 (4.14)");
-  claims.at_most(
-      "a law with two fitted numbers gives the limits over spacing and noise: rms residual, in r_c f_c^2",
-      rms_residual(law, points_at(study.axes, study.half, kSpeed, {0, 1, 2, 3, 4})), 0.06, "r_c f_c^2");
-  claims.at_most(
-      "the law of three spacings predicts the limits at the two between them: rms residual, in r_c f_c^2",
-      rms_residual(of_three, points_at(study.axes, study.half, kSpeed, {1, 3})), 0.07, "r_c f_c^2");
+  claims.at_most("a law with two fitted numbers gives the limits over spacing and noise: rms residual",
+                 rms_residual(law, points_at(study.axes, study.half, kSpeed, {0, 1, 2, 3, 4})), 0.06,
+                 "r_c f_c^2");
+  claims.at_most("the law of three spacings predicts the limits at the two between them: rms residual",
+                 rms_residual(of_three, points_at(study.axes, study.half, kSpeed, {1, 3})), 0.07,
+                 "r_c f_c^2");
   claims.between("noise raises the limit of dense points and lowers that of sparse ones: neutral spacing",
                  law.neutral_spacing(), 0.33, 0.43, "r_c");
   claims.at_least("with points 0.2 r_c apart noise of r_c raises the limit: by",

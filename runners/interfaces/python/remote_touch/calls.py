@@ -114,7 +114,8 @@ def open(path):
     if os.path.isdir(file):
         file = os.path.join(file, b"scorecard.h5")
     result = _core.open(file)
-    return {"trace": dataset.of_trace, "sweep": dataset.of_sweep, "tally": dataset.of_tally, "figure": dataset.of_figure}[result["kind"]](result)
+    made = {"trace": dataset.of_trace, "sweep": dataset.of_sweep, "tally": dataset.of_tally, "figure": dataset.of_figure}
+    return made[result["kind"]](result)
 
 
 class Comparison:

@@ -63,11 +63,12 @@ class Engine:
         """Does the pending runs. The arguments: see WorkElsewhere in sweep_chunks.cpp."""
         self.config, self.inputs, self.pending, self.store, self.forget = config, inputs, pending, store, forget
         self.done, self.ended, self.total, self.next = done, done, total, 0
+        self.is_tally = is_tally
         if is_tally:
             self.made_for_good.update(self.made_by)
             self.made_by.clear()
         self.to_check, self.again, flying = _chosen(pending, 1 if is_tally else 100), collections.deque(), {}
-        self.unchecked = len(self.to_check) if is_tally else 0
+        self.unchecked = len(self.to_check)
         try:
             while True:
                 # Three chunks for each worker that answered lately. More workers answer, so that this number grows.
@@ -92,8 +93,8 @@ class Engine:
                 future.cancel()
 
     def _drop_unchecked(self):
-        """A tally adds the runs of a batch only after all checks of the batch have passed."""
-        if self.unchecked and self.made_by:
+        """A tally adds the runs of a batch only after all checks of the batch have passed; a sweep keeps each run."""
+        if self.is_tally and self.unchecked and self.made_by:
             runs = np.concatenate([runs for of_worker in self.made_by.values() for runs in of_worker])
             self.forget(runs, "")
             self.done -= len(runs)
@@ -173,7 +174,8 @@ class Engine:
         if again != outcome:
             self._refuse(int(chunk.runs[0]), outcome, worker, again, made["worker"])
         is_another = made["worker"] != worker
-        if not is_another and len(self.made_for_good.union(self.made_by)) > 1 and chunk.repeats < 2:  # another one may have it next time
+        workers = self.made_for_good.union(self.made_by)
+        if not is_another and len(workers) > 1 and chunk.repeats < 2:  # another one may have it next time
             chunk.repeats += 1
             self.again.append(chunk)
             return

@@ -118,6 +118,22 @@ def test_threads_are_workers_too_and_few_chunks_wait(plan, tmp_path):
     assert 2 < most <= 4 + 3 * 2 + 1  # of some hundred chunks, and the first call
 
 
+def test_runs_that_passed_a_check_stay_when_the_call_ends(plan, tmp_path):
+    """In a sweep each stored run stays; in a tally the batches whose checks have passed."""
+    file, expected = plan
+
+    def stop(fraction):
+        if fraction > 0.6:  # after the check of run 99
+            raise KeyboardInterrupt
+    with pytest.raises(KeyboardInterrupt):
+        rt.sweep(file, output=tmp_path / "map.h5", executor=Workers(), chunk=2, progress=stop)
+    done, asked = done_and_asked(tmp_path / "map.h5")
+    is_tally = "keep" in json.loads(file.read_text())
+    assert done >= 112 if is_tally else done > 0.6 * asked - 2
+    rt.sweep(file, output=tmp_path / "map.h5", executor=Workers())
+    assert_same_file(tmp_path / "map.h5", expected)
+
+
 def test_lost_chunks_are_done_again(plan, tmp_path):
     file, expected = plan
     drawn, lost = random.Random(1), []

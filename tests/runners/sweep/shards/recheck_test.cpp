@@ -5,25 +5,18 @@
 
 #include <bit>
 
-#include "core/kernels/isa.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"
-#include "runners/sweep/tally_session.h"
-#include "tests/support/test_files.h"
+#include "tests/runners/sweep/quick_tallies.h"
 
 namespace remote_touch::recheck_test {
 namespace {
 
-// A run takes a millisecond.
-constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
-  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
-  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3},
-           {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 7, "count": 4}],
-  "replicates": 10, "measures": ["max_penetration", "popped_through"]})";
-
-class Rechecks : public testing::Test {
+class Rechecks : public QuickTallies {
  protected:
-  const Sweep sweep_ = Sweep::from_json(kQuick, "quick.json");
+  Rechecks() : QuickTallies("recheck_test") {}
+
+  const Sweep sweep_ = quick({"keep=runs", "replicates=10"});
   SweepResult result_ = run_sweep(sweep_, {});
 
   std::vector<std::string> different() const { return recheck(result_, sweep_, {}).different; }
@@ -64,18 +57,16 @@ TEST_F(Rechecks, EndWhenTheyAreStopped) {
   EXPECT_THROW(recheck(result_, sweep_, {nullptr, &stop}), Interrupted);
 }
 
-TEST(TallyRechecks, CompareAWholeCell) {
-  const TestFolder folder{"recheck_test"};
-  const Sweep sweep = Sweep::from_json(kQuick, "quick.json", {"keep=events"});
-  TallySession session(sweep, {}, {{"config", sweep.to_json()}}, folder.path() / "t.h5");
-  session.run(kernels_for(best_isa()), nullptr, [](auto...) {});
-  SweepTally tally = session.tally();
-  EXPECT_EQ(recheck(tally, sweep, {}).made, 10u) << "one cell of 12";
+TEST_F(Rechecks, CompareAWholeCellOfATally) {
+  const Sweep sweep = quick();
+  const SweepTally made_once = tally_in(made("t.h5", sweep));
+  SweepTally tally = made_once;
+  EXPECT_EQ(recheck(tally, sweep, {}).made, 5u) << "one cell of 12";
   EXPECT_TRUE(recheck(tally, sweep, {}).different.empty());
   tally.tallies[6].measures[0].add(0.001);
   ASSERT_EQ(recheck(tally, sweep, {}).different.size(), 1u);
   EXPECT_HAS(recheck(tally, sweep, {}).different[0], "cell 6: mean of max_penetration = ");
-  tally = session.tally();
+  tally = made_once;
   tally.tallies[6].notes[0].runs += 1;
   EXPECT_EQ(recheck(tally, sweep, {}).different,
             std::vector<std::string>{"cell 6: other failed runs, notes or events now"});
