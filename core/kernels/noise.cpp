@@ -193,6 +193,26 @@ inline std::size_t keep(NativeBits refused, std::uint32_t first, std::size_t liv
 #endif
 }
 
+// The number of vectors whose words are computed side by side when points are selected. More need more
+// registers than the machine has.
+constexpr std::size_t kTogether = kNative == 8 ? 4 : 2;
+
+// A walk over a rectangle of points, row by row, a vector at a time. The last vector of a row may be partly
+// empty.
+struct Walk {
+  const PointRectangle& points;
+  std::size_t row = 0, column = 0;
+  std::uint32_t first() const {
+    return points.first + static_cast<std::uint32_t>(row) * points.stride +
+           static_cast<std::uint32_t>(column);
+  }
+  std::size_t live() const { return points.columns - column < kNative ? points.columns - column : kNative; }
+  void advance() {
+    column += kNative;
+    if (column >= points.columns) column = 0, ++row;
+  }
+};
+
 }  // namespace
 
 void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t count, double* x, double* y,
@@ -209,23 +229,30 @@ void normals(const NoiseStream& stream, const std::uint32_t* index, std::size_t 
   }
 }
 
-std::size_t candidates(const NoiseStream& stream, std::uint32_t first, std::size_t count,
-                       const std::uint64_t* x, std::uint64_t z, std::uint32_t* index) {
+std::size_t candidates(const NoiseStream& stream, const PointRectangle& points, const std::uint64_t* x,
+                       const std::uint64_t* z, std::uint32_t* index) {
   const Philox<NativeBits, Product> philox(stream);
-  const NativeBits none = {}, bounds_z = none + z;
+  const NativeBits none = {};
   NativeBits lane = {};
   for (std::size_t i = 0; i < kNative; ++i) lane[i] = i;
   std::size_t found = 0;
-  for (std::size_t i = 0; i < count; i += kNative) {
-    const std::size_t live = count - i < kNative ? count - i : kNative;
-    NativeBits bounds_x = {};
-    if (live == kNative)
-      __builtin_memcpy(&bounds_x, x + i, sizeof bounds_x);
-    else
-      for (std::size_t k = 0; k < live; ++k) bounds_x[k] = x[i + k];
-    const Words<NativeBits> words = philox(lane + (first + i));
-    found += keep(refused(words.w[0], words.w[1], bounds_x) | refused(words.w[2], words.w[3], bounds_z),
-                  first + static_cast<std::uint32_t>(i), live, index + found);
+  Walk made{points}, tested{points};
+  for (std::size_t left = points.rows * ((points.columns + kNative - 1) / kNative); left > 0;) {
+    NativeBits group[kTogether];
+    Words<NativeBits> words[kTogether];
+    for (NativeBits& vector : group) {
+      vector = lane + made.first();
+      made.advance();
+    }
+    philox.compute(group, words);
+    for (std::size_t k = 0; k < kTogether && left > 0; ++k, --left) {
+      const NativeBits(&w)[4] = words[k].w;
+      NativeBits bounds;
+      __builtin_memcpy(&bounds, x + tested.column, sizeof bounds);
+      const NativeBits no = refused(w[0], w[1], bounds) | refused(w[2], w[3], none + z[tested.row]);
+      found += keep(no, tested.first(), tested.live(), index + found);
+      tested.advance();
+    }
   }
   return found;
 }

@@ -29,14 +29,23 @@ class Philox {
       left_[round] = kZero + left, right_[round] = kZero + right;
   }
   Words<Vector> operator()(Vector point) const {
-    Vector a = point, b = b_, c = c_, d = d_;
-    for (int round = 0; round < kRounds; ++round) {
-      const Vector left = Product::of(a, kZero + 0xD2511F53u), right = Product::of(c, kZero + 0xCD9E8D57u);
-      a = (right >> 32) ^ b ^ left_[round];
-      c = (left >> 32) ^ d ^ right_[round];
-      b = right, d = left;
-    }
-    return {{a & kWord, b & kWord, c & kWord, d & kWord}};
+    Words<Vector> words[1];
+    compute({point}, words);
+    return words[0];
+  }
+  // Computes the words of several vectors of points side by side, because each alone is one long chain of
+  // products that wait for each other.
+  template <std::size_t kCount>
+  void compute(const Vector (&points)[kCount], Words<Vector> (&words)[kCount]) const {
+    for (std::size_t i = 0; i < kCount; ++i) words[i] = {{points[i], b_, c_, d_}};
+    for (int round = 0; round < kRounds; ++round)
+      for (Words<Vector>& word : words) {
+        auto& [a, b, c, d] = word.w;
+        const Vector left = Product::of(a, kZero + 0xD2511F53u), right = Product::of(c, kZero + 0xCD9E8D57u);
+        word = {{(right >> 32) ^ b ^ left_[round], right, (left >> 32) ^ d ^ right_[round], left}};
+      }
+    for (Words<Vector>& word : words)
+      for (Vector& w : word.w) w &= kWord;
   }
 
  private:

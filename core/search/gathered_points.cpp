@@ -33,4 +33,9 @@ PointsView GatheredPoints::view() const {
           padded};
 }
 
+PointRun GatheredPoints::run() const {
+  const PointsView columns = view();
+  return {columns.x, columns.y, columns.z, columns.radius, columns.stiffness, index_.data(), 0, count_};
+}
+
 }  // namespace remote_touch

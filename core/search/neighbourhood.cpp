@@ -13,6 +13,9 @@ namespace {
 // The edge of a cube in units of the reach. A smaller edge means fewer useless points in a list, a larger one
 // means fewer new lists.
 constexpr double kPitch = 0.125;
+// How far a proxy may move with a narrow list, in units of the reach, and the longest step of a slow proxy,
+// in units of that distance. Steps of 4.2.4 decrease by a factor 1 - gamma, so a slow proxy often stays near.
+constexpr double kNarrowMargin = 0.02, kSlow = 0.3;
 // The maximum number of hops in which a tube is searched, however far the HIP jumped.
 constexpr double kMaxHops = 64;
 }  // namespace
@@ -25,18 +28,25 @@ void Neighbourhood::set_reach(double reach) {
   reach_ = reach;
   pitch_ = kPitch * reach;
   list_radius_ = reach_ + 0.8661 * pitch_;  // sqrt(3)/2, from a cube's centre to its corner, rounded up
+  narrow_margin_ = kNarrowMargin * reach;
+  forget_lists();
+}
+
+void Neighbourhood::forget_lists() {
   for (CachedList& kept : cache_) kept.valid = false;
+  narrow_.valid = false;
 }
 
 void Neighbourhood::set_points(std::shared_ptr<const NeighbourSearch> points) {
   points_ = std::move(points);
   reserve(points_->size(), points_->has_fixture_radius(), points_->has_stiffness());
-  for (CachedList& kept : cache_) kept.valid = false;
+  forget_lists();
 }
 
 void Neighbourhood::reserve(std::size_t points, bool with_radius, bool with_stiffness) {
   for (CachedList& kept : cache_) kept.points.reserve(points, with_radius, with_stiffness);
   tube_.reserve(points, with_radius, with_stiffness);
+  narrow_.points.reserve(points, with_radius, with_stiffness);
 }
 
 const GatheredPoints& Neighbourhood::around(const Vec3& p) {
@@ -59,6 +69,25 @@ void Neighbourhood::gather(CachedList& kept) {
   kept.points.finish();
   kept.sum_grid = 1.5 * static_cast<double>(std::bit_ceil(kept.points.size() + 1));
   kept.valid = true;
+  narrow_.valid = false;
+}
+
+const GatheredPoints& Neighbourhood::narrowed(const Vec3& p) {
+  const GatheredPoints& wide = around(p);
+  const auto is_near = [&](const Vec3& q, double distance) {
+    return (p - q).squaredNorm() < distance * distance;
+  };
+  const bool is_slow = is_near(std::exchange(last_W_, p), kSlow * narrow_margin_);
+  // At the border of a cube the wide list lacks points that are near a position in the next cube.
+  if (narrow_.valid && narrow_of_ == current_ && is_near(narrow_.centre, narrow_margin_))
+    return narrow_.points;
+  if (!is_slow) return wide;
+  narrow_.centre = p;
+  narrow_.valid = true, narrow_of_ = current_;
+  narrow_.points.clear();
+  narrow_.points.add(wide.run(), {p, (reach_ + narrow_margin_) * (1 + 1e-9)}, kernels_);
+  narrow_.points.finish();
+  return narrow_.points;
 }
 
 const GatheredPoints& Neighbourhood::within(const Vec3& p, double radius) {

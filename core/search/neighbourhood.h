@@ -25,6 +25,9 @@ class Neighbourhood {
   void set_points(std::shared_ptr<const NeighbourSearch> points);
   // Returns the points around p. Valid until the next call.
   const GatheredPoints& around(const Vec3& p);
+  // Returns the points of around(p), without most of those beyond the reach if p has moved little since the
+  // last call: a slow proxy reads a narrow list often enough to pay for it. Valid until the next call.
+  const GatheredPoints& narrowed(const Vec3& p);
   // Searches anew and returns all points with r_n <= radius of p, and possibly some beyond. Valid until the
   // next call.
   const GatheredPoints& within(const Vec3& p, double radius);
@@ -50,17 +53,23 @@ class Neighbourhood {
     double sum_grid = 1.5;
     GatheredPoints points = {};
   };
+  void forget_lists();
   void gather(CachedList& kept);
   double first_hit(const Vec3& p, const Vec3& u, double radius, double limit, bool with_regions);
 
   double reach_;
   double pitch_;  // edge of the cubes
   double list_radius_;
+  double narrow_margin_;
   const Kernels& kernels_;
   std::shared_ptr<const NeighbourSearch> points_;
   std::array<CachedList, 4> cache_;
   std::size_t current_ = 0;
   GatheredPoints tube_;  // gathered for one call
+  // The points of list narrow_of_ within the reach of its positions near narrow_.centre.
+  CachedList narrow_;
+  std::size_t narrow_of_ = 0;
+  Vec3 last_W_ = Vec3::Zero();  // of the last call of narrowed()
 };
 
 }  // namespace remote_touch

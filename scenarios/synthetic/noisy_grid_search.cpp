@@ -19,7 +19,8 @@ NoisyGridSearch::NoisyGridSearch(const Grid& grid, double height_m, double sigma
     : grid_(grid), height_m_(height_m), sigma_m_(sigma_m), stream_(stream) {
   // There is capacity for the points and for a copy of the near ones behind them.
   const std::size_t capacity = 2 * (size() + kLanes);
-  index_.grow(capacity), x_bounds_.grow(static_cast<std::size_t>(grid.columns));
+  index_.grow(capacity), x_bounds_.grow(static_cast<std::size_t>(grid.columns) + kLanes);
+  z_bounds_.grow(static_cast<std::size_t>(grid.rows));
   x_.grow(capacity), y_.grow(capacity), z_.grow(capacity);
 }
 
@@ -47,15 +48,18 @@ void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) con
     const double outside = std::abs(offset) - inner;
     return outside > 0 ? word_bounds(outside / sigma_m_, -offset) : word_bounds(0, 0);
   };
-  const auto width = static_cast<std::size_t>(std::max(0, columns.last - columns.first + 1));
+  const auto width = static_cast<std::size_t>(std::max(0, columns.last - columns.first + 1)),
+             height = static_cast<std::size_t>(std::max(0, rows.last - rows.first + 1));
   for (std::size_t i = 0; i < width; ++i)
     x_bounds_[i] = bounds(grid_.x(columns.first + static_cast<int>(i)) - cylinder.x);
-  std::size_t candidates = 0;
-  for (int row = rows.first; row <= rows.last; ++row)
-    candidates += kernels.noise.candidates(
-        stream_, static_cast<std::uint32_t>(row * grid_.columns + columns.first), width, x_bounds_.data(),
-        bounds(grid_.z(row) - cylinder.z), index_.data() + candidates);
-  make_points(candidates, cylinder, kernels);
+  for (std::size_t i = 0; i < height; ++i)
+    z_bounds_[i] = bounds(grid_.z(rows.first + static_cast<int>(i)) - cylinder.z);
+  const auto stride = static_cast<std::uint32_t>(grid_.columns),
+             first =
+                 static_cast<std::uint32_t>(rows.first) * stride + static_cast<std::uint32_t>(columns.first);
+  make_points(kernels.noise.candidates(stream_, {first, stride, width, height}, x_bounds_.data(),
+                                       z_bounds_.data(), index_.data()),
+              cylinder, kernels);
   cached_cylinder_ = cylinder;
   near_ball_.radius = -1;
 }

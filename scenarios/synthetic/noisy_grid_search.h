@@ -43,7 +43,7 @@ class NoisyGridSearch final : public NeighbourSearch {
   mutable Ball near_ball_{Vec3::Zero(), -1};
   mutable std::size_t count_ = 0, near_count_ = 0;  // the near points are stored behind the others
   mutable Buffer<std::uint32_t> index_;
-  mutable Buffer<std::uint64_t> x_bounds_;
+  mutable Buffer<std::uint64_t> x_bounds_, z_bounds_;
   mutable Buffer<double> x_, y_, z_;
 };
 

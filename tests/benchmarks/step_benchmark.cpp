@@ -119,7 +119,8 @@ class SearchedStep {
   GatheredPoints list_;
 };
 
-// Steps as the renderer does: the list of points is kept while the proxy stays near.
+// Steps as the renderer does: the list of points is kept while the proxy stays near, and narrowed while it
+// moves slowly.
 class KeptStep {
  public:
   KeptStep(std::shared_ptr<const NeighbourSearch> search, const Kernels& kernels)
@@ -127,7 +128,7 @@ class KeptStep {
     near_.set_points(std::move(search));
   }
   naive::Step operator()(const Vec3& proxy_W, const Vec3& hip_W) {
-    const GatheredPoints& list = near_.around(proxy_W);
+    const GatheredPoints& list = near_.narrowed(proxy_W);
     listed_ = list.size();
     return step_from(list, near_.sum_grid(), kernels_, proxy_W, hip_W);
   }

@@ -122,7 +122,7 @@ const ProxyRenderer::LocalQuery& ProxyRenderer::local_query() {
   if (has_local_query_ && proxy_W_ == query_position_W_) return local_query_;
   // The results are constructed in place. A copy would wait, in each step, until they are in the cache: a
   // processor cannot forward a stored number to a load that is wider than the store.
-  const PointsView* const points = ::new (&local_query_.points) PointsView(near_.around(proxy_W_).view());
+  const PointsView* const points = ::new (&local_query_.points) PointsView(near_.narrowed(proxy_W_).view());
   ::new (&local_query_.query) ContactQuery(query(*points, proxy_W_));
   local_query_.state = classify(local_query_.query.nearest, p_);
   query_position_W_ = proxy_W_;

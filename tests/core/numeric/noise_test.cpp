@@ -153,19 +153,27 @@ TEST(Noise, HasTheSameBitsForAnySubsetInAnyOrderOnEveryLevel) {
 // Every point whose normals match the request is found. Other points are found only if their words leave it
 // open.
 TEST(Noise, CandidatesAreFoundByTheirWords) {
-  constexpr std::uint32_t kFirst = 12345, kCount = 40001;
+  // Rows whose last vector is partly empty, in a wider grid.
+  constexpr std::size_t kColumns = 197, kRows = 203, kCount = kColumns * kRows;
+  constexpr PointRectangle kPoints{.first = 12345, .stride = 211, .columns = kColumns, .rows = kRows};
   const NoiseStream stream = noise_stream({5, 2, 1}, NoiseUse::point_position, 3);
-  std::vector<std::uint32_t> every(kCount);
-  std::iota(every.begin(), every.end(), kFirst);
+  std::vector<std::uint32_t> every;
+  for (std::uint32_t row = 0; row < kRows; ++row)
+    for (std::uint32_t column = 0; column < kColumns; ++column)
+      every.push_back(kPoints.first + row * kPoints.stride + column);
   const Normals normals = draw(stream, every);
   for (const double x : {0.0, 0.5, -2.0, 3.5})
     for (const double z : {0.0, 1.0, -2.5}) {
-      const std::vector<std::uint64_t> bounds(kCount, word_bounds(std::abs(x), x));
+      // The bounds differ from column to column and from row to row: half of them are the others mirrored.
+      const auto sided = [](double bound, std::size_t i) { return i % 2 == 0 ? bound : -bound; };
+      std::vector<std::uint64_t> x_bounds(kColumns + kLanes), z_bounds(kRows);
+      for (std::size_t i = 0; i < kColumns; ++i) x_bounds[i] = word_bounds(std::abs(x), sided(x, i));
+      for (std::size_t i = 0; i < kRows; ++i) z_bounds[i] = word_bounds(std::abs(z), sided(z, i));
       std::vector<std::vector<std::uint32_t>> found;
       for (const Kernels* kernels : supported_kernels()) {
         found.emplace_back(kCount + kLanes);
-        found.back().resize(kernels->noise.candidates(stream, kFirst, kCount, bounds.data(),
-                                                      word_bounds(std::abs(z), z), found.back().data()));
+        found.back().resize(kernels->noise.candidates(stream, kPoints, x_bounds.data(), z_bounds.data(),
+                                                      found.back().data()));
         ASSERT_EQ(found.back(), found.front()) << kernels->isa;
       }
       const auto is_asked = [](double normal, double min) {
@@ -173,13 +181,14 @@ TEST(Noise, CandidatesAreFoundByTheirWords) {
       };
       const auto has_sign = [](double normal, double min) { return min == 0 || (normal > 0) == (min > 0); };
       std::size_t next = 0;
-      for (std::uint32_t i = 0; i < kCount; ++i) {
-        const bool is_found = next < found[0].size() && found[0][next] == kFirst + i;
+      for (std::size_t i = 0; i < kCount; ++i) {
+        const bool is_found = next < found[0].size() && found[0][next] == every[i];
         next += is_found ? 1 : 0;
         const double nx = normals[0][i], nz = normals[2][i];
-        const bool must = is_asked(nx, x) && is_asked(nz, z);
-        const bool must_not =
-            std::hypot(nx, normals[1][i]) < std::abs(x) - 1e-5 || !has_sign(nx, x) || !has_sign(nz, z);
+        const double x_min = sided(x, i % kColumns), z_min = sided(z, i / kColumns);
+        const bool must = is_asked(nx, x_min) && is_asked(nz, z_min);
+        const bool must_not = std::hypot(nx, normals[1][i]) < std::abs(x) - 1e-5 || !has_sign(nx, x_min) ||
+                              !has_sign(nz, z_min);
         ASSERT_TRUE(is_found ? !must_not : !must) << i;
       }
       const double halves = (x == 0 ? 1 : 0.5) * (z == 0 ? 1 : 0.5);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/support/scenes.h"
 
@@ -34,6 +35,58 @@ TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
       }
     }
   }
+}
+
+// The path has short and long steps, so that the list is narrow at some positions and not at others. A narrow
+// list has the same points within reach, and fewer others.
+TEST(Neighbourhood, NarrowedListHoldsEveryRegionWithinReach) {
+  const auto points = cloud_with_fixtures();
+  const PointCloud& cloud = static_cast<const CloudSearch&>(*points).cloud();
+  Neighbourhood near = scenes::neighbourhood(points, kReach), wide = scenes::neighbourhood(points, kReach);
+  const PointCloud places = scenes::random_cloud(300, 0.04, 22);
+  std::size_t narrow_count = 0, narrowed_size = 0, wide_size = 0;
+  for (std::size_t k = 0; k < places.size(); ++k)
+    for (int step = 0; step < 12; ++step) {
+      const Vec3 p = places.point(k) + 0.00002 * std::pow(step, 1.5) * Vec3(1, -1, 0.5);
+      const GatheredPoints& list = near.narrowed(p);
+      std::vector<bool> listed(cloud.size(), false);
+      for (std::size_t i = 0; i < list.size(); ++i) listed[list.index()[i]] = true;
+      for (std::size_t i = 0; i < cloud.size(); ++i)
+        if ((p - cloud.point(i)).norm() - cloud.fixture_radius_m[i] <= kReach) {
+          ASSERT_TRUE(listed[i]) << k << ", step " << step;
+        }
+      ASSERT_EQ(near.sum_grid(), (wide.around(p), wide.sum_grid())) << k << ", step " << step;
+      if (&list == &near.around(p)) continue;
+      ++narrow_count, narrowed_size += list.size(), wide_size += near.around(p).size();
+    }
+  EXPECT_GT(narrow_count, places.size());
+  EXPECT_LT(static_cast<double>(narrowed_size), 0.95 * static_cast<double>(wide_size));
+}
+
+// The point is beyond the list of the cube that the proxy leaves at its corner, but within the reach of the
+// next position.
+TEST(Neighbourhood, NarrowedListOfACubeIsNotUsedInTheNext) {
+  const double half_edge = kReach / 16, step = 0.00006;
+  const Vec3 corner = Vec3::Constant(half_edge), out = Vec3::Ones().normalized();
+  PointCloud cloud;
+  cloud.append(Vec3::Zero());
+  cloud.append(corner + (kReach + 0.9 * step) * out);
+  Neighbourhood near = scenes::neighbourhood(make_search(cloud), kReach);
+  near.narrowed(corner - 0.1 * step * out);
+  EXPECT_EQ(near.narrowed(corner - 0.1 * step * out).size(), 1u);
+  EXPECT_EQ(near.narrowed(corner + step * out).size(), 2u);
+}
+
+TEST(Neighbourhood, NarrowedListIsForgottenWithItsCloudAndReach) {
+  const PointCloud cloud = scenes::random_cloud(4000, 0.05, 21);
+  Neighbourhood near = scenes::neighbourhood(make_search(cloud), kReach);
+  const Vec3 p(0.001, 0.002, 0.003);
+  near.narrowed(p);
+  const std::size_t before = near.narrowed(p).size();
+  near.set_reach(1.5 * kReach);
+  EXPECT_GT(near.narrowed(p).size(), before);
+  near.set_points(make_search(PointCloud()));
+  EXPECT_EQ(near.narrowed(p).size(), 0u);
 }
 
 // A wide region far away must not add the points in between to the list.
