@@ -35,6 +35,7 @@ bool ProxyRenderer::take(const Frame& frame) {
 
 void ProxyRenderer::replace_points(std::shared_ptr<const NeighbourSearch> points) {
   near_.set_points(std::move(points));
+  known_steps_.forget();
   has_local_query_ = false;
   is_clear_ = false;
 }
@@ -70,6 +71,7 @@ void ProxyRenderer::set_radii(double r1_m, double r2_m, double r3_m) {
   p_.r1_m = r1_m, p_.r2_m = r2_m, p_.r3_m = r3_m;
   near_.set_reach(r3_m);
   coupling_.set_radii(r1_m, r2_m);
+  known_steps_.forget();
   has_local_query_ = false;
 }
 
@@ -136,18 +138,31 @@ ContactQuery ProxyRenderer::query(const PointsView& points, const Vec3& p_W) con
   return kernels_.proxy.contact_query(points, p_W.data(), regions);
 }
 
+// Returns a step without its motion.
+KnownStep ProxyRenderer::state_at_proxy() {
+  const LocalQuery& here = local_query();
+  return {.proxy_W = proxy_W_,
+          .normal_W = unit_normal(here.query, Vec3::Zero()),
+          .state = here.state,
+          .stiffness_N_per_m = stiffness(here.query)};
+}
+
 // Runs the proxy movement algorithm, 4.2.3, and returns the number of steps. It ends before its budget when a
-// step leaves the proxy where it is, bit for bit, because every further step would do the same.
+// step leaves the proxy where it is, bit for bit, because every further step would do the same. A step that
+// was made before from the same position is not computed again.
 int ProxyRenderer::move(const Vec3& hip_W) {
+  known_steps_.set_hip(hip_W);
   bool touched = false;
   for (int k = 1; k <= p_.steps_per_tick; ++k) {
     const Vec3 u = hip_W - proxy_W_;
-    const LocalQuery& here = local_query();
-    normal_W_ = unit_normal(here.query, normal_W_);
+    const KnownStep* const known = known_steps_.from(proxy_W_);
+    KnownStep here = known ? *known : state_at_proxy();
+    const bool has_normal = !here.normal_W.isZero(0);
+    if (has_normal) normal_W_ = here.normal_W;
     if (here.state == ContactState::contact) {
       in_contact_ = true;
       contact_proxy_W_ = proxy_W_;
-      contact_stiffness_N_per_m_ = stiffness(here.query);
+      contact_stiffness_N_per_m_ = here.stiffness_N_per_m;
     }
     touched |= here.state != ContactState::free;
     if (here.state != ContactState::entrenched) clear_W_ = proxy_W_, is_clear_ = true;
@@ -156,7 +171,12 @@ int ProxyRenderer::move(const Vec3& hip_W) {
         has_converged(here.state, normal_W_, u, p_))
       return k - 1;
 
-    const Vec3 s = next_step(here, u);
+    if (!known) {
+      here.motion_m = next_step(local_query_, u);
+      // Without a normal of its own, and in creases, a step also depends on the steps before.
+      if (has_normal && p_.contact_motion != ContactMotion::creases) known_steps_.remember(here);
+    }
+    const Vec3& s = here.motion_m;
     velocity_.on_step(s);  // (4.13)
     const Vec3 moved = here.state == ContactState::free && s == u ? hip_W : Vec3(proxy_W_ + s);
     if (here.state == ContactState::free && moved == hip_W)

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/dissertation/proxy/known_steps.h"
 #include "core/dissertation/proxy/proxy_parameters.h"
 #include "core/dissertation/proxy/virtual_coupling.h"
 #include "core/kernels/kernels.h"
@@ -56,6 +57,7 @@ class ProxyRenderer final : public Renderer {
     PointsView points;
   };
   const LocalQuery& local_query();
+  KnownStep state_at_proxy();
   int move(const Vec3& hip_W);
   int leave_regions(const Vec3& hip_W);
   bool update_region_rule(const LocalQuery& here);
@@ -76,6 +78,8 @@ class ProxyRenderer final : public Renderer {
   LocalQuery local_query_;  // query at query_position_W_; valid while has_local_query_
   Vec3 query_position_W_ = Vec3::Zero();
   bool has_local_query_ = false;
+
+  KnownSteps known_steps_;
 
   Vec3 proxy_W_ = Vec3::Zero();
   Vec3 normal_W_ = Vec3::Zero();
