@@ -85,6 +85,12 @@ StoredSweep read_stored_part(const std::filesystem::path& file) {
   return with_present_names(read_sweep(file));
 }
 
+std::string damage_text(const StoredSweep& stored) {
+  if (stored.damaged_runs == 0) return "";
+  return "runs with a wrong checksum, written in part or damaged, are left out: " +
+         std::to_string(stored.damaged_runs) + "; the command of the sweep makes them again";
+}
+
 StoredSweep read_runs_or_outline(const std::filesystem::path& file) {
   const Hdf5Reader reader(file);
   if (!is_tally(reader)) return read_stored_part(file);

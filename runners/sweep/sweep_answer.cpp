@@ -171,16 +171,24 @@ std::vector<std::size_t> axes_with_common_noise(const Json& config, std::size_t 
 
 }  // namespace
 
-std::string default_event(const SweepResult& result) {
-  for (const Column& measure : result.measures) {
-    if (measure.name != "popped_through" && measure.name != "tool_popped_through" &&
-        measure.name != "slave_touched")
-      continue;
-    const auto& values = std::get<std::vector<double>>(measure.values);
-    if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); }))
-      return measure.name;
-  }
+namespace {
+
+// Returns the first measure of such an event that is known in a run; is_known gets the number of a measure.
+template <class IsKnown>
+std::string first_event(const std::vector<Column>& measures, const IsKnown& is_known) {
+  for (std::size_t i = 0; i < measures.size(); ++i)
+    for (const char* name : {"popped_through", "tool_popped_through", "slave_touched"})
+      if (measures[i].name == name && is_known(i)) return name;
   return {};
+}
+
+}  // namespace
+
+std::string default_event(const SweepResult& result) {
+  return first_event(result.measures, [&](std::size_t measure) {
+    const auto& values = std::get<std::vector<double>>(result.measures[measure].values);
+    return std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
+  });
 }
 
 namespace {
@@ -197,6 +205,10 @@ Figure answer_of(const Asked& asked, const std::string& config, const SweepQuest
   if (!question.differences.empty()) add_differences(figure, asked, question, axes);
   if (!figure.caption.empty()) figure.caption.pop_back();
   return figure;
+}
+
+[[noreturn]] void refuse_without_runs() {
+  throw InputError("the sweep", "has no finished run: expected at least one");
 }
 
 [[noreturn]] void refuse_for_tally(const std::string& what, const std::string& why) {
@@ -221,8 +233,7 @@ void require_no_pooled_noise(const SweepTally& tally, const TableAxes& axes) {
 }  // namespace
 
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question) {
-  if (result.runs_in(RunState::done).empty())
-    throw InputError("the sweep", "has no finished run: expected at least one");
+  if (result.runs_in(RunState::done).empty()) refuse_without_runs();
   return answer_of(
       {result, [&](const LimitQuestion& limit) { return event_limits(result, limit); },
        [&](const std::string& measure, const TableAxes& axes) { return sweep_means(result, measure, axes); },
@@ -234,6 +245,9 @@ Figure sweep_answer(const SweepResult& result, const std::string& config, const 
 }
 
 Figure sweep_answer(const SweepTally& tally, const std::string& config, const SweepQuestion& question) {
+  if (std::all_of(tally.tallies.begin(), tally.tallies.end(),
+                  [](const CellTally& cell) { return cell.done == 0; }))
+    refuse_without_runs();
   const SweepResult outline = outline_of(tally);
   const auto limits = [&](const LimitQuestion& limit) {
     const std::size_t measure = number_of_event(tally, limit);
@@ -247,13 +261,10 @@ Figure sweep_answer(const SweepTally& tally, const std::string& config, const Sw
   const auto differences = [](const std::string& measure, std::size_t, const TableAxes&) -> Table {
     refuse_for_tally("difference " + measure, "a tally does not keep pairs of runs");
   };
-  std::string event;
-  for (const char* name : {"tool_popped_through", "popped_through"})
-    for (std::size_t i = 0; i < tally.measures.size(); ++i)
-      if (tally.measures[i].name == name &&
-          std::any_of(tally.tallies.begin(), tally.tallies.end(),
-                      [i](const CellTally& cell) { return cell.measures[i].values > 0; }))
-        event = name;
+  const std::string event = first_event(tally.measures, [&](std::size_t measure) {
+    return std::any_of(tally.tallies.begin(), tally.tallies.end(),
+                       [&](const CellTally& cell) { return cell.measures[measure].values > 0; });
+  });
   return answer_of({outline, limits, means, differences, event}, config, question);
 }
 

@@ -117,7 +117,7 @@ struct AnalyseRequest {
 int command_analyse(const CommandLine& line, const AnalyseRequest& request);
 
 struct ReplayRequest {
-  std::string map;
+  std::string sweep;
   std::string cell;  // "3,4"
   int replicate = 0;
   std::string output;

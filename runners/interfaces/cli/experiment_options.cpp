@@ -114,7 +114,8 @@ void add_merge_replay_and_recheck(Subcommands& commands) {
 
   auto [again, replay] =
       commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
-  again->add_option("map", replay->map, "the result of a sweep; `run` replays a live session")->required();
+  again->add_option("sweep", replay->sweep, "the result of a sweep; `run` replays a live session")
+      ->required();
   again
       ->add_option(
           "--cell", replay->cell,

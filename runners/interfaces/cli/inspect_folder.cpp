@@ -39,6 +39,9 @@ int inspect_folder(const std::string& folder) {
                   shard.state == ShardState::running ? "running" : "stopped", shard.shards.text().c_str(),
                   printable(shard.file).c_str(), shard.done + shard.failed, shard.runs,
                   duration_text(shard.written_s_ago).c_str());
+  for (const ShardProgress& shard : all.files)
+    if (!shard.distrust.empty())
+      std::printf("  %s: %s\n", printable(shard.file).c_str(), printable(shard.distrust).c_str());
   for (const std::string& line : all.unread) std::printf("  not read: %s\n", printable(line).c_str());
   return all.unread.empty() ? kDone : kCheckFailed;
 }

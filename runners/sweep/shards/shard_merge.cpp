@@ -181,9 +181,11 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
   const auto values = [&](const std::string& array, std::size_t at, std::size_t count) {
     return spool->values(array, at, count);
   };
-  return write_sweep(request.output,
-                     SweepInBlocks{spool->outline(), spool->is_refined(), spool->longest_error(), values},
-                     attributes);
+  return or_unchanged([&] {
+    return write_sweep(request.output,
+                       SweepInBlocks{spool->outline(), spool->is_refined(), spool->longest_error(), values},
+                       attributes);
+  });
 }
 
 }  // namespace remote_touch

@@ -59,6 +59,9 @@ TEST_F(TallySessions, AreRefusedWhereTheyDoNotFit) {
   EXPECT_HAS(why([&] { quick().plan(); }), "quick: keeps a tally (keep = events)");
   EXPECT_HAS(why([] { quick({"keep=all"}); }), R"(keep = "all": expected runs, tally or events)");
   EXPECT_HAS(why([] { quick({"refine.budget=100"}); }), "refinement needs the values of all runs");
+  const Sweep longer = quick({"replicates=6"});
+  EXPECT_HAS(why([&] { tally_plan_in_file(longer, {}, attributes_of(longer, {}), file("t.h5")); }),
+             "t.h5: is of another configuration, first in replicates 5 against 6");
   folder_.write("junk.h5", "junk");
   EXPECT_HAS(why([&] { made("junk.h5", quick()); }), "junk.h5: not a readable HDF5 file");
 }

@@ -177,6 +177,24 @@ def test_a_tally_has_the_counts_and_means_of_the_runs(tmp_path, command_line):
     assert_same_file(tmp_path / "tally.h5", tmp_path / "command.h5")
 
 
+def test_no_axis_of_a_tally_has_the_name_of_a_variable(tmp_path):
+    """The file could be written, but no data set could hold both."""
+    def plan(name):
+        return {**SWEEP, "keep": "tally", "measures": ["max_force"],
+                "axes": [{"name": name, "parameters": ["trajectory.depth_m"], "values": [[0.01], [0.02]]}]}
+    tally = rt.sweep(plan("depth"), output=tmp_path / "tally.h5")
+    assert len(tally.data_vars) == 7
+    for name in tally.data_vars:
+        with pytest.raises(rt.InputError, match=f"a part of the tally has the name {name}: expected|a column of analyse has"):
+            rt.sweep(plan(name), output=tmp_path / "refused.h5")
+
+
+def test_an_axis_of_a_sweep_may_be_named_failed():
+    """Only a tally has a variable of that name."""
+    axis = {"name": "failed", "parameters": ["trajectory.depth_m"], "values": [[0.01], [0.02]]}
+    assert rt.sweep({**SWEEP, "axes": [axis], "measures": ["max_force"]}).failed.dims == ("failed",)
+
+
 def test_a_tally_needs_a_file():
     with pytest.raises(rt.InputError, match="keeps a tally: expected an output"):
         rt.sweep({**SWEEP, "keep": "tally"})
