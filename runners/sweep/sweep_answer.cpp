@@ -245,9 +245,15 @@ Figure sweep_answer(const SweepResult& result, const std::string& config, const 
 }
 
 Figure sweep_answer(const SweepTally& tally, const std::string& config, const SweepQuestion& question) {
+  constexpr std::uint64_t kMaxCells = 10'000'000;  // an answer goes through all cells, made or not
+  if (tally.cell_count() > kMaxCells)
+    throw InputError("the tally", "has " + std::to_string(tally.cell_count()) + " cells: expected at most " +
+                                      std::to_string(kMaxCells) + " for an analysis");
   if (std::all_of(tally.tallies.begin(), tally.tallies.end(),
                   [](const CellTally& cell) { return cell.done == 0; }))
     refuse_without_runs();
+  if (!question.differences.empty())
+    refuse_for_tally("difference " + question.differences.front(), "a tally does not keep pairs of runs");
   const SweepResult outline = outline_of(tally);
   const auto limits = [&](const LimitQuestion& limit) {
     const std::size_t measure = number_of_event(tally, limit);
@@ -258,14 +264,11 @@ Figure sweep_answer(const SweepTally& tally, const std::string& config, const Sw
     require_no_pooled_noise(tally, axes);
     return tally_means(tally, outline, number_of_column(tally.measures, measure, "mean"), axes.by);
   };
-  const auto differences = [](const std::string& measure, std::size_t, const TableAxes&) -> Table {
-    refuse_for_tally("difference " + measure, "a tally does not keep pairs of runs");
-  };
   const std::string event = first_event(tally.measures, [&](std::size_t measure) {
     return std::any_of(tally.tallies.begin(), tally.tallies.end(),
                        [&](const CellTally& cell) { return cell.measures[measure].values > 0; });
   });
-  return answer_of({outline, limits, means, differences, event}, config, question);
+  return answer_of({outline, limits, means, {}, event}, config, question);
 }
 
 }  // namespace remote_touch

@@ -18,7 +18,6 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
-#include "runners/interfaces/cli/inspect_values.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {

@@ -93,8 +93,10 @@ void print_other_build(const TextAttributes& attributes) {
 
 // "runs" or, of a tally, "runs, all of 1 of 3 cells,": a tally does not have single runs.
 std::string extent_of(const Recheck& check) {
-  if (check.cells_in == 0) return "runs";
-  return "runs, all of " + std::to_string(check.cells) + " of " + std::to_string(check.cells_in) + " cells,";
+  const std::string runs = check.made == 1 ? "run" : "runs";
+  if (check.cells_in == 0) return runs;
+  return runs + ", all of " + std::to_string(check.cells) + " of " + std::to_string(check.cells_in) +
+         " cells,";
 }
 
 void print_distrust(const TextAttributes& attributes) {

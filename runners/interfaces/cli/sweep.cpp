@@ -64,7 +64,8 @@ Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandL
   sample.tried.state.assign(result.state.size(), RunState::pending);
   for (; done < std::min(kSamples, places.size()) && seconds_since(start) < 2; ++done) {
     // An odd multiplier visits the samples out of order, so that stopping early leaves a fair choice.
-    const std::size_t place = places[(7 * done % kSamples) * places.size() / kSamples];
+    const std::size_t place =
+        places[places.size() < kSamples ? done : (7 * done % kSamples) * places.size() / kSamples];
     const std::size_t run = result.run_at(place);
     try {
       const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
@@ -137,8 +138,9 @@ int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const TallyPlan& pl
   std::vector<std::uint64_t> runs;
   for (std::size_t i = 0; i < tried; ++i) runs.push_back(outline.run(shard.cell(i * cells / tried), 0));
   const SweepResult sample = sweep.part(runs);
-  return dry_run(sweep, {left, done, "a tally of " + std::to_string(cells) + " cells", sample}, line,
-                 request);
+  return dry_run(
+      sweep, {left, done, "a tally of " + std::to_string(cells) + (cells == 1 ? " cell" : " cells"), sample},
+      line, request);
 }
 
 // Does what is left of a session, with progress. Returns false if it was interrupted.

@@ -52,6 +52,18 @@ TEST(DryRun, RefusesATallyThatTheSweepWouldRefuse) {
   EXPECT_HAS(refusal([&] { command_sweep(line, request); }), "has 1001000 cells: expected 1 to 1000000");
 }
 
+// With fewer runs than it would try, each is tried once.
+TEST(DryRun, TriesEachOfFewRuns) {
+  const TestFolder folder("dry_run");
+  CommandLine line;
+  line.quiet = true;
+  line.kernels = &kernels_for(best_isa());
+  SweepRequest request;
+  request.sweep = folder.write("quick.json", kQuick).string(), request.dry_run = true;
+  request.overrides = {"duration_s=0.01"};
+  EXPECT_HAS(printed(line, request), "note on the runs that were tried: 4 of 4 runs: no contact");
+}
+
 // A dry run reads the file as the sweep does.
 TEST(DryRun, KnowsWhatATallyHas) {
   const TestFolder folder("dry_run");
