@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
@@ -25,6 +26,8 @@ struct Asked {
   std::function<Table(const std::string& measure, const TableAxes& axes)> means;
   std::function<Table(const std::string& measure, std::size_t between, const TableAxes& axes)> differences;
   std::string event;  // event of default_event()
+  // Number of finished runs, and of those in which the measure of that number is unknown (NaN).
+  std::function<std::pair<std::int64_t, std::int64_t>(std::size_t measure)> unknown;
 };
 
 bool has_numbers(const Column& axis) {
@@ -83,14 +86,22 @@ std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit
          "Along the axis the event becomes " + (rises ? "more" : "less") + " probable. ";
 }
 
+// Returns a sentence if it is not known of some runs whether the event happened.
+std::string unknown_sentence(const Asked& asked, const std::string& event, std::size_t measure) {
+  const auto [done, unknown] = asked.unknown(measure);
+  if (unknown == 0) return {};
+  return event + " is unknown in " + std::to_string(unknown) + " of " + std::to_string(done) +
+         " runs, which count as runs without the event. ";
+}
+
 void add_limits(Figure& figure, const Asked& asked, const SweepQuestion& question, const std::string& event) {
   const SweepResult& result = asked.result;
-  number_of_column(result.measures, event, "limit");
+  const std::size_t measure = number_of_column(result.measures, event, "limit");
   if (!(question.level > 0 && question.level < 1))
     throw InputError("level " + std::to_string(question.level), "expected a probability between 0 and 1");
   const LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level};
   const auto [table, rises] = asked.limits(limit);
-  figure.caption += limit_sentence(result, limit, rises);
+  figure.caption += limit_sentence(result, limit, rises) + unknown_sentence(asked, event, measure);
   figure.tables.push_back(table);
   add_answer_panel(figure, {table, result.axes.size() - 1, "limit", "limit_low", "limit_high"});
 }
@@ -240,7 +251,14 @@ Figure sweep_answer(const SweepResult& result, const std::string& config, const 
        [&](const std::string& measure, std::size_t between, const TableAxes& axes) {
          return sweep_differences(result, measure, between, axes);
        },
-       default_event(result)},
+       default_event(result),
+       [&](std::size_t measure) {
+         const std::vector<std::size_t> done = result.runs_in(RunState::done);
+         const auto& values = std::get<std::vector<double>>(result.measures[measure].values);
+         const auto is_unknown = [&](std::size_t place) { return std::isnan(values[place]); };
+         return std::pair<std::int64_t, std::int64_t>(done.size(),
+                                                      std::count_if(done.begin(), done.end(), is_unknown));
+       }},
       config, question);
 }
 
@@ -268,7 +286,13 @@ Figure sweep_answer(const SweepTally& tally, const std::string& config, const Sw
     return std::any_of(tally.tallies.begin(), tally.tallies.end(),
                        [&](const CellTally& cell) { return cell.measures[measure].values > 0; });
   });
-  return answer_of({outline, limits, means, {}, event}, config, question);
+  const auto unknown = [&](std::size_t measure) {
+    std::pair<std::int64_t, std::int64_t> counts;
+    for (const CellTally& cell : tally.tallies)
+      counts.first += cell.done, counts.second += cell.measures[measure].unknown;
+    return counts;
+  };
+  return answer_of({outline, limits, means, {}, event, unknown}, config, question);
 }
 
 }  // namespace remote_touch

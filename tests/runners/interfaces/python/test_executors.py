@@ -319,7 +319,7 @@ def test_a_damaged_chunk_is_refused(tmp_path):
         rt.sweep(SWEEP, output=tmp_path / "map.h5", executor=Workers(cut))
 
 
-GARBAGE = [None, 3, "text", [], {}, {"worker": "w", "thread": 1, "build": []}, np.zeros(3), {"worker": "w", "thread": 1, "build": [1]},
+GARBAGE = [None, 3, "text", [], {}, np.zeros(3), {"worker": "w", "thread": 1, "build": []}, {"worker": "w", "thread": 1, "build": [1]},
            lambda made: {**made, "states": "done"}, lambda made: {**made, "errors": [None] * len(made["states"])},
            lambda made: {**made, "values": made["values"].astype(object)}, lambda made: {**made, "seconds": float("nan")},
            lambda made: {**made, "notes": made["notes"][:0]}, lambda made: {**made, "states": made["states"] + 5}]

@@ -2,6 +2,7 @@
 import copy
 import json
 
+import h5py
 import numpy as np
 import pytest
 import remote_touch as rt
@@ -104,6 +105,15 @@ def test_a_sweep_goes_on_where_it_stopped(tmp_path):
     part = rt.open(file)
     done = int((part.state == 2).sum())
     assert 0 < done < part.state.size
+    with h5py.File(file, "r") as stored:  # a bit of the first run, which is done
+        offset = stored["sweep/max_force"].id.get_offset()
+    damaged = bytearray(file.read_bytes())
+    damaged[offset] ^= 1
+    file.write_bytes(damaged)
+    with pytest.warns(UserWarning, match="map.h5: runs with a wrong checksum, .* are left out: 1; the command of the sweep"):
+        assert int((rt.open(file).state == 2).sum()) == done - 1
+    with pytest.warns(UserWarning, match="are left out: 1;"):
+        rt.analyse(file, mean="max_force")
     whole = rt.sweep(longer, output=file)
     assert (whole.state == 2).all() and whole.attrs["digest"] == rt.sweep(longer).attrs["digest"]
 
