@@ -53,7 +53,8 @@ TallyPlan tally_plan_in_file(const Sweep& sweep, const Shard& shard, const TextA
   const std::size_t cells = shard.cells_of(plan.tally.cell_count());
   if (cells == 0 || cells > kMaxCells)
     throw InputError(sweep.title(), "shard " + shard.text() + " has " + std::to_string(cells) +
-                                        " cells: expected 1 to " + std::to_string(kMaxCells));
+                                        " cells: expected 1 to " + std::to_string(kMaxCells) + "; use " +
+                                        (cells == 0 ? "at most as many shards as cells" : "more shards"));
   plan.own_runs = cells * static_cast<std::uint64_t>(plan.tally.replicates);
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return plan;

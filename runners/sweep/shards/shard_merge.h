@@ -21,6 +21,8 @@ struct MergeRequest {
   std::string output;
   Partial partial = Partial::no;
   bool force = false;  // an output that is no sweep may be replaced
+  // Called with a line about a shard some of whose runs are left out, see damage_text(); may be empty.
+  std::function<void(const std::string& line)> note = {};
 };
 
 // Calls write(), which writes the merged file, and returns its result. If it throws InputError, adds to the

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
@@ -43,6 +44,7 @@ void require_nothing_more(const MergeRequest& request, const SweepTally& merged)
 }  // namespace
 
 MergedTally merge_tallies(const MergeRequest& request) {
+  require_no_device(request.output);
   std::optional<StoredTally> merged;
   SeenShards seen;
   for (const std::string& file : request.shards) {
