@@ -11,6 +11,7 @@ namespace remote_touch {
 
 // {"axes", "measures", "error", "replicates", "attributes", "warning"}: measures are arrays over the axes and
 // the replicates. So is `notes`, whose elements have one bit for each name of the attribute note_kinds.
+// warning: one line if some runs are wrong or left out, else empty.
 pybind11::dict to_python(StoredSweep stored);
 
 // {"axes", "columns", "attributes", "warning"}: the columns are arrays over the axes, zero or NaN for a cell

@@ -102,9 +102,12 @@ class Engine:
 
     def _submit(self, *call):
         try:
-            return self.executor.submit(*call)
+            future = self.executor.submit(*call)
         except Exception as error:
             raise self._end(f"{type(error).__name__}: {error}") from error
+        if not isinstance(future, concurrent.futures.Future):
+            raise self._end(f"its submit() returned {type(future).__name__} instead of a Future")
+        return future
 
     def _next_chunk(self):
         if self.again:

@@ -339,6 +339,14 @@ def test_garbage_instead_of_a_chunk_is_refused_in_one_line(sweep, garbage, tmp_p
     rt.sweep(sweep, output=tmp_path / "map.h5", executor=Workers())
 
 
+def test_an_executor_without_futures_is_refused(tmp_path):
+    class Forgetful(Workers):
+        def submit(self, function, *arguments):
+            super().submit(function, *arguments)
+    with pytest.raises(concurrent.futures.BrokenExecutor, match=r"no new run is stored, .*its submit\(\) returned NoneType instead"):
+        rt.sweep(SWEEP, output=tmp_path / "map.h5", executor=Forgetful())
+
+
 def test_failed_runs_are_stored_with_their_reason(command_line, tmp_path):
     failing = copy.deepcopy(SWEEP)
     failing["axes"] = [{"parameter": "trajectory.depth_m", "values": [0.001, 0.002]}]
