@@ -128,7 +128,8 @@ void add_merge_replay_and_recheck(Subcommands& commands) {
 
   auto [check, recheck] = commands.add(
       "recheck",
-      "make one run in a thousand of a sweep again (of a tally one cell in a thousand), and compare the bits",
+      "make one run in a thousand of a sweep again (of a tally all runs of one cell in a thousand, and of at "
+      "least one), and compare the bits",
       command_recheck);
   check->add_option("sweeps", recheck->sweeps, "results of sweeps, or their shards")->required();
 }
