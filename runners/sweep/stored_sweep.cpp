@@ -87,8 +87,10 @@ StoredSweep read_stored_part(const std::filesystem::path& file) {
 
 std::string damage_text(const StoredSweep& stored) {
   if (stored.damaged_runs == 0) return "";
-  return "runs with a wrong checksum, written in part or damaged, are left out: " +
-         std::to_string(stored.damaged_runs) + "; the command of the sweep makes them again";
+  const bool is_one = stored.damaged_runs == 1;
+  return std::to_string(stored.damaged_runs) + (is_one ? " run has" : " runs have") +
+         " a wrong checksum, because of a partial write or damage: left out; the command of the sweep makes " +
+         (is_one ? "it" : "them") + " again";
 }
 
 StoredSweep read_runs_or_outline(const std::filesystem::path& file) {

@@ -91,12 +91,10 @@ void print_other_build(const TextAttributes& attributes) {
                   printable(theirs).c_str(), printable(ours).c_str());
 }
 
-// "runs" or, of a tally, "runs, all of 1 of 3 cells,": a tally does not have single runs.
+// " (all runs of 1 of 3 cells)" for a tally, which does not have single runs; else empty.
 std::string extent_of(const Recheck& check) {
-  const std::string runs = check.made == 1 ? "run" : "runs";
-  if (check.cells_in == 0) return runs;
-  return runs + ", all of " + std::to_string(check.cells) + " of " + std::to_string(check.cells_in) +
-         " cells,";
+  if (check.cells_in == 0) return "";
+  return " (all runs of " + std::to_string(check.cells) + " of " + std::to_string(check.cells_in) + " cells)";
 }
 
 void print_distrust(const TextAttributes& attributes) {
@@ -142,7 +140,8 @@ int command_recheck(const CommandLine& line, const RecheckRequest& request) {
     const auto show = [&](std::size_t done, std::size_t total) { progress.update(done, total, 0, "runs"); };
     const Recheck check = recheck_of(file, {line.kernels, line.stop, show}, attributes);
     progress.clear();
-    std::printf("%s: %zu %s made again, ", printable(file).c_str(), check.made, extent_of(check).c_str());
+    std::printf("%s: %zu run%s made again%s, ", printable(file).c_str(), check.made,
+                check.made == 1 ? "" : "s", extent_of(check).c_str());
     if (check.different.empty()) std::puts(check.made == 0 ? "because none is stored" : "all as stored");
     if (!check.different.empty()) {
       std::printf("%zu different\n", check.different.size()), code = kCheckFailed;
