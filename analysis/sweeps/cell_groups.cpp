@@ -1,5 +1,8 @@
 #include "analysis/sweeps/cell_groups.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace remote_touch {
 
 std::vector<CellGroup> cell_groups(const SweepResult& result, const std::vector<std::size_t>& axes) {
@@ -39,6 +42,13 @@ std::vector<Column> axes_of(const SweepResult& result, const std::vector<std::si
     columns.push_back(axis_at(result.axes[axes[i]], places));
   }
   return columns;
+}
+
+Values counts_in_column(const std::vector<std::int64_t>& counts) {
+  const auto fits = [](std::int64_t count) { return count <= std::numeric_limits<std::int32_t>::max(); };
+  if (std::all_of(counts.begin(), counts.end(), fits))
+    return std::vector<std::int32_t>(counts.begin(), counts.end());
+  return std::vector<double>(counts.begin(), counts.end());
 }
 
 }  // namespace remote_touch

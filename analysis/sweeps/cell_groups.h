@@ -1,6 +1,7 @@
 // The cells of a sweep that have the same values on some of its axes.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
@@ -21,5 +22,8 @@ Column axis_at(const Column& axis, const std::vector<std::size_t>& places);
 // Returns one such column for each of the axes: the values that the groups have in common.
 std::vector<Column> axes_of(const SweepResult& result, const std::vector<std::size_t>& axes,
                             const std::vector<CellGroup>& groups);
+
+// Returns the values of a column of counts: integers or, if one of them is above 2^31 - 1, doubles.
+Values counts_in_column(const std::vector<std::int64_t>& counts);
 
 }  // namespace remote_touch

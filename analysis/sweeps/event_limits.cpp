@@ -14,14 +14,24 @@ namespace {
 
 constexpr double kOutside = std::numeric_limits<double>::quiet_NaN();
 
-enum class Place : std::int32_t { inside, below_the_first, above_the_last, other_direction, no_runs };
-const std::vector<std::string> kPlaceNames = {"inside", "below the first value", "above the last value",
-                                              "changes the other way", "no runs"};
+enum class Place : std::int32_t {
+  inside,
+  below_the_first,
+  above_the_last,
+  other_direction,
+  no_runs,
+  below_the_runs,
+  above_the_runs
+};
+const std::vector<std::string> kPlaceNames = {
+    "inside",  "below the first value",      "above the last value",      "changes the other way",
+    "no runs", "below the values with runs", "above the values with runs"};
 
 // The counts of one group of cells, in increasing order of the axis.
 struct Counts {
   std::vector<double> x, runs;
   std::vector<Tally> tallies;
+  bool has_first = false, has_last = false;  // the first and the last value of the axis have runs
 };
 
 std::vector<std::size_t> other_axes(const SweepResult& result, std::size_t along) {
@@ -42,6 +52,7 @@ Counts counts_of(const SweepResult& outline, const CellCounts& cells, const Limi
     const Tally t = cells.events(group.cells[i]);
     if (t.runs == 0) continue;
     counts.x.push_back(x[i]), counts.runs.push_back(t.runs), counts.tallies.push_back(t);
+    counts.has_first |= i == order.front(), counts.has_last |= i == order.back();
   }
   return counts;
 }
@@ -75,8 +86,10 @@ struct Crossing {
 Crossing crossing_of(const Counts& counts, const std::vector<double>& values, double level) {
   if (values.empty()) return {};
   const std::vector<double> falling = isotonic_falling(values, counts.runs);
-  if (falling.front() < level) return {kOutside, Place::below_the_first};
-  if (falling.back() > level) return {kOutside, Place::above_the_last};
+  if (falling.front() < level)
+    return {kOutside, counts.has_first ? Place::below_the_first : Place::below_the_runs};
+  if (falling.back() > level)
+    return {kOutside, counts.has_last ? Place::above_the_last : Place::above_the_runs};
   return {crossing(counts.x, falling, level), Place::inside};
 }
 
@@ -140,13 +153,14 @@ EventLimits event_limits(const SweepResult& result, const CellCounts& cells, con
     sum += slope(all.emplace_back(counts_of(result, cells, question, group)));
   const bool rises = sum >= 0;
   std::vector<double> limits, low, high, at_least, at_most;
-  std::vector<std::int32_t> places, runs, noted;
+  std::vector<std::int32_t> places, noted;
+  std::vector<std::int64_t> runs;
   for (const Counts& counts : all) {
     const Limit limit = limit_of(counts, rises, question.level);
     limits.push_back(limit.best.x), low.push_back(limit.low.x), high.push_back(limit.high.x);
     at_least.push_back(limit.at_least), at_most.push_back(limit.at_most);
     places.push_back(static_cast<std::int32_t>(limit.best.place));
-    runs.push_back(static_cast<std::int32_t>(std::accumulate(counts.runs.begin(), counts.runs.end(), 0.0)));
+    runs.push_back(static_cast<std::int64_t>(std::accumulate(counts.runs.begin(), counts.runs.end(), 0.0)));
   }
   const Column& axis = result.axes[question.along];
   Table table{"limits", "limit of " + question.measure + " along " + axis.name,
@@ -167,7 +181,7 @@ EventLimits event_limits(const SweepResult& result, const CellCounts& cells, con
             std::move(at_most));
   table.columns.push_back({"place", "1", "where the limit is, relative to the values of the axis",
                            std::move(places), 1, kPlaceNames});
-  table.add("runs", "1", "number of finished runs", std::move(runs));
+  table.columns.push_back({"runs", "1", "number of finished runs", counts_in_column(runs)});
   if (cells.noted) {
     for (const CellGroup& group : groups) {
       noted.push_back(0);

@@ -30,7 +30,7 @@ struct EventLimits {
 // that is nearest to the shares and only falls, or only rises, along the axis crosses the level at `limit`,
 // with linear interpolation (isotonic_regression.h). The curves of the two ends of the intervals cross it at
 // limit_low and limit_high. They are NaN if the curve crosses the level outside the values of the axis;
-// `place` then states on which side the limit is.
+// `place` then states on which side the limit is, or that the first or the last values have no runs.
 //
 // Interpolation can make an interval narrower than the distance between two values of the axis. The limit is
 // at least at `at_least` and at most at `at_most` without it: these are the last value at which the event is

@@ -82,7 +82,8 @@ void RunSpool::put(const Words& words) {
   if (error != 0)
     refuse_writing(beside_, error,
                    "a folder with free space for the runs of all parts, " +
-                       std::to_string(arrays_.size() * sizeof words[0]) + " bytes each, beside the file");
+                       std::to_string(arrays_.size() * sizeof words[0]) +
+                       " bytes each, beside the file; nothing was changed");
 }
 
 RunSpool::Words RunSpool::get(const Part& part, std::size_t array, std::size_t first,

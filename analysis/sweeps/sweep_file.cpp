@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <stdexcept>
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/schema.h"
@@ -125,8 +126,10 @@ std::string write_sweep(const std::filesystem::path& file, const SweepResult& re
   return sum;
 }
 
-std::string write_sweep(const std::filesystem::path& file, const SweepInBlocks& sweep,
-                        const TextAttributes& attributes) {
+namespace {
+
+std::string write_blocks(const std::filesystem::path& file, const SweepInBlocks& sweep,
+                         const TextAttributes& attributes) {
   const SweepResult& outline = sweep.outline;
   Hdf5Writer hdf5(file);
   ColumnDigest sum;
@@ -152,6 +155,20 @@ std::string write_sweep(const std::filesystem::path& file, const SweepInBlocks& 
   hdf5.attribute("/", "digest", text);
   hdf5.save(file);
   return text;
+}
+
+}  // namespace
+
+std::string write_sweep(const std::filesystem::path& file, const SweepInBlocks& sweep,
+                        const TextAttributes& attributes) {
+  try {
+    return write_blocks(file, sweep, attributes);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {  // the HDF5 library says why, but not which file
+    throw InputError(file.string(), std::string("cannot be written (") + error.what() +
+                                        "): expected a writable folder with free space for the file");
+  }
 }
 
 void write_sweep_in_progress(const std::filesystem::path& file, const SweepResult& result,

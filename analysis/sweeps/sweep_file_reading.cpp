@@ -63,15 +63,19 @@ class SweepReader {
   std::vector<std::string> datasets_;
 };
 
-void reset_partial_runs(const std::vector<std::int32_t>& sums, SweepResult& result) {
+// Runs with a wrong checksum become pending. Returns their number.
+std::size_t reset_partial_runs(const std::vector<std::int32_t>& sums, SweepResult& result) {
+  std::size_t count = 0;
   for (std::size_t place = 0; place < result.held_count(); ++place) {
     if (sums[place] == checksum(result, place)) continue;
+    ++count;
     const bool was_requested = result.round.empty() || result.round[place] >= 0;
     result.state[place] = was_requested ? RunState::pending : RunState::not_sampled;
     for (Column& measure : result.measures)
       std::get<std::vector<double>>(measure.values)[place] = std::numeric_limits<double>::quiet_NaN();
     if (!result.notes.empty()) result.notes[place] = 0;
   }
+  return count;
 }
 
 void read_part(const SweepReader& reader, std::size_t all_runs, SweepResult& result) {
@@ -136,7 +140,7 @@ StoredSweep read_sweep(const Hdf5Reader& file) {
     result.error.resize(runs);
     if (reader.text("plan_digest") != plan_digest(result, stored.attributes))
       reader.damaged("its plan has changed");
-    reset_partial_runs(reader.values<std::int32_t>("checksum", runs), result);
+    stored.damaged_runs = reset_partial_runs(reader.values<std::int32_t>("checksum", runs), result);
   } else {
     result.error = reader.values<std::string>("error", runs);
     if (reader.text("digest") != digest(result)) reader.damaged("its digest does not match");

@@ -135,16 +135,17 @@ std::size_t moved(const SweepResult& result, std::size_t cell, std::size_t axis,
 void add_mean_columns(Table& table, const std::vector<MeanDifference>& means, const std::string& unit,
                       const std::string& mean_meaning, const std::string& count) {
   std::vector<double> mean, low, high;
-  std::vector<std::int32_t> counts;
+  std::vector<std::int64_t> counts;
   for (const MeanDifference& m : means) {
     mean.push_back(m.mean), low.push_back(m.low), high.push_back(m.high);
-    counts.push_back(static_cast<std::int32_t>(m.pairs));
+    counts.push_back(m.pairs);
   }
   table.add("mean", unit, mean_meaning, std::move(mean));
   table.add("low", unit, "lower end of its 95 % interval", std::move(low));
   table.add("high", unit, "upper end of its 95 % interval", std::move(high));
-  table.add(count, "1", "number of " + count + " with a value; those with the same noise count as one",
-            std::move(counts));
+  table.columns.push_back({count, "1",
+                           "number of " + count + " with a value; those with the same noise count as one",
+                           counts_in_column(counts)});
 }
 
 Table sweep_means(const SweepResult& result, const std::string& measure, const TableAxes& axes) {

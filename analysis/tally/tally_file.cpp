@@ -330,8 +330,30 @@ TextAttributes of_caller(const TextAttributes& all) {
 
 }  // namespace
 
+bool is_tally(const TextAttributes& of_root) {
+  return is_schema_of(attribute(of_root, "schema"), "tally");
+}
+
 bool is_tally(const Hdf5Reader& file) {
-  return is_schema_of(attribute(file.attributes(), "schema"), "tally");
+  return is_tally(file.attributes());
+}
+
+std::string distrust_of(const TextAttributes& attributes) {
+  const std::string why = attribute(attributes, kDistrusted);
+  return why.empty() ? ""
+                     : "some runs are WRONG: " + why + "; make the tally again without the wrong machine";
+}
+
+std::string tally_refusal(const TextAttributes& attributes) {
+  if (!is_tally(attributes)) return "";
+  const std::string distrust = distrust_of(attributes);
+  return "is a tally, which keeps no runs" + (distrust.empty() ? "" : " (" + distrust + ")");
+}
+
+void require_trusted(const std::filesystem::path& file, const TextAttributes& attributes) {
+  if (const std::string why = attribute(attributes, kDistrusted); !why.empty())
+    throw InputError(file.string(), "has runs of a machine that computed wrongly (" + why +
+                                        "): expected a new file, without the wrong machine");
 }
 
 StoredTally read_tally(const Hdf5Reader& file) {

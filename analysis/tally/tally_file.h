@@ -42,10 +42,18 @@ std::string write_tally(const std::filesystem::path& file, const SweepTally& tal
 // True if an axis or a measure may have that name.
 bool is_free_in_tallies(const std::string& name);
 
+bool is_tally(const TextAttributes& of_root);
 bool is_tally(const Hdf5Reader& file);
 
 // The root attribute that says why runs of the tally are wrong; absent if nothing is known to be.
 inline constexpr const char* kDistrusted = "distrusted";
+// Returns one line that warns whoever reads such a tally; empty for any other result.
+std::string distrust_of(const TextAttributes& attributes);
+// Returns why a command that needs single runs, or a figure, does not accept the file: "is a tally, which
+// keeps no runs", with that warning; empty for any other result.
+std::string tally_refusal(const TextAttributes& attributes);
+// Throws InputError, which names the file, for such a tally. Nothing is added to it or made from it.
+void require_trusted(const std::filesystem::path& file, const TextAttributes& attributes);
 
 struct StoredTally {
   SweepTally tally;

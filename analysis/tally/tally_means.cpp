@@ -27,7 +27,7 @@ MeanDifference share_of(const SweepTally& tally, std::size_t measure, const Cell
       events += own->measures[measure].sum.value();
     }
   if (runs == 0) return student_mean_of_moments({});
-  const auto [low, high] = wilson_interval(static_cast<int>(events), static_cast<int>(runs));
+  const auto [low, high] = wilson_interval(static_cast<std::int64_t>(events), runs);
   return {runs, events / static_cast<double>(runs), low, high};
 }
 

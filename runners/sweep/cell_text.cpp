@@ -136,13 +136,15 @@ std::vector<std::string> assignments_of(const std::string& text, const std::vect
 // Returns the cell of a text with NAME=VALUE for each axis, in any order.
 std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
   std::vector<std::optional<std::size_t>> indices(result.axes.size());
+  bool are_known = true;
   for (const std::string& item : assignments_of(cell.text, result.axes)) {
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string name = item.substr(0, equals), value = item.substr(std::min(equals + 1, item.size()));
     const auto axis = std::find_if(result.axes.begin(), result.axes.end(),
                                    [&](const Column& each) { return each.name == name; });
     const auto i = static_cast<std::size_t>(axis - result.axes.begin());
-    if (axis == result.axes.end() || indices[i]) break;
+    are_known = axis != result.axes.end() && !indices[i];
+    if (!are_known) break;
     indices[i] = row_of(cell, *axis, value);
   }
   std::string names;
@@ -151,7 +153,8 @@ std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
     names.append(names.empty() ? "" : ",").append(result.axes[i].name + "=VALUE");
     if (indices[i]) found.push_back(*indices[i]);
   }
-  if (found.size() != indices.size()) refuse_cell(cell, names + axes_hint(cell.text, result.axes));
+  if (!are_known || found.size() != indices.size())
+    refuse_cell(cell, names + axes_hint(cell.text, result.axes));
   return result.cell_at(found);
 }
 

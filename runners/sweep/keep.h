@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "analysis/measures/measures.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
@@ -11,9 +13,10 @@ namespace remote_touch {
 // cell (analysis/tally). events: a tally, and the numbers of the runs in which an event happened.
 enum class Keep { runs, tally, events };
 
-// Reads the key "keep" of a sweep; runs if it is missing. Throws InputError for another value, and for a
-// sweep with refinement that does not keep its runs. label: names the source in errors.
-Keep read_keep(const Json& sweep, const std::string& label);
+// Reads the key "keep" of a sweep; runs if it is missing. Throws InputError for another value, for a sweep
+// with refinement that does not keep its runs, and for events of a sweep without the measure of an event.
+// label: names the source in errors.
+Keep read_keep(const Json& sweep, const std::vector<Measure>& measures, const std::string& label);
 const char* name_of(Keep keep);
 
 }  // namespace remote_touch

@@ -20,4 +20,7 @@ StoredSweep read_stored_part(const std::filesystem::path& file);
 // The same; of a tally, which keeps no runs, the outline.
 StoredSweep read_runs_or_outline(const std::filesystem::path& file);
 
+// Returns one line about the runs of a sweep in progress whose checksum is wrong; empty if there are none.
+std::string damage_text(const StoredSweep& stored);
+
 }  // namespace remote_touch

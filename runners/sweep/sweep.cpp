@@ -27,7 +27,8 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMaxRuns = 10'000'000;  // runs in one file
+constexpr std::size_t kMaxCells = std::size_t{1} << 32;  // the cell is a key of the noise
+constexpr std::size_t kMaxRuns = 10'000'000;             // runs in one file
 constexpr std::size_t kMaxSweep =
     1'000'000'000'000'000;  // runs in all files: a double holds their numbers exactly
 
@@ -57,6 +58,15 @@ struct Sweep::Definition {
 };
 
 namespace {
+
+// True for a name of a dataset of a tally, or of a variable of its data set in Python.
+bool is_of_tally(const std::string& name, const std::vector<Measure>& measures) {
+  if (!is_free_in_tallies(name)) return true;
+  for (const Measure& measure : measures)
+    for (const char* statistic : {"_values", "_mean", "_standard_deviation", "_least", "_greatest"})
+      if (name == measure.name + statistic) return true;
+  return false;
+}
 
 Parameters parameters(std::string& title, int& replicates) {
   return {{"title", &title, 0, 0, "one line that says what this is; shown by list"},
@@ -122,20 +132,23 @@ void Sweep::Definition::refuse_other_parameters(const SweepAxis& axis, const std
 void Sweep::Definition::check_axes(const std::string& label) const {
   std::set<std::string> names = {"replicate", "run", "state", "notes", "round", "error", "checksum"};
   for (const Measure& measure : measures) names.insert(measure.name);
-  const auto is_taken = [&](const std::string& name) {
-    return !names.insert(name).second || (keep != Keep::runs && !is_free_in_tallies(name));
-  };
   auto runs = static_cast<std::size_t>(all_replicates());
   for (const SweepAxis& axis : axes) {
     refuse_other_parameters(axis, label);
     refuse_other_entry(axis, label);
-    if (const std::string& name = axis.coordinate.name; is_taken(name))
+    const std::string& name = axis.coordinate.name;
+    if (!names.insert(name).second)
       throw InputError(label + ": axis " + axis.subject(),
                        "another axis or measure has the name " + name + ": expected different names");
+    if (keep != Keep::runs && is_of_tally(name, measures))
+      throw InputError(label + ": axis " + axis.subject(),
+                       "a part of the tally has the name " + name + ": expected another name");
     if (__builtin_mul_overflow(runs, axis.length(), &runs) || runs > kMaxSweep)
       throw InputError(
           label, "more than " + std::to_string(kMaxSweep) + " runs: expected fewer values or replicates");
   }
+  if (runs / static_cast<std::size_t>(all_replicates()) > kMaxCells)
+    throw InputError(label, "more than " + std::to_string(kMaxCells) + " cells: expected fewer values");
 }
 
 void Sweep::Definition::check_budget(const std::string& label) const {
@@ -199,7 +212,7 @@ Sweep Sweep::from_json(const std::string& text, const std::string& label,
   for (const char* part : {"experiment", "set", "axes", "measures", "refine", "keep"}) plain.erase(part);
   read_parameters(plain, parameters(definition->title, definition->replicates), "");
   definition->measures = read_measures(json, label);
-  definition->keep = read_keep(json, label);
+  definition->keep = read_keep(json, definition->measures, label);
   definition->refine = read_refine(json, definition->measures, definition->replicates, label);
   definition->axes = read_axes(json, label, definition->refine ? definition->refine->levels : 0);
   refuse_overlapping(definition->axes, label);

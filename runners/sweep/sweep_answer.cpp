@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
@@ -25,6 +26,8 @@ struct Asked {
   std::function<Table(const std::string& measure, const TableAxes& axes)> means;
   std::function<Table(const std::string& measure, std::size_t between, const TableAxes& axes)> differences;
   std::string event;  // event of default_event()
+  // Number of finished runs, and of those in which the measure of that number is unknown (NaN).
+  std::function<std::pair<std::int64_t, std::int64_t>(std::size_t measure)> unknown;
 };
 
 bool has_numbers(const Column& axis) {
@@ -83,14 +86,22 @@ std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit
          "Along the axis the event becomes " + (rises ? "more" : "less") + " probable. ";
 }
 
+// Returns a sentence if it is not known of some runs whether the event happened.
+std::string unknown_sentence(const Asked& asked, const std::string& event, std::size_t measure) {
+  const auto [done, unknown] = asked.unknown(measure);
+  if (unknown == 0) return {};
+  return event + " is unknown in " + std::to_string(unknown) + " of " + std::to_string(done) +
+         " runs, which count as runs without the event. ";
+}
+
 void add_limits(Figure& figure, const Asked& asked, const SweepQuestion& question, const std::string& event) {
   const SweepResult& result = asked.result;
-  number_of_column(result.measures, event, "limit");
+  const std::size_t measure = number_of_column(result.measures, event, "limit");
   if (!(question.level > 0 && question.level < 1))
     throw InputError("level " + std::to_string(question.level), "expected a probability between 0 and 1");
   const LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level};
   const auto [table, rises] = asked.limits(limit);
-  figure.caption += limit_sentence(result, limit, rises);
+  figure.caption += limit_sentence(result, limit, rises) + unknown_sentence(asked, event, measure);
   figure.tables.push_back(table);
   add_answer_panel(figure, {table, result.axes.size() - 1, "limit", "limit_low", "limit_high"});
 }
@@ -171,16 +182,24 @@ std::vector<std::size_t> axes_with_common_noise(const Json& config, std::size_t 
 
 }  // namespace
 
-std::string default_event(const SweepResult& result) {
-  for (const Column& measure : result.measures) {
-    if (measure.name != "popped_through" && measure.name != "tool_popped_through" &&
-        measure.name != "slave_touched")
-      continue;
-    const auto& values = std::get<std::vector<double>>(measure.values);
-    if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); }))
-      return measure.name;
-  }
+namespace {
+
+// Returns the first measure of such an event that is known in a run; is_known gets the number of a measure.
+template <class IsKnown>
+std::string first_event(const std::vector<Column>& measures, const IsKnown& is_known) {
+  for (std::size_t i = 0; i < measures.size(); ++i)
+    for (const char* name : {"popped_through", "tool_popped_through", "slave_touched"})
+      if (measures[i].name == name && is_known(i)) return name;
   return {};
+}
+
+}  // namespace
+
+std::string default_event(const SweepResult& result) {
+  return first_event(result.measures, [&](std::size_t measure) {
+    const auto& values = std::get<std::vector<double>>(result.measures[measure].values);
+    return std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
+  });
 }
 
 namespace {
@@ -197,6 +216,10 @@ Figure answer_of(const Asked& asked, const std::string& config, const SweepQuest
   if (!question.differences.empty()) add_differences(figure, asked, question, axes);
   if (!figure.caption.empty()) figure.caption.pop_back();
   return figure;
+}
+
+[[noreturn]] void refuse_without_runs() {
+  throw InputError("the sweep", "has no finished run: expected at least one");
 }
 
 [[noreturn]] void refuse_for_tally(const std::string& what, const std::string& why) {
@@ -221,19 +244,34 @@ void require_no_pooled_noise(const SweepTally& tally, const TableAxes& axes) {
 }  // namespace
 
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question) {
-  if (result.runs_in(RunState::done).empty())
-    throw InputError("the sweep", "has no finished run: expected at least one");
+  if (result.runs_in(RunState::done).empty()) refuse_without_runs();
   return answer_of(
       {result, [&](const LimitQuestion& limit) { return event_limits(result, limit); },
        [&](const std::string& measure, const TableAxes& axes) { return sweep_means(result, measure, axes); },
        [&](const std::string& measure, std::size_t between, const TableAxes& axes) {
          return sweep_differences(result, measure, between, axes);
        },
-       default_event(result)},
+       default_event(result),
+       [&](std::size_t measure) {
+         const std::vector<std::size_t> done = result.runs_in(RunState::done);
+         const auto& values = std::get<std::vector<double>>(result.measures[measure].values);
+         const auto is_unknown = [&](std::size_t place) { return std::isnan(values[place]); };
+         return std::pair<std::int64_t, std::int64_t>(done.size(),
+                                                      std::count_if(done.begin(), done.end(), is_unknown));
+       }},
       config, question);
 }
 
 Figure sweep_answer(const SweepTally& tally, const std::string& config, const SweepQuestion& question) {
+  constexpr std::uint64_t kMaxCells = 10'000'000;  // an answer goes through all cells, made or not
+  if (tally.cell_count() > kMaxCells)
+    throw InputError("the tally", "has " + std::to_string(tally.cell_count()) + " cells: expected at most " +
+                                      std::to_string(kMaxCells) + " for an analysis");
+  if (std::all_of(tally.tallies.begin(), tally.tallies.end(),
+                  [](const CellTally& cell) { return cell.done == 0; }))
+    refuse_without_runs();
+  if (!question.differences.empty())
+    refuse_for_tally("difference " + question.differences.front(), "a tally does not keep pairs of runs");
   const SweepResult outline = outline_of(tally);
   const auto limits = [&](const LimitQuestion& limit) {
     const std::size_t measure = number_of_event(tally, limit);
@@ -244,17 +282,17 @@ Figure sweep_answer(const SweepTally& tally, const std::string& config, const Sw
     require_no_pooled_noise(tally, axes);
     return tally_means(tally, outline, number_of_column(tally.measures, measure, "mean"), axes.by);
   };
-  const auto differences = [](const std::string& measure, std::size_t, const TableAxes&) -> Table {
-    refuse_for_tally("difference " + measure, "a tally does not keep pairs of runs");
+  const std::string event = first_event(tally.measures, [&](std::size_t measure) {
+    return std::any_of(tally.tallies.begin(), tally.tallies.end(),
+                       [&](const CellTally& cell) { return cell.measures[measure].values > 0; });
+  });
+  const auto unknown = [&](std::size_t measure) {
+    std::pair<std::int64_t, std::int64_t> counts;
+    for (const CellTally& cell : tally.tallies)
+      counts.first += cell.done, counts.second += cell.measures[measure].unknown;
+    return counts;
   };
-  std::string event;
-  for (const char* name : {"tool_popped_through", "popped_through"})
-    for (std::size_t i = 0; i < tally.measures.size(); ++i)
-      if (tally.measures[i].name == name &&
-          std::any_of(tally.tallies.begin(), tally.tallies.end(),
-                      [i](const CellTally& cell) { return cell.measures[i].values > 0; }))
-        event = name;
-  return answer_of({outline, limits, means, differences, event}, config, question);
+  return answer_of({outline, limits, means, {}, event, unknown}, config, question);
 }
 
 }  // namespace remote_touch

@@ -66,8 +66,10 @@ void require_same_origin(const MergedFile& part, const MergedFile& first) {
       // The path of the same file may be written differently.
       if (name != "input_digests" && name != "command" && name != kRecipe &&
           attribute(ours, name) != attribute(theirs, name))
-        throw InputError(part.file, "has another " + name + " than " + first.file +
-                                        ": expected shards of one sweep, made by one build");
+        throw InputError(part.file,
+                         "has another " + name + " than " + first.file +
+                             (name == "config" ? ", first in " + first_difference(ours, theirs) : "") +
+                             ": expected shards of one sweep, made by one build");
   for (const auto& input :
        changed_inputs(attribute(theirs, "input_digests"), attribute(ours, "input_digests")))
     throw InputError(part.file, "has runs on another recording " + input.path + " (" + input.now + "; " +

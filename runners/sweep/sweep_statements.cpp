@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/changed_settings.h"
@@ -86,19 +87,26 @@ bool is_empty(const Json& value) {
   return value.is_null() || (value.is_array() && value.empty());
 }
 
-bool states(const Json& stated, const Json& run) {
-  if (stated.is_null()) return is_empty(run);
-  if (stated.is_array()) {
-    if (!run.is_array() || stated.size() != run.size()) return false;
-    return std::equal(stated.begin(), stated.end(), run.begin(), states);
+// A value that a run does not have as it is stated.
+struct Contradiction {
+  std::string path;
+  const Json& stated;
+  Json run;
+};
+
+// Returns the first value at or below the path that the run has otherwise: whole objects may be too long to
+// show where they differ.
+std::optional<Contradiction> contradiction(const std::string& path, const Json& stated, const Json& run) {
+  const bool are_lists = stated.is_array() && run.is_array() && stated.size() == run.size();
+  if (!are_lists && !(stated.is_object() && run.is_object())) {
+    if (stated.is_null() ? is_empty(run) : stated == run) return std::nullopt;
+    return Contradiction{path, stated, run};
   }
-  if (!stated.is_object()) return stated == run;
-  if (!run.is_object()) return false;
-  for (const auto& item : stated.items()) {
-    const auto member = run.find(item.key());
-    if (!states(item.value(), member == run.end() ? Json() : *member)) return false;
+  for (const auto& [key, value] : stated.items()) {
+    const Json member = are_lists ? run[std::stoul(key)] : run.value(key, Json());
+    if (auto found = contradiction(path + "." + key, value, member)) return found;
   }
-  return true;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -130,10 +138,9 @@ void refuse_overwritten(const Json& json, const std::vector<std::string>& overri
 }
 
 void require_run(const Experiment& run, const std::string& axis, const Json& value) {
-  const Json there = run.value_at_start(axis);
-  if (!states(value, there))
-    throw InputError("axis " + axis + " = " + shown(value),
-                     "the run has " + shown(there) + ": expected a value that nothing else changes");
+  if (const auto found = contradiction(axis, value, run.value_at_start(axis)))
+    throw InputError("axis " + found->path + " = " + shown(found->stated),
+                     "the run has " + shown(found->run) + ": expected a value that nothing else changes");
 }
 
 }  // namespace remote_touch

@@ -47,45 +47,45 @@ void add(const SweepResult& batch, const TallyLayout& layout, SweepTally& tally)
 
 }  // namespace
 
+TallyPlan tally_plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+                             const std::filesystem::path& file) {
+  TallyPlan plan{without_runs(sweep), attributes};
+  const std::size_t cells = shard.cells_of(plan.tally.cell_count());
+  if (cells == 0 || cells > kMaxCells)
+    throw InputError(sweep.title(), "shard " + shard.text() + " has " + std::to_string(cells) +
+                                        " cells: expected 1 to " + std::to_string(kMaxCells) + "; use " +
+                                        (cells == 0 ? "at most as many shards as cells" : "more shards"));
+  plan.own_runs = cells * static_cast<std::uint64_t>(plan.tally.replicates);
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable)) return plan;
+  StoredTally stored = read_tally(Hdf5Reader(file));
+  require_same_sweep(file, stored.schema, stored.attributes, attributes);
+  const std::string inputs = attribute(attributes, "input_digests");
+  for (const auto& input : changed_inputs(attribute(stored.attributes, "input_digests"), inputs))
+    throw InputError(file.string(), "has runs on another recording " + input.path + " (" + input.before +
+                                        "; now " + input.now +
+                                        "): expected the same recording, or a new file");
+  require_trusted(file, stored.attributes);
+  plan.tally = std::move(stored.tally);
+  plan.attributes = std::move(stored.attributes);
+  return plan;
+}
+
 TallySession::TallySession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                            const std::filesystem::path& file)
     : sweep_(sweep),
       shard_(shard),
       file_(resolved(file)),
       lock_(file_),
-      attributes_(attributes),
-      tally_(without_runs(sweep)) {
-  const std::size_t cells = shard.cells_of(tally_.cell_count());
-  if (cells == 0 || cells > kMaxCells)
-    throw InputError(sweep.title(), "shard " + shard.text() + " has " + std::to_string(cells) +
-                                        " cells: expected 1 to " + std::to_string(kMaxCells));
-  std::error_code unreachable;
-  if (!std::filesystem::exists(file_, unreachable)) return;
-  StoredTally stored = read_tally(Hdf5Reader(file_));
-  require_same_sweep(file_, stored.schema, stored.attributes, attributes);
-  const std::string inputs = attribute(attributes, "input_digests");
-  for (const auto& input : changed_inputs(attribute(stored.attributes, "input_digests"), inputs))
-    throw InputError(file_.string(), "has runs on another recording " + input.path + " (" + input.before +
-                                         "; now " + input.now +
-                                         "): expected the same recording, or a new file");
-  if (const std::string why = attribute(stored.attributes, kDistrusted); !why.empty())
-    throw InputError(file_.string(), "has runs of a machine that computed wrongly (" + why +
-                                         "): expected a new file, without the wrong machine");
-  tally_ = std::move(stored.tally);
-  attributes_ = std::move(stored.attributes);
-}
-
-std::uint64_t TallySession::own_runs() const {
-  return shard_.cells_of(tally_.cell_count()) * static_cast<std::uint64_t>(tally_.replicates);
-}
+      plan_(tally_plan_in_file(sweep, shard, attributes, file_)) {}
 
 // Returns up to `count` of the lowest runs that are not made.
 std::vector<std::uint64_t> TallySession::next_runs(std::size_t count) {
-  const auto replicates = static_cast<std::uint64_t>(tally_.replicates);
+  const auto replicates = static_cast<std::uint64_t>(plan_.tally.replicates);
   std::vector<std::uint64_t> runs;
-  for (std::size_t i = next_cell_; i < shard_.cells_of(tally_.cell_count()); ++i) {
+  for (std::size_t i = next_cell_; i < shard_.cells_of(plan_.tally.cell_count()); ++i) {
     const std::uint64_t first = shard_.cell(i) * replicates;
-    const RunRanges missing = tally_.held.missing_in({first, first + replicates});
+    const RunRanges missing = plan_.tally.held.missing_in({first, first + replicates});
     if (missing.ranges().empty() && i == next_cell_) ++next_cell_;
     for (const RunRange& range : missing.ranges())
       for (std::uint64_t run = range.first; run < range.end; ++run) {
@@ -99,8 +99,8 @@ std::vector<std::uint64_t> TallySession::next_runs(std::size_t count) {
 // Throws InputError if a recording has changed since the session began: then it is not known which runs have
 // read it.
 void TallySession::store() {
-  require_unchanged(sweep_.inputs(), attribute(attributes_, "input_digests"));
-  digest_ = write_tally(file_, tally_, attributes_);
+  require_unchanged(sweep_.inputs(), attribute(plan_.attributes, "input_digests"));
+  digest_ = write_tally(file_, plan_.tally, plan_.attributes);
 }
 
 bool TallySession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
@@ -111,8 +111,8 @@ bool TallySession::run(const Kernels& kernels, const std::atomic<bool>* stop, co
 }
 
 bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& progress) {
-  const TallyLayout layout = tally_.layout();
-  const std::size_t earlier = tally_.held.count();
+  const TallyLayout layout = plan_.tally.layout();
+  const std::size_t earlier = plan_.tally.held.count();
   std::size_t size = kLeastBatch;
   auto stored = Clock::now();
   double storing_s = 0.5;
@@ -123,12 +123,12 @@ bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& 
     try {
       do_batch(batch);
     } catch (...) {
-      add(batch, layout, tally_);
-      if (tally_.held.count() > earlier) store();
+      add(batch, layout, plan_.tally);
+      if (plan_.tally.held.count() > earlier) store();
       throw;
     }
-    add(batch, layout, tally_);
-    progress(tally_.held.count(), own_runs(), earlier);
+    add(batch, layout, plan_.tally);
+    progress(plan_.tally.held.count(), own_runs(), earlier);
     if (seconds_since(start) < batch_s / 2) size = std::min(2 * size, kMostBatch);
     if (seconds_since(start) > 1.5 * batch_s) size = std::max(size / 2, kLeastBatch);
     if (seconds_since(stored) < std::max(10.0, 20 * storing_s)) continue;
@@ -136,8 +136,8 @@ bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& 
     store();
     stored = Clock::now(), storing_s = seconds_since(began);
   }
-  if (tally_.held.count() == earlier) {
-    digest_ = remote_touch::digest(tally_);
+  if (plan_.tally.held.count() == earlier) {
+    digest_ = remote_touch::digest(plan_.tally);
     return false;
   }
   store();
@@ -145,8 +145,8 @@ bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& 
 }
 
 void TallySession::distrust(const std::string& why) {
-  attributes_.emplace_back(kDistrusted, why);
-  if (tally_.held.count() > 0) store();
+  plan_.attributes.emplace_back(kDistrusted, why);
+  if (plan_.tally.held.count() > 0) store();
 }
 
 }  // namespace remote_touch

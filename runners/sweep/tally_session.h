@@ -12,15 +12,26 @@
 
 namespace remote_touch {
 
+// The tally of a sweep or a shard so far, and what its file states.
+struct TallyPlan {
+  SweepTally tally;
+  TextAttributes attributes;   // the existing file's, else as given
+  std::uint64_t own_runs = 0;  // number of runs of the shard
+};
+// Reads what is in the file, if that exists. attributes: configuration, provenance and shard. Throws
+// InputError if the file belongs to another sweep, shard or build, or to other recordings, if some of its
+// runs are known to be wrong (require_trusted()), and if the shard has no cells or more than 1e6.
+TallyPlan tally_plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
+                             const std::filesystem::path& file);
+
 // The file is a tally of the runs that are done. It is written again every ten seconds, or less often if that
 // takes longer than a twentieth of the time: a killed program loses the runs since then. The same command
 // makes the missing runs. A failed run is counted; it is not made again. The finished tally has the same
 // bytes however often it was interrupted, and with any number of threads.
 class TallySession {
  public:
-  // Takes the file's lock and reads what is there. attributes: configuration, provenance and shard. Throws
-  // InputError if the file belongs to another sweep, shard or build, or to other recordings, if another
-  // process writes it, if distrust() was called for it, and if the shard has no cells or more than 1e6.
+  // Takes the file's lock and reads what is there, see tally_plan_in_file(). Throws InputError also if
+  // another process writes the file.
   TallySession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                const std::filesystem::path& file);
 
@@ -39,10 +50,10 @@ class TallySession {
   // continues such a file. why: one line. do_batch may call it, and must then throw.
   void distrust(const std::string& why);
 
-  const SweepTally& tally() const { return tally_; }
-  const TextAttributes& attributes() const { return attributes_; }  // of the file, without the digest
-  std::uint64_t own_runs() const;                                   // number of runs of the shard
-  const std::string& digest() const { return digest_; }             // digest of the file, after run()
+  const SweepTally& tally() const { return plan_.tally; }
+  const TextAttributes& attributes() const { return plan_.attributes; }  // of the file, without the digest
+  std::uint64_t own_runs() const { return plan_.own_runs; }
+  const std::string& digest() const { return digest_; }  // digest of the file, after run()
 
  private:
   std::vector<std::uint64_t> next_runs(std::size_t count);
@@ -52,8 +63,7 @@ class TallySession {
   const Shard shard_;
   const std::filesystem::path file_;
   const FileLock lock_;
-  TextAttributes attributes_;
-  SweepTally tally_;
+  TallyPlan plan_;
   std::size_t next_cell_ = 0;  // index, within the shard, of the first cell that may lack runs
   std::string digest_;
 };

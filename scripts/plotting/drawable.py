@@ -19,6 +19,8 @@ def read_drawable(path, wanted=()):
             panels = sweep_panels(file, wanted) if schema in SWEEPS else trace_panels(file)
             heading = (text(file.attrs, "command") or path.name) + (left_out(file, wanted) if schema in SWEEPS else "")
             return Figure(path.stem, {name: text(file.attrs, name) for name in file.attrs} | {"heading": heading}, panels)
+    if schema.startswith("remote-touch-tally/"):
+        raise PlotError(f"{path}: is a tally: expected a figure, which `remote-touch analyse {path} -o FILE.h5` makes of it")
     if schema not in SCHEMAS:
         raise PlotError(f"{path}: schema {schema!r}: expected a figure, a trace or a sweep of this program")
     return read_figure(path)

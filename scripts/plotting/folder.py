@@ -105,9 +105,12 @@ class Folder:
 def end(folder):
     if not folder.figures:
         raise PlotError(f"{folder.directory}: no figure files (fig*.h5) and no scorecard")
-    words = [verdict(claim)[1] for claim in folder.write() if not is_set_up(claim)]
+    claims = folder.write()
+    words = [verdict(claim)[1] for claim in claims if not is_set_up(claim)]
+    checks = sum(verdict(claim)[1] == "FAIL" for claim in claims if is_set_up(claim))
+    failed = f", {checks} check(s) of the set-up FAILED" if checks else ""
     print(f"plot: {len(folder.figures)} figure(s), {words.count('pass')} of {len(words)} claims pass, "
-          f"{words.count('differs')} differ: {folder.out / 'index.html'}")
+          f"{words.count('differs')} differ{failed}: {folder.out / 'index.html'}")
 
 
 def plot(directory, out, extra="png"):

@@ -14,11 +14,11 @@ from plotting.cells import colour_range
 from plotting.figure_file import Column, Curve, enum_names, text
 from plotting.plot_error import PlotError
 from plotting.results import AUTOMATIC, column, dataset, panel
+from plotting.states import DONE, read_states
 from plotting.typeset import SHOWN_UNITS, unit_words
 
 MAX_PANELS, MAX_SLICES, ACROSS = 8, 12, 4
 FEW = 5  # values of an axis that has a line for each
-DONE = 2  # state of a run
 Z95 = 1.959964
 EVENT = "1 when "  # the long_name of a measure of an event begins with this
 
@@ -78,7 +78,8 @@ def unknown(values, is_done):
 
 def read_measure(file, name, axes, chosen, is_done):
     data = dataset(file, f"/sweep/{name}")
-    values, long_name, names = data[()].astype(float)[chosen], text(data.attrs, "long_name"), enum_names(data)
+    made = np.where(is_done, data[()].astype(float), np.nan)
+    values, long_name, names = made[chosen], text(data.attrs, "long_name"), enum_names(data)
     factor, units = SHOWN_UNITS.get(text(data.attrs, "units"), (1, text(data.attrs, "units")))
     replicates = values.shape[-1] if values.ndim > axes else 0
     of_cell = values.reshape(*values.shape[:axes], -1)
@@ -269,7 +270,7 @@ def sweep_panels(file, wanted=()):
     axes, chosen = shown_axes(read_axes(file), wanted)
     if not axes:
         raise PlotError(f"{file.filename}: --slice for all axes leaves one cell: expected at least one axis without --slice")
-    is_done = dataset(file, "/sweep/state")[()] == DONE
+    is_done = read_states(file) == DONE
     part = roles(axes)
     shown = list(slices(axes, part))[:MAX_SLICES]
     across = min(len(shown), ACROSS)
@@ -305,7 +306,7 @@ def left_out(file, wanted=()):
     if measures > shown:
         words.append(f"the first {shown} of {measures} measures")
     state = dataset(file, "/sweep/state")
-    names, of_chosen = enum_names(state), np.ravel(state[()][chosen])
+    names, of_chosen = enum_names(state), np.ravel(read_states(file)[chosen])
     states = [names.get(value) for value in of_chosen]
     planned = len(states) - states.count("not_sampled")
     for what, count in (("failed", states.count("failed")),

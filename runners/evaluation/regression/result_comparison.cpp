@@ -6,6 +6,7 @@
 #include "analysis/comparison/column_source.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "analysis/trace/hash64.h"
 #include "analysis/trace/renamed_columns.h"
 #include "analysis/trace/trace.h"
@@ -215,7 +216,10 @@ std::string kind_of(const Hdf5Reader& result) {
   const std::string schema = attribute(result.attributes(), "schema");
   for (const char* kind : {"trace", "sweep", "figure", "hashes"})
     if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
-  throw InputError(result.file(), (schema.empty() ? "has no attribute schema" : "is of schema " + schema) +
+  const std::string tally = tally_refusal(result.attributes());
+  throw InputError(result.file(), (!tally.empty()   ? tally
+                                   : schema.empty() ? "has no attribute schema"
+                                                    : "is of schema " + schema) +
                                       ": expected a trace, a sweep, a figure or hashes of this program");
 }
 

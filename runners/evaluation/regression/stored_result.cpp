@@ -16,13 +16,13 @@ namespace remote_touch {
 namespace {
 
 std::string configuration_of_replay(const Sweep& sweep, const Recipe& replay) {
-  const SweepResult plan = sweep.plan();
+  const SweepResult outline = sweep.outline();
   const std::vector<std::size_t>& place = replay.cell;
-  if (place.size() != plan.axes.size() || replay.replicate < 0 || replay.replicate >= plan.replicates)
+  if (place.size() != outline.axes.size() || replay.replicate < 0 || replay.replicate >= outline.replicates)
     return {};
   for (std::size_t i = 0; i < place.size(); ++i)
-    if (place[i] >= plan.axes[i].length()) return {};
-  return sweep.experiment(plan.cell_at(place), replay.replicate).to_json();
+    if (place[i] >= outline.axes[i].length()) return {};
+  return sweep.experiment(outline.cell_at(place), replay.replicate).to_json();
 }
 
 // Returns the configuration that the recipe would produce now. Empty for a result that has no configuration

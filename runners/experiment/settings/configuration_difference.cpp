@@ -1,5 +1,6 @@
 #include "runners/experiment/settings/configuration_difference.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "runners/experiment/settings/changed_settings.h"
@@ -9,17 +10,32 @@ namespace remote_touch {
 
 namespace {
 
-std::string text(const Json* value) {
-  constexpr std::size_t kMaxLength = 60;
-  const std::string all = value ? value->dump() : "absent";
-  return all.size() <= kMaxLength ? all : first_part(all, kMaxLength - 3);
+constexpr std::size_t kMaxLength = 60;  // bytes of a value that are shown
+
+// Returns the first character of a value, such as [, and the text from there on, shortened. Never cuts a
+// UTF-8 character.
+std::string text_from(const std::string& text, std::size_t first) {
+  while (first > 0 && first < text.size() && (static_cast<unsigned char>(text[first]) & 0xC0) == 0x80)
+    --first;
+  const std::string rest = text.substr(std::min(first, text.size()));
+  return (first > 0 ? text.substr(0, 1) + "..." : "") +
+         (rest.size() <= kMaxLength ? rest : first_part(rest, kMaxLength - 3));
+}
+
+// Returns "3 against 4". Long values are shortened in such a way that the part that differs is shown.
+std::string both_texts(const Json* a, const Json* b) {
+  constexpr std::size_t kBefore = 20;  // bytes that are shown before that part
+  const std::string first = a ? a->dump() : "absent", second = b ? b->dump() : "absent";
+  const auto equal = static_cast<std::size_t>(
+      std::mismatch(first.begin(), first.end(), second.begin(), second.end()).first - first.begin());
+  const std::size_t begin = equal < kMaxLength - kBefore ? 0 : equal - kBefore;
+  return text_from(first, begin) + " against " + text_from(second, begin);
 }
 
 void differences(const std::string& path, const Json* a, const Json* b, std::vector<std::string>& found) {
   if (a && b && *a == *b) return;
   if (!a || !b || !a->is_object() || !b->is_object()) {
-    if (path != "title" && path != "experiment.title")
-      found.push_back(path + " " + text(a) + " against " + text(b));
+    if (path != "title" && path != "experiment.title") found.push_back(path + " " + both_texts(a, b));
     return;
   }
   const auto member = [](const Json& object, const std::string& key) {

@@ -51,18 +51,21 @@ struct Answer {
   std::string config, digest;       // configuration and digest of the sweep
   std::size_t done = 0, asked = 0;  // runs that are finished, and that the sweep should have
   std::vector<std::string> notes;
+  std::string distrust = {};  // see distrust_of()
 };
 
 Answer answer_of_runs(const AnalyseRequest& request) {
   const StoredSweep stored = read_stored_sweep(request.sweep);
   const SweepResult& result = stored.result;
-  const std::string config = attribute(stored.attributes, "config");
+  const std::string config = attribute(stored.attributes, "config"), damage = damage_text(stored);
+  std::vector<std::string> notes = note_lines(result);
+  if (!damage.empty()) notes.push_back(damage);
   return {sweep_answer(result, config, question_of(request)),
           config,
           digest(result),
           result.runs_in(RunState::done).size(),
           result.run_count() - result.runs_in(RunState::not_sampled).size(),
-          note_lines(result)};
+          std::move(notes)};
 }
 
 Answer answer_of_tally(const AnalyseRequest& request) {
@@ -72,21 +75,24 @@ Answer answer_of_tally(const AnalyseRequest& request) {
   for (const CellTally& cell : tally.tallies) done += cell.done;
   const std::string config = attribute(stored.attributes, "config");
   std::vector<std::string> notes = note_lines(tally);
-  if (const std::string why = attribute(stored.attributes, kDistrusted); !why.empty())
-    notes.push_back("some runs are WRONG: " + why);
+  const std::string distrust = distrust_of(stored.attributes);
+  if (!distrust.empty()) notes.push_back(distrust);
   return {sweep_answer(tally, config, question_of(request)),
           config,
           digest(tally),
           static_cast<std::size_t>(done),
           static_cast<std::size_t>(tally.run_count()),
-          std::move(notes)};
+          std::move(notes),
+          distrust};
 }
 
 void write_hdf5(const CommandLine& line, const AnalyseRequest& request, const Answer& answer) {
   const FileLock lock = lock_output(line, request.output, {request.sweep});
   TextAttributes attributes = provenance(answer.config, command_of(request), "");
   attributes.emplace_back("sweep_digest", answer.digest);
-  write_figure(request.output, answer.figure, attributes);
+  Figure figure = answer.figure;
+  if (!answer.distrust.empty()) figure.caption += (figure.caption.empty() ? "" : " ") + answer.distrust + ".";
+  write_figure(request.output, figure, attributes);
 }
 
 // Writes the tables without those of single curves, whose rows the others have, too.

@@ -10,6 +10,9 @@
 
 namespace remote_touch {
 
+struct Column;
+struct Hdf5Content;
+
 // kChanged is returned only by `compare`: the results differ and nothing got worse.
 enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3, kChanged = 4 };
 
@@ -117,7 +120,7 @@ struct AnalyseRequest {
 int command_analyse(const CommandLine& line, const AnalyseRequest& request);
 
 struct ReplayRequest {
-  std::string map;
+  std::string sweep;
   std::string cell;  // "3,4"
   int replicate = 0;
   std::string output;
@@ -235,5 +238,10 @@ struct InspectRequest {
 int command_inspect(const CommandLine& line, const InspectRequest& request);
 // Prints how far the shards of a sweep in a folder are.
 int inspect_folder(const std::string& folder);
+// Prints the runs and the measures of a tally, and what each of its arrays is. content: that of the file.
+void print_tally(const std::string& file, const Hdf5Content& content);
+// Ends the line with the range and the mean of numbers, the counts of names, the number of texts that are not
+// empty and the first of them, or the last of hashes.
+void print_values(const Column& column);
 
 }  // namespace remote_touch

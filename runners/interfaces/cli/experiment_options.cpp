@@ -114,7 +114,8 @@ void add_merge_replay_and_recheck(Subcommands& commands) {
 
   auto [again, replay] =
       commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
-  again->add_option("map", replay->map, "the result of a sweep; `run` replays a live session")->required();
+  again->add_option("sweep", replay->sweep, "the result of a sweep; `run` replays a live session")
+      ->required();
   again
       ->add_option(
           "--cell", replay->cell,
@@ -127,7 +128,8 @@ void add_merge_replay_and_recheck(Subcommands& commands) {
 
   auto [check, recheck] = commands.add(
       "recheck",
-      "make one run in a thousand of a sweep again (of a tally one cell in a thousand), and compare the bits",
+      "make one run in a thousand of a sweep again (of a tally all runs of one cell in a thousand, and of at "
+      "least one), and compare the bits",
       command_recheck);
   check->add_option("sweeps", recheck->sweeps, "results of sweeps, or their shards")->required();
 }

@@ -11,12 +11,14 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/schema.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "analysis/trace/renamed_columns.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/unfinished_session.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 
@@ -104,6 +106,8 @@ void print_notes(const std::vector<std::int32_t>& all, const std::string& kinds)
   std::puts("");
 }
 
+}  // namespace
+
 void print_values(const Column& column) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) return print_numbers(*numbers);
   if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) return print_texts(*texts);
@@ -115,6 +119,8 @@ void print_values(const Column& column) {
   else
     print_states(column, integers);
 }
+
+namespace {
 
 // The unit is printed only for columns whose values are printed as numbers.
 void print_datasets(const Hdf5Content& content) {
@@ -166,6 +172,14 @@ std::vector<std::string> translated_names_in(const Hdf5Content& content) {
   return names;
 }
 
+// Prints one line for a sweep in progress some of whose runs are as good as not made.
+void print_damaged_runs(const std::string& file, const Hdf5Content& content) {
+  const auto is_checksum = [](const auto& dataset) { return dataset.first == "/sweep/checksum"; };
+  if (std::none_of(content.datasets.begin(), content.datasets.end(), is_checksum)) return;
+  if (const std::string text = damage_text(read_stored_part(file)); !text.empty())
+    std::printf("  note         %s\n", text.c_str());
+}
+
 // Prints one line for a result of an earlier schema, because the names below it are the old ones.
 void print_earlier_schema(const Hdf5Content& content) {
   const std::string schema = attribute(content.attributes, "schema");
@@ -208,6 +222,16 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
     std::puts(
         "  note         another program opened it for writing; every value is as it was written (SHA-256)");
   print_earlier_schema(content);
+  print_damaged_runs(file, content);
+  if (const std::string distrust = distrust_of(content.attributes); !distrust.empty())
+    std::printf("  note         %s\n", printable(distrust).c_str());
+  if (is_tally(content.attributes)) {
+    TextAttributes others = content.attributes;  // without those that print_tally() prints
+    std::erase_if(others, [](const auto& each) { return each.first.starts_with("measure_"); });
+    print_attributes(file, others);
+    print_tally(file, content);
+    return kDone;
+  }
   print_attributes(file, content.attributes);
   print_datasets(content);
   return kDone;

@@ -91,14 +91,25 @@ void print_other_build(const TextAttributes& attributes) {
                   printable(theirs).c_str(), printable(ours).c_str());
 }
 
+// " (all runs of 1 of 3 cells)" for a tally, which does not have single runs; else empty.
+std::string extent_of(const Recheck& check) {
+  if (check.cells_in == 0) return "";
+  return " (all runs of " + std::to_string(check.cells) + " of " + std::to_string(check.cells_in) + " cells)";
+}
+
+void print_distrust(const TextAttributes& attributes) {
+  if (const std::string distrust = distrust_of(attributes); !distrust.empty())
+    std::printf("  note: %s\n", printable(distrust).c_str());
+}
+
 }  // namespace
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
-  const FileLock lock = lock_output(line, request.output, {request.map});
-  const StoredSweep stored = read_runs_or_outline(request.map);
-  const Sweep sweep = sweep_of(stored.attributes, request.map);
+  const FileLock lock = lock_output(line, request.output, {request.sweep});
+  const StoredSweep stored = read_runs_or_outline(request.sweep);
+  const Sweep sweep = sweep_of(stored.attributes, request.sweep);
   const SweepResult& result = stored.result;
-  sweep.require_fits(result, request.map);
+  sweep.require_fits(result, request.sweep);
   const std::size_t cell = cell_of({"--cell", request.cell}, result);
   if (request.replicate < 0 || request.replicate >= result.replicates)
     throw InputError("--replicate " + std::to_string(request.replicate),
@@ -115,6 +126,7 @@ int command_replay(const CommandLine& line, const ReplayRequest& request) {
   std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), replay.trace.length(),
               replay.digest.c_str());
   std::fputs(text_of(replay.report).c_str(), stdout);
+  print_distrust(stored.attributes);
   if (agrees(sweep, result, run, replay.trace)) return kDone;
   print_origin(stored, sweep, replay.experiment);
   return kCheckFailed;
@@ -128,13 +140,15 @@ int command_recheck(const CommandLine& line, const RecheckRequest& request) {
     const auto show = [&](std::size_t done, std::size_t total) { progress.update(done, total, 0, "runs"); };
     const Recheck check = recheck_of(file, {line.kernels, line.stop, show}, attributes);
     progress.clear();
-    std::printf("%s: %zu runs made again, ", printable(file).c_str(), check.made);
-    if (check.different.empty()) std::printf("all as stored\n");
+    std::printf("%s: %zu run%s made again%s, ", printable(file).c_str(), check.made,
+                check.made == 1 ? "" : "s", extent_of(check).c_str());
+    if (check.different.empty()) std::puts(check.made == 0 ? "because none is stored" : "all as stored");
     if (!check.different.empty()) {
       std::printf("%zu different\n", check.different.size()), code = kCheckFailed;
       for (const std::string& text : check.different) std::printf("  %s\n", text.c_str());
       print_other_build(attributes);
     }
+    print_distrust(attributes);
   }
   return code;
 }

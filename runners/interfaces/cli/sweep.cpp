@@ -64,7 +64,8 @@ Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandL
   sample.tried.state.assign(result.state.size(), RunState::pending);
   for (; done < std::min(kSamples, places.size()) && seconds_since(start) < 2; ++done) {
     // An odd multiplier visits the samples out of order, so that stopping early leaves a fair choice.
-    const std::size_t place = places[(7 * done % kSamples) * places.size() / kSamples];
+    const std::size_t place =
+        places[places.size() < kSamples ? done : (7 * done % kSamples) * places.size() / kSamples];
     const std::size_t run = result.run_at(place);
     try {
       const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
@@ -127,18 +128,19 @@ int dry_run_of_runs(const Sweep& sweep, const SweepPlan& plan, const CommandLine
 }
 
 // Tries the first replicate of cells that are spread over those of the shard.
-int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const CommandLine& line,
+int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const TallyPlan& plan, const CommandLine& line,
                      const SweepRequest& request) {
   constexpr std::size_t kSamples = 16;
   const SweepResult outline = sweep.outline();
-  const std::size_t cells = shard.cells_of(outline.cell_count()), tried = std::min(kSamples, cells);
+  const std::size_t cells = shard.cells_of(outline.cell_count());
+  const std::uint64_t done = plan.tally.held.count(), left = plan.own_runs - done;
+  const std::size_t tried = left == 0 ? 0 : std::min(kSamples, cells);
   std::vector<std::uint64_t> runs;
   for (std::size_t i = 0; i < tried; ++i) runs.push_back(outline.run(shard.cell(i * cells / tried), 0));
   const SweepResult sample = sweep.part(runs);
-  return dry_run(sweep,
-                 {cells * static_cast<std::size_t>(outline.replicates), 0,
-                  "a tally of " + std::to_string(cells) + " cells", sample},
-                 line, request);
+  return dry_run(
+      sweep, {left, done, "a tally of " + std::to_string(cells) + (cells == 1 ? " cell" : " cells"), sample},
+      line, request);
 }
 
 // Does what is left of a session, with progress. Returns false if it was interrupted.
@@ -186,11 +188,13 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
   const std::string file = with_shard(request.output, shard);
   if (file.empty() && !request.dry_run)
     throw InputError("--output", "is required; see remote-touch sweep --help");
-  if (!request.dry_run) require_writable(file);
+  if (!file.empty()) require_writable(file);
   const TextAttributes attributes = attributes_of(sweep, request, shard);
   if (sweep.keep() != Keep::runs)
-    return request.dry_run ? dry_run_of_tally(sweep, shard, line, request)
-                           : make_tally(line, request, file, TallySession(sweep, shard, attributes, file));
+    return request.dry_run
+               ? dry_run_of_tally(sweep, shard, tally_plan_in_file(sweep, shard, attributes, file), line,
+                                  request)
+               : make_tally(line, request, file, TallySession(sweep, shard, attributes, file));
   if (request.dry_run)
     return dry_run_of_runs(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
   return make_runs(line, request, file, SweepSession(sweep, shard, attributes, file));

@@ -107,7 +107,15 @@ namespace {
 
 constexpr std::size_t kMaxFailedCells = 20;  // number that is printed
 
-std::string text_of(const MeasureTally& all, const std::string& units) {
+}  // namespace
+
+CellTally over_all_cells(const SweepTally& tally) {
+  CellTally all(tally.layout());
+  for (const CellTally& cell : tally.tallies) all.add(cell);
+  return all;
+}
+
+std::string measure_text(const MeasureTally& all, const std::string& units) {
   if (all.values == 0) return "no value in any run";
   char text[200];
   std::snprintf(text, sizeof text, "mean %-10.6g %.6g .. %.6g %s, median %.3g", all.mean(), all.least,
@@ -116,6 +124,8 @@ std::string text_of(const MeasureTally& all, const std::string& units) {
   return text + (", of " + std::to_string(all.values)) + " of " +
          std::to_string(all.values + all.unknown + all.infinite) + " runs";
 }
+
+namespace {
 
 void print_failures(const SweepTally& tally, const SweepResult& outline) {
   std::size_t printed = 0, cells = 0;
@@ -135,8 +145,7 @@ void print_failures(const SweepTally& tally, const SweepResult& outline) {
 
 int print_summary(const std::string& file, const SweepTally& tally, const std::string& digest) {
   const SweepResult outline = outline_of(tally);
-  CellTally all(tally.layout());
-  for (const CellTally& cell : tally.tallies) all.add(cell);
+  const CellTally all = over_all_cells(tally);
   std::printf("%s: %s cells, %lld runs done, %lld failed", printable(file).c_str(),
               extent_text(outline).c_str(), static_cast<long long>(all.done),
               static_cast<long long>(all.failed));
@@ -145,7 +154,7 @@ int print_summary(const std::string& file, const SweepTally& tally, const std::s
   std::printf(", digest %s\n", digest.c_str());
   for (std::size_t i = 0; i < all.measures.size(); ++i)
     std::printf("  %-20s %s\n", tally.measures[i].name.c_str(),
-                text_of(all.measures[i], tally.measures[i].units).c_str());
+                measure_text(all.measures[i], tally.measures[i].units).c_str());
   for (const std::string& line : note_lines(tally)) std::printf("  note: %s\n", line.c_str());
   print_failures(tally, outline);
   return all.failed == 0 ? kDone : kCheckFailed;

@@ -21,6 +21,11 @@ int print_summary(const std::string& file, const SweepResult& result);
 // kind of note, and the first failed run of each cell. Returns kDone, or kCheckFailed if a run failed.
 int print_summary(const std::string& file, const SweepTally& tally, const std::string& digest);
 
+// Returns the sum of the tallies of all cells.
+CellTally over_all_cells(const SweepTally& tally);
+// "mean 0.25 0 .. 1 1, median 0, of 4 of 5 runs"
+std::string measure_text(const MeasureTally& all, const std::string& units);
+
 // The same of a sweep whose runs come in blocks.
 class SweepSummary {
  public:

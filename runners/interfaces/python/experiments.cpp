@@ -10,6 +10,7 @@
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/file_lock.h"
 #include "analysis/storage/schema.h"
+#include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
@@ -46,6 +47,7 @@ SimulationOptions options_of(const LongWork& work) {
 struct RunResult {
   std::vector<Column> columns, measures, timing;
   TextAttributes attributes;
+  std::string warning = {};  // one line; empty: none
 };
 
 std::vector<Column> measures_of(const Trace& trace) {
@@ -101,6 +103,7 @@ py::dict as_dict(RunResult result) {
   all["measures"] = to_python(std::move(result.measures));
   all["timing"] = to_python(std::move(result.timing));
   all["attributes"] = to_python(result.attributes);
+  all["warning"] = result.warning;
   return all;
 }
 
@@ -148,6 +151,7 @@ RunResult replay(const std::string& file, const TextAttributes& attributes, cons
   output.write([&](const auto& path) { return write_trace(path, result.columns, again.attributes, {}); },
                [] { return std::string(); });
   result.attributes = trace_attributes(again.attributes, again.digest, result.columns);
+  result.warning = distrust_of(stored.attributes);
   return result;
 }
 

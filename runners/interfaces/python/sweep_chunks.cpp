@@ -111,7 +111,10 @@ void store(SweepResult& result, const std::function<void(std::size_t)>& stored,
            notes.data()[i] >> result.note_kinds.size() == 0;
     if (fits) places.push_back(*place);
   }
-  if (!fits) throw InputError("a chunk", "damaged: expected an outcome for each of its runs");
+  if (!fits)
+    throw InputError("a chunk", "damaged: expected an outcome for each of its runs, the first of which is " +
+                                    std::to_string(count > 0 ? runs.data()[0] : 0) +
+                                    "; none of them is stored, and the same call makes them again");
   for (py::ssize_t i = 0; i < count; ++i) {
     const std::size_t place = places[static_cast<std::size_t>(i)];
     for (std::size_t m = 0; m < result.measures.size(); ++m)

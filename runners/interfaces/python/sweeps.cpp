@@ -106,14 +106,17 @@ SweepResult result_of(const py::tuple& parts) {
   return result;
 }
 
-Figure answer_of(const std::string& file, const SweepQuestion& question) {
+// warning: set to one line if some runs are wrong or left out.
+Figure answer_of(const std::string& file, const SweepQuestion& question, std::string& warning) {
   const FileTurn turn;
   const Hdf5Reader reader(file);
   if (is_tally(reader)) {
     const StoredTally stored = read_tally(reader);
+    warning = distrust_of(stored.attributes);
     return sweep_answer(stored.tally, attribute(stored.attributes, "config"), question);
   }
   const StoredSweep stored = read_stored_sweep(reader);
+  warning = damage_text(stored);
   return sweep_answer(stored.result, attribute(stored.attributes, "config"), question);
 }
 
@@ -121,13 +124,14 @@ Figure answer_of(const std::string& file, const SweepQuestion& question) {
 py::dict analyse(const std::string& file, const py::tuple& parts, const std::string& config,
                  const SweepQuestion& question) {
   Figure answer;
+  std::string warning;
   if (file.empty()) {
     const SweepResult result = result_of(parts);
     const py::gil_scoped_release without_lock;
     answer = sweep_answer(result, config, question);
   } else {
     const py::gil_scoped_release without_lock;
-    answer = answer_of(file, question);
+    answer = answer_of(file, question, warning);
   }
   std::vector<Column> columns;
   for (const Table& table : answer.tables) {
@@ -140,6 +144,7 @@ py::dict analyse(const std::string& file, const py::tuple& parts, const std::str
   py::dict all;
   all["columns"] = to_python(std::move(columns));
   all["attributes"] = to_python(TextAttributes{{"title", answer.title}, {"caption", answer.caption}});
+  all["warning"] = warning;
   return all;
 }
 
@@ -156,6 +161,7 @@ py::dict to_python(StoredSweep stored) {
   shape.push_back(result.replicates);
   py::dict all;
   all["kind"] = "sweep";
+  all["warning"] = damage_text(stored);
   all["attributes"] = to_python(attributes);
   all["axes"] = to_python(std::move(result.axes));
   py::list measures;

@@ -76,6 +76,7 @@ py::dict to_python(const StoredTally& stored) {
   all["axes"] = to_python(std::vector<Column>(tally.axes));
   all["columns"] = arrays;
   all["attributes"] = to_python(attributes);
+  all["warning"] = distrust_of(stored.attributes);
   return all;
 }
 

@@ -6,6 +6,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
@@ -101,9 +102,11 @@ std::string exported_kind(const Hdf5Reader& result) {
   const std::string schema = attribute(result.attributes(), "schema");
   for (const char* kind : {"trace", "sweep", "figure"})
     if (schema.starts_with(std::string("remote-touch-") + kind + "/")) return kind;
-  std::string what = schema.empty() ? "has no attribute schema" : "is of schema ";
-  throw InputError(result.file(),
-                   what.append(schema).append(": expected a trace, a sweep, or a figure of this program"));
+  const std::string tally = tally_refusal(result.attributes());
+  std::string what = !tally.empty()   ? tally
+                     : schema.empty() ? "has no attribute schema"
+                                      : "is of schema " + schema;
+  throw InputError(result.file(), what + ": expected a trace, a sweep, or a figure of this program");
 }
 
 std::vector<Table> result_tables(const Hdf5Reader& result) {

@@ -69,13 +69,23 @@ std::vector<std::size_t> chosen_cells(const SweepTally& tally) {
   return chosen;
 }
 
+// Returns what differs between two tallies that are not equal. name: that of the measure.
+std::string difference(const std::string& name, const MeasureTally& then, const MeasureTally& now) {
+  const auto part = [&](const char* what, double before, double after) {
+    return std::string(what) + " of " + name + " = " + digits(before) + ", now " + digits(after);
+  };
+  if (bits(then.mean()) != bits(now.mean())) return part("mean", then.mean(), now.mean());
+  if (bits(then.least) != bits(now.least)) return part("least value", then.least, now.least);
+  if (bits(then.greatest) != bits(now.greatest)) return part("greatest value", then.greatest, now.greatest);
+  return "other values of " + name + " now, with the same mean";
+}
+
 // Returns what differs between the tallies of one cell; empty if nothing does.
 std::string difference(const std::vector<Column>& measures, const CellTally& then, const CellTally& now) {
   if (then == now) return "";
   for (std::size_t m = 0; m < measures.size(); ++m)
     if (!(then.measures[m] == now.measures[m]))
-      return "mean of " + measures[m].name + " = " + digits(then.measures[m].mean()) + ", now " +
-             digits(now.measures[m].mean());
+      return difference(measures[m].name, then.measures[m], now.measures[m]);
   return "other failed runs, notes or events now";
 }
 
@@ -92,7 +102,7 @@ std::vector<std::uint64_t> held_runs(const SweepTally& tally, std::uint64_t cell
 
 Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options) {
   const std::vector<std::uint64_t> runs = chosen_runs(part);
-  Recheck check{runs.size(), {}};
+  Recheck check{runs.size()};
   make_again(sweep, runs, options, [&](const SweepResult& now, std::size_t place) {
     const std::string how = difference(part, part.place_of(now.run_at(place)).value(), now, place);
     if (!how.empty()) check.different.push_back("run " + std::to_string(now.run_at(place)) + ": " + how);
@@ -101,9 +111,10 @@ Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOption
 }
 
 Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOptions& options) {
-  Recheck check;
+  const std::vector<std::size_t> chosen = chosen_cells(tally);
+  Recheck check{0, chosen.size(), tally.cells.size()};
   const TallyLayout layout = tally.layout();
-  for (const std::size_t i : chosen_cells(tally)) {
+  for (const std::size_t i : chosen) {
     const std::vector<std::uint64_t> runs = held_runs(tally, tally.cells[i]);
     CellTally now(layout);
     make_again(sweep, runs, options, [&](const SweepResult& made, std::size_t place) {

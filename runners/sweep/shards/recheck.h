@@ -25,10 +25,11 @@ struct RecheckOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 struct Recheck {
-  std::size_t made = 0;  // number of runs that were made again
+  std::size_t made = 0;                 // number of runs that were made again
+  std::size_t cells = 0, cells_in = 0;  // of a tally: number of its cells that were made again, and of all
   // Each run that differs, "run 99: max_force = 1.5, now 1.25"; of a tally each cell, "cell 3: mean of
   // max_force = 1.5, now 1.25".
-  std::vector<std::string> different;
+  std::vector<std::string> different = {};
 };
 
 // Makes the finished and failed runs with is_rechecked() again, or the first run if there is no such run.

@@ -11,7 +11,6 @@
 
 #include "analysis/storage/file_lock.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/schema.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/stored_sweep.h"
@@ -74,6 +73,7 @@ void read_tally_of(const Hdf5Reader& hdf5, ReadShard& read) {
   read.config = attribute(stored.attributes, "config");
   read.runs_of_sweep = static_cast<std::size_t>(stored.tally.run_count());
   ShardProgress& shard = read.progress;
+  shard.distrust = distrust_of(stored.attributes);
   for (const CellTally& cell : stored.tally.tallies)
     shard.done += static_cast<std::size_t>(cell.done), shard.failed += static_cast<std::size_t>(cell.failed);
   for (const int index : shard.shards.indices)
@@ -92,8 +92,7 @@ std::optional<ReadShard> read_shard(const std::filesystem::path& file) {
   ShardProgress& shard = read.progress;
   shard.shards = parse_shards(shards, file.string());
   shard.file = file.filename().string();
-  const bool is_tally = is_schema_of(attribute(hdf5.attributes(), "schema"), "tally");
-  if (is_tally)
+  if (is_tally(hdf5))
     read_tally_of(hdf5, read);
   else
     read_runs_of(hdf5, read);

@@ -21,6 +21,7 @@ struct ShardProgress {
   std::size_t runs = 0, done = 0, failed = 0;  // runs that the file holds
   double written_s_ago = 0;                    // time since the file was written last
   double runs_per_s = 0;                       // mean since the file was made; 0 if it is not known
+  std::string distrust = {};                   // see distrust_of()
 };
 
 // The shards of one sweep, sorted by their lowest index. Each is in one file.

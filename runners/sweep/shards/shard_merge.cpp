@@ -67,7 +67,7 @@ RunSpool::PartValues values_in(const SweepResult& part) {
 
 // Copies the runs of a file. A finished part is read block by block. An unfinished one, and one of an earlier
 // version, which has an element for each run of the sweep, is read as a whole.
-void add_runs(const std::string& file, const Hdf5Reader& hdf5, Partial partial, RunSpool& spool) {
+void add_runs(const std::string& file, const Hdf5Reader& hdf5, const MergeRequest& request, RunSpool& spool) {
   if (hdf5.has("/sweep/run") && !hdf5.has("/sweep/checksum")) {
     const std::size_t held = hdf5.column("/sweep/run").length();
     spool.add(file, held, [&](const std::string& array, std::size_t first, std::size_t count) {
@@ -75,12 +75,15 @@ void add_runs(const std::string& file, const Hdf5Reader& hdf5, Partial partial, 
     });
     return;
   }
-  const SweepResult part = without_others(read_sweep(hdf5).result);
+  StoredSweep stored = read_sweep(hdf5);
+  const std::string damage = damage_text(stored);
+  const SweepResult part = without_others(std::move(stored.result));
   const std::size_t pending = part.runs_in(RunState::pending).size();
-  if (partial == Partial::no)
+  if (request.partial == Partial::no)
     throw InputError(
         file, "is not finished (" + std::to_string(pending) +
                   " runs are left): expected a finished shard (repeat its sweep command), or --partial");
+  if (!damage.empty() && request.note) request.note(file + ": " + damage);
   spool.add(file, part.held_count(), values_in(part));
 }
 
@@ -170,7 +173,7 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
       require_same_extent(part, *first);
       seen.add(file, part.shards);
     }
-    add_runs(file, hdf5, request.partial, *spool);
+    add_runs(file, hdf5, request, *spool);
   }
   if (request.partial == Partial::no) seen.require_complete();
   TextAttributes attributes = first->outline.attributes;
@@ -181,9 +184,11 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
   const auto values = [&](const std::string& array, std::size_t at, std::size_t count) {
     return spool->values(array, at, count);
   };
-  return write_sweep(request.output,
-                     SweepInBlocks{spool->outline(), spool->is_refined(), spool->longest_error(), values},
-                     attributes);
+  return or_unchanged([&] {
+    return write_sweep(request.output,
+                       SweepInBlocks{spool->outline(), spool->is_refined(), spool->longest_error(), values},
+                       attributes);
+  });
 }
 
 }  // namespace remote_touch

@@ -8,6 +8,7 @@
 
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/column.h"
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
@@ -20,7 +21,20 @@ struct MergeRequest {
   std::string output;
   Partial partial = Partial::no;
   bool force = false;  // an output that is no sweep may be replaced
+  // Called with a line about a shard some of whose runs are left out, see damage_text(); may be empty.
+  std::function<void(const std::string& line)> note = {};
 };
+
+// Calls write(), which writes the merged file, and returns its result. If it throws InputError, adds to the
+// text that nothing was changed: a merge that fails leaves all files as they were.
+template <class Write>
+std::string or_unchanged(const Write& write) {
+  try {
+    return write();
+  } catch (const InputError& error) {
+    throw InputError(error.what() + std::string("; nothing was changed"));
+  }
+}
 
 // Called before the file is written, with the runs in increasing order; each block is a part of the result.
 using EachBlock = std::function<void(const SweepResult& block)>;

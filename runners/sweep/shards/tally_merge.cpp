@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
@@ -43,6 +44,7 @@ void require_nothing_more(const MergeRequest& request, const SweepTally& merged)
 }  // namespace
 
 MergedTally merge_tallies(const MergeRequest& request) {
+  require_no_device(request.output);
   std::optional<StoredTally> merged;
   SeenShards seen;
   for (const std::string& file : request.shards) {
@@ -50,6 +52,7 @@ MergedTally merge_tallies(const MergeRequest& request) {
     if (std::filesystem::equivalent(file, request.output, absent))
       throw InputError(request.output, "is one of the shards: expected another file");
     StoredTally part = read_tally(Hdf5Reader(file));
+    require_trusted(file, part.attributes);
     const ShardSet shards = take_shards(part.attributes, file);
     if (merged) require_same_origin({file, part.attributes}, {request.shards.front(), merged->attributes});
     seen.add(file, shards);
@@ -64,7 +67,8 @@ MergedTally merge_tallies(const MergeRequest& request) {
   if (request.partial == Partial::no) seen.require_complete();
   if (!seen.are_complete()) merged->attributes.emplace_back("shard", seen.all().text());
   require_nothing_more(request, merged->tally);
-  const std::string digest = write_tally(request.output, merged->tally, merged->attributes);
+  const std::string digest =
+      or_unchanged([&] { return write_tally(request.output, merged->tally, merged->attributes); });
   return {std::move(merged->tally), digest};
 }
 

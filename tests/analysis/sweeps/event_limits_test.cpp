@@ -143,6 +143,19 @@ TEST(EventLimits, UseFinishedRunsOnly) {
   EXPECT_EQ(place(limits_of(result), 0), "no runs");
 }
 
+// The last value of the axis has no runs, so it is not known whether the limit is above it.
+TEST(EventLimits, AreNotSaidToBeOutsideAnAxisWhoseEndHasNoRuns) {
+  SweepResult result = sweep_of({1, 2, 4}, {{0, 0, 100}, {0, 0, 0}});
+  for (int replicate = 0; replicate < kRuns; ++replicate)
+    result.state[result.run(result.cell_at({0, 2}), replicate)] = RunState::pending;
+  EXPECT_EQ(place(limits_of(result), 0), "above the values with runs");
+  EXPECT_EQ(place(limits_of(result), 1), "above the last value");
+  result = sweep_of({1, 2, 4}, {{0, 100, 100}, {0, 50, 100}});
+  for (int replicate = 0; replicate < kRuns; ++replicate)
+    result.state[result.run(result.cell_at({0, 0}), replicate)] = RunState::pending;
+  EXPECT_EQ(place(limits_of(result), 0), "below the values with runs");
+}
+
 TEST(EventLimits, AnEventIsAMeasureAboveTheThreshold) {
   SweepResult result = sweep_of({1, 2}, {{0, 100}});
   for (double& value : std::get<std::vector<double>>(result.measures[0].values)) value = 3 + 2 * value;

@@ -10,6 +10,7 @@
 
 #include "analysis/statistics/paired_test.h"
 #include "analysis/statistics/proportion.h"
+#include "analysis/sweeps/cell_groups.h"
 
 namespace remote_touch::sweep_means_test {
 namespace {
@@ -151,6 +152,14 @@ TEST(SweepDifferences, SkipPairsOfWhichOneHasNoValue) {
   const Table table = sweep_differences(result, "depth", 1, {{0}, {}});
   EXPECT_EQ(counts(table, "pairs"), (std::vector<std::int32_t>{2, 2}));
   EXPECT_EQ(numbers(table, "mean"), (std::vector<double>{0.5, 1}));
+}
+
+// A tally may have more runs than an integer of 32 bits counts.
+TEST(SweepMeans, CountMoreThanTwoBillionRuns) {
+  EXPECT_EQ(counts_in_column({1, 2147483647}), Values(std::vector<std::int32_t>{1, 2147483647}));
+  EXPECT_EQ(counts_in_column({1, 3000000000}), Values(std::vector<double>{1, 3e9}));
+  const auto [low, high] = wilson_interval(1500000000, 3000000000);
+  EXPECT_NEAR(high - low, 2 * kTwoSided95 / (2 * std::sqrt(3e9)), 1e-9);
 }
 
 }  // namespace

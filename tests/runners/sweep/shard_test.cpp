@@ -78,6 +78,10 @@ TEST(Shards, OfALargeSweepHoldTheirOwnRunsOnly) {
                twelve({noise + seeds + steps, "replicates=10000"});
              }),
              "more than 1000000000000000 runs");
+  EXPECT_HAS(refusal([&] {
+               twelve({noise + seeds + "]", "replicates=1"});
+             }),
+             "more than 4294967296 cells: expected");
 }
 
 TEST(Shards, OfAMergedFileAreWrittenAsRanges) {

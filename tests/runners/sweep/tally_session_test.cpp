@@ -59,6 +59,9 @@ TEST_F(TallySessions, AreRefusedWhereTheyDoNotFit) {
   EXPECT_HAS(why([&] { quick().plan(); }), "quick: keeps a tally (keep = events)");
   EXPECT_HAS(why([] { quick({"keep=all"}); }), R"(keep = "all": expected runs, tally or events)");
   EXPECT_HAS(why([] { quick({"refine.budget=100"}); }), "refinement needs the values of all runs");
+  const Sweep longer = quick({"replicates=6"});
+  EXPECT_HAS(why([&] { tally_plan_in_file(longer, {}, attributes_of(longer, {}), file("t.h5")); }),
+             "t.h5: is of another configuration, first in replicates 5 against 6");
   folder_.write("junk.h5", "junk");
   EXPECT_HAS(why([&] { made("junk.h5", quick()); }), "junk.h5: not a readable HDF5 file");
 }
@@ -74,6 +77,7 @@ TEST_F(TallySessions, AnswerTheQuestionsThatNeedNoSingleRuns) {
   question.by = {"noise_sigma_m"};
   const Figure ours = sweep_answer(tally, config, question), theirs = sweep_answer(runs, config, question);
   ASSERT_EQ(ours.tables.size(), theirs.tables.size());
+  EXPECT_EQ(ours.caption, theirs.caption);
   for (std::size_t t = 0; t < ours.tables.size(); ++t)
     for (const Column& column : ours.tables[t].columns)
       if (const auto* const values = std::get_if<std::vector<double>>(&column.values))
@@ -91,6 +95,22 @@ TEST_F(TallySessions, AnswerTheQuestionsThatNeedNoSingleRuns) {
   question.limit = "max_penetration";
   EXPECT_HAS(refusal([&] { sweep_answer(tally, config, question); }),
              "a tally counts only the events themselves");
+}
+
+// A run of which it is not known whether the event happened is told.
+TEST_F(TallySessions, AnswersTellHowManyRunsAreUnknown) {
+  SweepResult runs = run_sweep(quick({"keep=runs"}), {});
+  SweepTally tally = tally_in(made("t.h5", quick()));
+  const std::string config = quick().to_json(),
+                    told = "popped_through is unknown in 1 of 60 runs, which count as";
+  SweepQuestion question;
+  question.limit = "popped_through";
+  EXPECT_EQ(sweep_answer(runs, config, question).caption.find("unknown"), std::string::npos);
+  EXPECT_EQ(sweep_answer(tally, config, question).caption.find("unknown"), std::string::npos);
+  std::get<std::vector<double>>(runs.measures[1].values)[3] = std::nan("");
+  tally.tallies[0].measures[1].unknown = 1;
+  EXPECT_HAS(sweep_answer(runs, config, question).caption, told);
+  EXPECT_HAS(sweep_answer(tally, config, question).caption, told);
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None)
         raise InputError(f"{type(sweep).__name__}: expected a file, or what rt.sweep returned")
     result = _core.replay(file, attributes, _cell(cell), _integer("replicate", replicate, 0, 2**31 - 1), _path(output),
                           bool(force), _report(progress, "replay"))
-    return dataset.of_trace(result)
+    return dataset.of_trace(_warned(result, file))
 
 
 def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=(), difference=(), between=None):
@@ -99,23 +99,31 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
         file = _native(sweep)
     else:
         parts, config = dataset.parts_of_sweep(sweep), str(sweep.attrs.get("config", "{}"))
-    return dataset.of_figure(_core.analyse(file, parts, config, _name(limit), _name(along), _number("above", above),
-                                           _number("level", level), _names(mean), _names(by), _names(difference),
-                                           _name(between)))
+    result = _core.analyse(file, parts, config, _name(limit), _name(along), _number("above", above), _number("level", level),
+                           _names(mean), _names(by), _names(difference), _name(between))
+    return dataset.of_figure(_warned(result, file))
 
 
 def open(path):
     """Reads a result: a trace, a sweep or a tally as a Dataset; a figure or a scorecard as a dict of Datasets, its tables.
 
-    A folder of a scorecard stands for the file scorecard.h5 in it.
+    A folder of a scorecard stands for the file scorecard.h5 in it. Warns if some runs are known to be wrong or are left out.
     """
     from remote_touch import dataset
     file = _native(path)
     if os.path.isdir(file):
         file = os.path.join(file, b"scorecard.h5")
-    result = _core.open(file)
+    result = _warned(_core.open(file), file)
     made = {"trace": dataset.of_trace, "sweep": dataset.of_sweep, "tally": dataset.of_tally, "figure": dataset.of_figure}
     return made[result["kind"]](result)
+
+
+def _warned(result, file):
+    """The same, after a warning if some runs in the file are wrong or left out."""
+    if result.get("warning"):
+        import warnings
+        warnings.warn(f"{os.fsdecode(file) or 'the data set'}: {result['warning']}", stacklevel=3)
+    return result
 
 
 class Comparison:

@@ -102,9 +102,12 @@ class Engine:
 
     def _submit(self, *call):
         try:
-            return self.executor.submit(*call)
+            future = self.executor.submit(*call)
         except Exception as error:
             raise self._end(f"{type(error).__name__}: {error}") from error
+        if not isinstance(future, concurrent.futures.Future):
+            raise self._end(f"its submit() returned {type(future).__name__} instead of a Future")
+        return future
 
     def _next_chunk(self):
         if self.again:
@@ -130,9 +133,11 @@ class Engine:
                                                  f"does no more work ({why})")
 
     def _take(self, chunk, made):
-        worker = made["worker"]
-        for (name, ours), (_, theirs) in zip(self.build, made["build"]):
-            self._require_same(worker, name, theirs, ours)
+        if not _is_whole(made, len(chunk.runs)):
+            raise self._damage(chunk.runs)
+        worker, theirs = made["worker"], dict(made["build"])
+        for name, ours in self.build:
+            self._require_same(worker, name, theirs.get(name), ours)
         if "problem" in made:
             self._lose(chunk, f"worker {worker}: {made['problem']}")
             return
@@ -143,6 +148,10 @@ class Engine:
             self._compare(chunk, made)
         else:
             self._store(chunk.runs, made)
+
+    def _damage(self, runs):
+        return InputError(f"{self.output}: a chunk: damaged: expected an outcome for each of its runs {_ranges(runs)}; none of them "
+                          "is stored, and the same call makes them again")
 
     def _require_same(self, worker, name, theirs, ours):
         if theirs != ours:
@@ -191,6 +200,27 @@ class Engine:
         raise RuntimeError(f"{self.output}: run {run} has {_text(outcome)} by worker {worker}, but {_text(again)} by worker "
                            f"{other}: one of them computes wrongly; the {len(runs)} runs that they made are pending again: "
                            f"{_ranges(runs)}{earlier}")
+
+
+_FORM = {"build": (list, tuple), "worker": str, "thread": int}
+_OUTCOME = {"inputs": str, "states": np.ndarray, "values": np.ndarray, "notes": np.ndarray, "errors": list, "seconds": float}
+
+
+def _is_whole(made, count):
+    """Whether an executor returned what do_runs() does for so many runs, as far as it can be seen without the sweep."""
+    if not isinstance(made, dict):
+        return False
+    form = _FORM if "problem" in made else _FORM | _OUTCOME
+    if not all(isinstance(made.get(name), kind) for name, kind in form.items()):
+        return False
+    if not all(isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str) for pair in made["build"]):
+        return False
+    if "problem" in made:
+        return True
+    states, values, notes = made["states"], made["values"], made["notes"]
+    return (states.shape == notes.shape == (count,) and states.dtype.kind == notes.dtype.kind == "i" and values.ndim == 2
+            and values.shape[1] == count and values.dtype == np.float64 and made["seconds"] >= 0
+            and len(made["errors"]) == count and all(isinstance(text, str) for text in made["errors"]))
 
 
 def _is_lost(future):

@@ -83,7 +83,7 @@ def of_sweep(result):
 
 def warned(sweep, subject):
     """The same, after a warning if some of its runs failed."""
-    if "failed" in sweep and (failed := int(sweep["failed"].sum())):
+    if "failed" in sweep.data_vars and (failed := int(sweep["failed"].sum())):
         warnings.warn(f"{subject}: {failed} of {int(sweep['runs'].sum())} runs failed", stacklevel=3)
     if "error" in sweep:
         failed = [text for text in sweep["error"].values.ravel() if text]

@@ -37,5 +37,21 @@ TEST(ConfigurationDifferences, DoNotCutACharacter) {
   EXPECT_EQ(found, (Texts{"path \"x" + umlauts.substr(0, 54) + "... against 1"}));
 }
 
+// Two long values that begin alike do not look alike.
+TEST(ConfigurationDifferences, ShowThePartThatDiffers) {
+  const std::string folder(100, 'a');
+  EXPECT_EQ(
+      configuration_differences(R"({"path": ")" + folder + R"(/one"})", R"({"path": ")" + folder + R"("})"),
+      (Texts{"path \"..." + std::string(20, 'a') + "/one\" against \"..." + std::string(20, 'a') + "\""}));
+  std::string count =
+      R"({"axes": [{"from": 0, "parameter": "scenario.acceleration_m_per_s2", "to": 1, "count": 3}]})";
+  std::string other = count;
+  other.replace(other.find("\"to\": 1"), 7, "\"to\": 2");
+  EXPECT_EQ(
+      configuration_differences(count, other),
+      (Texts{
+          "axes [...tion_m_per_s2\",\"to\":1,\"count\":3}] against [...tion_m_per_s2\",\"to\":2,\"count\":3}]"}));
+}
+
 }  // namespace
 }  // namespace remote_touch::configuration_difference_test

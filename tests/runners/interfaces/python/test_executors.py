@@ -319,6 +319,34 @@ def test_a_damaged_chunk_is_refused(tmp_path):
         rt.sweep(SWEEP, output=tmp_path / "map.h5", executor=Workers(cut))
 
 
+GARBAGE = [None, 3, "text", [], {}, np.zeros(3), {"worker": "w", "thread": 1, "build": []}, {"worker": "w", "thread": 1, "build": [1]},
+           lambda made: {**made, "states": "done"}, lambda made: {**made, "errors": [None] * len(made["states"])},
+           lambda made: {**made, "values": made["values"].astype(object)}, lambda made: {**made, "seconds": float("nan")},
+           lambda made: {**made, "notes": made["notes"][:0]}, lambda made: {**made, "states": made["states"] + 5}]
+
+
+@pytest.mark.parametrize("garbage", GARBAGE)
+@pytest.mark.parametrize("sweep", [SWEEP, TALLY])
+def test_garbage_instead_of_a_chunk_is_refused_in_one_line(sweep, garbage, tmp_path):
+    """The line names the runs, and the same call makes them again."""
+    def spoil(number, made, is_check):
+        return made if number != 3 else garbage(made) if callable(garbage) else garbage
+    with pytest.raises(rt.InputError) as raised:
+        rt.sweep(sweep, output=tmp_path / "map.h5", executor=Workers(spoil), chunk=2)
+    text = str(raised.value)
+    assert re.search(r"a chunk: damaged: .* runs?,? .*\d.*; none of them is stored, and the same call makes them again$", text)
+    assert "\n" not in text
+    rt.sweep(sweep, output=tmp_path / "map.h5", executor=Workers())
+
+
+def test_an_executor_without_futures_is_refused(tmp_path):
+    class Forgetful(Workers):
+        def submit(self, function, *arguments):
+            super().submit(function, *arguments)
+    with pytest.raises(concurrent.futures.BrokenExecutor, match=r"no new run is stored, .*its submit\(\) returned NoneType instead"):
+        rt.sweep(SWEEP, output=tmp_path / "map.h5", executor=Forgetful())
+
+
 def test_failed_runs_are_stored_with_their_reason(command_line, tmp_path):
     failing = copy.deepcopy(SWEEP)
     failing["axes"] = [{"parameter": "trajectory.depth_m", "values": [0.001, 0.002]}]

@@ -2,6 +2,7 @@
 import copy
 import json
 
+import h5py
 import numpy as np
 import pytest
 import remote_touch as rt
@@ -104,6 +105,15 @@ def test_a_sweep_goes_on_where_it_stopped(tmp_path):
     part = rt.open(file)
     done = int((part.state == 2).sum())
     assert 0 < done < part.state.size
+    with h5py.File(file, "r") as stored:  # a bit of the first run, which is done
+        offset = stored["sweep/max_force"].id.get_offset()
+    damaged = bytearray(file.read_bytes())
+    damaged[offset] ^= 1
+    file.write_bytes(damaged)
+    with pytest.warns(UserWarning, match="map.h5: 1 run has a wrong checksum, .*: left out; the command of the sweep makes it again"):
+        assert int((rt.open(file).state == 2).sum()) == done - 1
+    with pytest.warns(UserWarning, match="1 run has a wrong checksum"):
+        rt.analyse(file, mean="max_force")
     whole = rt.sweep(longer, output=file)
     assert (whole.state == 2).all() and whole.attrs["digest"] == rt.sweep(longer).attrs["digest"]
 
@@ -175,6 +185,24 @@ def test_a_tally_has_the_counts_and_means_of_the_runs(tmp_path, command_line):
     np.testing.assert_allclose(of_tally["mean"], of_runs["mean"], rtol=1e-14)
     command_line("sweep", file, "-o", tmp_path / "command.h5")
     assert_same_file(tmp_path / "tally.h5", tmp_path / "command.h5")
+
+
+def test_no_axis_of_a_tally_has_the_name_of_a_variable(tmp_path):
+    """The file could be written, but no data set could hold both."""
+    def plan(name):
+        return {**SWEEP, "keep": "tally", "measures": ["max_force"],
+                "axes": [{"name": name, "parameters": ["trajectory.depth_m"], "values": [[0.01], [0.02]]}]}
+    tally = rt.sweep(plan("depth"), output=tmp_path / "tally.h5")
+    assert len(tally.data_vars) == 7
+    for name in tally.data_vars:
+        with pytest.raises(rt.InputError, match=f"a part of the tally has the name {name}: expected|a column of analyse has"):
+            rt.sweep(plan(name), output=tmp_path / "refused.h5")
+
+
+def test_an_axis_of_a_sweep_may_be_named_failed():
+    """Only a tally has a variable of that name."""
+    axis = {"name": "failed", "parameters": ["trajectory.depth_m"], "values": [[0.01], [0.02]]}
+    assert rt.sweep({**SWEEP, "axes": [axis], "measures": ["max_force"]}).failed.dims == ("failed",)
 
 
 def test_a_tally_needs_a_file():

@@ -38,7 +38,11 @@ def test_a_tally_with_wrong_runs_is_not_continued(command_line, tmp_path):
     with pytest.raises(RuntimeError, match="run 16 has .*; the tally also has earlier runs by them: expected a new file$"):
         rt.sweep(tmp_path / "sweep.json", output=output, executor=Workers(wrong_late), chunk=2)
     assert 15 not in missing_in(output) and 16 in missing_in(output)
-    assert rt.open(output).attrs["distrusted"].startswith("run 16 differs between the workers w")
+    for read in (rt.open, rt.analyse, lambda file: rt.replay(file, cell=(0, 0))):
+        with pytest.warns(UserWarning, match="tally.h5: some runs are WRONG: run 16 differs between the workers w"):
+            read(output)
+    with pytest.warns(UserWarning):
+        assert rt.open(output).attrs["distrusted"].startswith("run 16 differs between the workers w")
     assert "note: some runs are WRONG: run 16 differs" in command_line("analyse", output)
     for again in ({"executor": Workers()}, {"threads": 1}):
         with pytest.raises(rt.InputError, match="tally.h5: has runs of a machine that computed wrongly .run 16 differs"):

@@ -63,9 +63,18 @@ TEST_F(Rechecks, CompareAWholeCellOfATally) {
   SweepTally tally = made_once;
   EXPECT_EQ(recheck(tally, sweep, {}).made, 5u) << "one cell of 12";
   EXPECT_TRUE(recheck(tally, sweep, {}).different.empty());
+  EXPECT_EQ(recheck(tally, sweep, {}).cells, 1u);
+  EXPECT_EQ(recheck(tally, sweep, {}).cells_in, 12u);
   tally.tallies[6].measures[0].add(0.001);
   ASSERT_EQ(recheck(tally, sweep, {}).different.size(), 1u);
   EXPECT_HAS(recheck(tally, sweep, {}).different[0], "cell 6: mean of max_penetration = ");
+  tally = made_once;
+  tally.tallies[6].measures[0].greatest *= 2;
+  EXPECT_HAS(recheck(tally, sweep, {}).different[0], "cell 6: greatest value of max_penetration = ");
+  tally = made_once;
+  tally.tallies[6].measures[0].squares = {};
+  EXPECT_EQ(recheck(tally, sweep, {}).different,
+            std::vector<std::string>{"cell 6: other values of max_penetration now, with the same mean"});
   tally = made_once;
   tally.tallies[6].notes[0].runs += 1;
   EXPECT_EQ(recheck(tally, sweep, {}).different,

@@ -44,5 +44,28 @@ TEST_F(TallyMerges, TakeUnfinishedShardsOnlyAsAPart) {
   EXPECT_HAS(refusal([&] { merge_tallies({{two, two}, file("x.h5")}); }), "is shard 2/2, which is also in");
 }
 
+// The wrong runs are in its sums, and would be in those of the merged file.
+TEST_F(TallyMerges, RefuseAShardWithWrongRuns) {
+  const std::string one = made("1.h5", quick(), {1, 2}), two = made("2.h5", quick(), {2, 2}),
+                    whole = file("w.h5");
+  {
+    const Sweep sweep = quick();
+    TallySession session(sweep, {2, 2}, attributes_of(sweep, {2, 2}), two);
+    session.distrust("run 7 differs");
+  }
+  for (const Partial partial : {Partial::no, Partial::yes})
+    EXPECT_HAS(refusal([&] {
+                 merge_tallies({{one, two}, whole, partial});
+               }),
+               "2.h5: has runs of a machine that computed wrongly (run 7 differs): expected a new file");
+  EXPECT_FALSE(std::filesystem::exists(whole));
+  EXPECT_HAS(refusal([&] {
+               made("2.h5", quick(), {2, 2});
+             }),
+             "2.h5: has runs of a machine that computed wrongly");
+  EXPECT_EQ(distrust_of(read_tally(Hdf5Reader(two)).attributes).substr(0, 35),
+            "some runs are WRONG: run 7 differs;");
+}
+
 }  // namespace
 }  // namespace remote_touch::tally_merge_test

@@ -1,0 +1,27 @@
+"""The states of the runs of a sweep. In an unfinished one a run whose checksum is wrong was not made."""
+import numpy as np
+
+from plotting.figure_file import text
+from plotting.results import dataset
+
+PENDING, DONE = 1, 2
+
+
+def checksums(file, state):
+    """Those that the runs should have: FNV-1a over number, state, values and notes, as in analysis/sweeps/sweep_file.cpp."""
+    runs = dataset(file, "/sweep/run")[()] if "/sweep/run" in file else np.arange(state.size)
+    words = [runs, state, *(dataset(file, f"/sweep/{name}")[()].view(np.uint64) for name in text(file.attrs, "measures").split(","))]
+    if "/sweep/notes" in file:
+        words.append(dataset(file, "/sweep/notes")[()].view(np.uint32))
+    sums = np.full(state.size, 2166136261, dtype=np.uint32)
+    for word in words:
+        for byte in np.ravel(word).astype("<u8").view(np.uint8).reshape(-1, 8).T:
+            sums = (sums ^ byte) * np.uint32(16777619)
+    return sums.reshape(state.shape)
+
+
+def read_states(file):
+    state = dataset(file, "/sweep/state")[()]
+    if "/sweep/checksum" not in file:
+        return state
+    return np.where(checksums(file, state) == dataset(file, "/sweep/checksum")[()].view(np.uint32), state, PENDING)
