@@ -167,11 +167,11 @@ EventLimits event_limits(const SweepResult& result, const CellCounts& cells, con
               axes_of(result, others, groups)};
   table.add(
       "limit", axis.units,
-      "value of the axis at which the event has the given probability; NaN: outside the values of the axis",
+      "value of the axis at which the event has the given probability; NaN: not between values with runs",
       limits);
-  table.add("limit_low", axis.units, "lower end of its 95 % interval; NaN: outside the values of the axis",
+  table.add("limit_low", axis.units, "lower end of its 95 % interval; NaN: not between values with runs",
             low);
-  table.add("limit_high", axis.units, "upper end of its 95 % interval; NaN: outside the values of the axis",
+  table.add("limit_high", axis.units, "upper end of its 95 % interval; NaN: not between values with runs",
             high);
   table.add("at_least", axis.units,
             "last value of the axis before the limit at which the interval is off the given probability",

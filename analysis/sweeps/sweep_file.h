@@ -42,7 +42,7 @@ struct StoredSweep {
   TextAttributes attributes;  // all but schema, digest, and the names of axes, measures and note kinds
   bool in_progress = false;
   std::string schema = {};
-  std::size_t damaged_runs = 0;  // number of runs in progress whose checksum is wrong; they are pending
+  std::size_t damaged_runs = 0;  // number of runs of a file in progress with a wrong checksum; not done
 };
 StoredSweep read_sweep(const Hdf5Reader& file);
 // Reads all but the values of the runs: axes, number of replicates, measures, kinds of notes and attributes.

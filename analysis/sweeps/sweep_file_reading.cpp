@@ -63,7 +63,7 @@ class SweepReader {
   std::vector<std::string> datasets_;
 };
 
-// Runs with a wrong checksum become pending. Returns their number.
+// Marks the runs with a wrong checksum as not made, and returns their number.
 std::size_t reset_partial_runs(const std::vector<std::int32_t>& sums, SweepResult& result) {
   std::size_t count = 0;
   for (std::size_t place = 0; place < result.held_count(); ++place) {

@@ -31,8 +31,9 @@ struct MeasureTally {
   // of 1e154). Deviations below 1e-146 are lost.
   double variance() const;
   double standard_deviation() const;
-  // Returns the quantile of QuantileSketch, clipped to least .. greatest: it differs from the value of that
-  // rank by at most 1.6 %. p = 0 gives least and p = 1 greatest. NaN without values.
+  // Returns the quantile of QuantileSketch, clipped to least .. greatest. It differs by at most 1.6 % from
+  // the value that it approximates, x_k of the sorted values. p = 0 gives least and p = 1 greatest. NaN
+  // without values.
   double quantile(double p) const;
 
   // Checks a tally of unknown origin. Returns what contradicts what, such as "the extremes are outside the

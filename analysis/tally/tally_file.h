@@ -42,17 +42,18 @@ std::string write_tally(const std::filesystem::path& file, const SweepTally& tal
 // True if an axis or a measure may have that name.
 bool is_free_in_tallies(const std::string& name);
 
-bool is_tally(const TextAttributes& of_root);
+bool is_tally(const TextAttributes& of_root);  // attributes of the root of a file
 bool is_tally(const Hdf5Reader& file);
 
-// The root attribute that says why runs of the tally are wrong; absent if nothing is known to be.
+// The root attribute that states why some runs of the tally are known to be wrong; absent if none is.
 inline constexpr const char* kDistrusted = "distrusted";
-// Returns one line that warns whoever reads such a tally; empty for any other result.
+// Returns one line that warns of the wrong runs of such a tally; empty for any other result.
 std::string distrust_of(const TextAttributes& attributes);
-// Returns why a command that needs single runs, or a figure, does not accept the file: "is a tally, which
-// keeps no runs", with that warning; empty for any other result.
+// Returns why a command that needs single runs or a figure does not accept a tally: "is a tally, which keeps
+// no runs", with the warning of distrust_of(). Empty for any other result.
 std::string tally_refusal(const TextAttributes& attributes);
-// Throws InputError, which names the file, for such a tally. Nothing is added to it or made from it.
+// Throws InputError, which names the file, if some runs of the tally are known to be wrong. Call it before
+// runs are added to a tally, and before a tally becomes a part of another result.
 void require_trusted(const std::filesystem::path& file, const TextAttributes& attributes);
 
 struct StoredTally {

@@ -193,12 +193,12 @@ inline std::size_t keep(NativeBits refused, std::uint32_t first, std::size_t liv
 #endif
 }
 
-// The number of vectors whose words are computed side by side when points are selected. More need more
-// registers than the machine has.
+// The number of vectors whose words are computed side by side when points are selected. More vectors would
+// need more registers than a processor has.
 constexpr std::size_t kTogether = kNative == 8 ? 4 : 2;
 
-// A walk over a rectangle of points, row by row, a vector at a time. The last vector of a row may be partly
-// empty.
+// A walk over a rectangle of points, row by row, one vector at a time. The last vector of a row may have
+// lanes without a point. first(): index of the point in lane 0. live(): number of lanes with a point.
 struct Walk {
   const PointRectangle& points;
   std::size_t row = 0, column = 0;

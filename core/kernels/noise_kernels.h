@@ -12,7 +12,8 @@ struct NoiseStream {
   std::uint32_t counter[3];  // the generator's counter without its first word, which is the point's index
 };
 
-// Points of an organised cloud: point (column, row) has the index first + row * stride + column.
+// Points of an organised cloud: point (column, row) has the index first + row * stride + column. stride is at
+// least columns.
 struct PointRectangle {
   std::uint32_t first, stride;
   std::size_t columns, rows;
@@ -24,8 +25,9 @@ struct NoiseKernels {
                   double* z);
   // Selects the points of a rectangle whose random words allow the x normal to meet the bound x[column] and
   // the z normal to meet the bound z[row] (word_bounds() in noise.h). A point that is not selected misses at
-  // least one of the bounds. Returns the number of selected points. Their indices are stored row by row, in
-  // increasing order. x and index have capacity for kLanes more than there are columns and points.
+  // least one of the bounds. Stores the indices of the selected points, increasing, and returns their number.
+  // pre: x has kLanes elements behind those of the columns, with any values; index has capacity for kLanes
+  // more than the points of the rectangle.
   std::size_t (*candidates)(const NoiseStream&, const PointRectangle&, const std::uint64_t* x,
                             const std::uint64_t* z, std::uint32_t* index);
 };

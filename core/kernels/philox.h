@@ -33,8 +33,8 @@ class Philox {
     compute({point}, words);
     return words[0];
   }
-  // Computes the words of several vectors of points side by side, because each alone is one long chain of
-  // products that wait for each other.
+  // Computes the words of several vectors of points. They are computed side by side, because each product of
+  // one vector has to wait for the one before.
   template <std::size_t kCount>
   void compute(const Vector (&points)[kCount], Words<Vector> (&words)[kCount]) const {
     for (std::size_t i = 0; i < kCount; ++i) words[i] = {{points[i], b_, c_, d_}};

@@ -55,7 +55,8 @@ class GatheredPoints {
   // Returns the indices of the points in the frame, which do not depend on the order of the search.
   const std::uint32_t* index() const { return index_.data(); }
   PointsView view() const;
-  // Returns the points as a run, to append some of them to another list.
+  // Returns the points as a run, from which some can be appended to another list. Valid until the list
+  // changes.
   PointRun run() const;
 
  private:

@@ -13,8 +13,9 @@ namespace {
 // The edge of a cube in units of the reach. A smaller edge means fewer useless points in a list, a larger one
 // means fewer new lists.
 constexpr double kPitch = 0.125;
-// How far a proxy may move with a narrow list, in units of the reach, and the longest step of a slow proxy,
-// in units of that distance. Steps of 4.2.4 decrease by a factor 1 - gamma, so a slow proxy often stays near.
+// The distance that a proxy may move with a narrow list, in units of the reach, and the longest step of a
+// slow proxy, in units of that distance. Each step of 4.2.4 is 1 - gamma times the one before, so a slow
+// proxy often stays near.
 constexpr double kNarrowMargin = 0.02, kSlow = 0.3;
 // The maximum number of hops in which a tube is searched, however far the HIP jumped.
 constexpr double kMaxHops = 64;
@@ -78,7 +79,8 @@ const GatheredPoints& Neighbourhood::narrowed(const Vec3& p) {
     return (p - q).squaredNorm() < distance * distance;
   };
   const bool is_slow = is_near(std::exchange(last_W_, p), kSlow * narrow_margin_);
-  // At the border of a cube the wide list lacks points that are near a position in the next cube.
+  // The narrow list of one cube is not used in the next: it was made from a list that may lack points within
+  // the reach of a position there.
   if (narrow_.valid && narrow_of_ == current_ && is_near(narrow_.centre, narrow_margin_))
     return narrow_.points;
   if (!is_slow) return wide;

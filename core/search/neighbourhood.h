@@ -9,9 +9,9 @@
 
 namespace remote_touch {
 
-// A kept list belongs to a small cube of space, not to the path of the proxy: a position always has the same
-// list, so results do not depend on history or on the search used. A few lists are kept, because a proxy on
-// noisy points moves back and forth between neighbouring cubes.
+// A kept list belongs to a small cube of space, not to the path of the proxy: around() always returns the
+// same points for a position, so results do not depend on history or on the search used. A few lists are
+// kept, because a proxy on noisy points moves back and forth between neighbouring cubes.
 class Neighbourhood {
  public:
   // reach (m): the list of a queried position holds every point with r_n <= reach, and some beyond.
@@ -25,8 +25,9 @@ class Neighbourhood {
   void set_points(std::shared_ptr<const NeighbourSearch> points);
   // Returns the points around p. Valid until the next call.
   const GatheredPoints& around(const Vec3& p);
-  // Returns the points of around(p), without most of those beyond the reach if p has moved little since the
-  // last call: a slow proxy reads a narrow list often enough to pay for it. Valid until the next call.
+  // Returns the points of around(p); without most of those beyond the reach if p has moved little since the
+  // last call. The points beyond the reach depend on earlier calls, so no result may depend on them. A narrow
+  // list saves time because a slow proxy reads it in many steps. Valid until the next call.
   const GatheredPoints& narrowed(const Vec3& p);
   // Searches anew and returns all points with r_n <= radius of p, and possibly some beyond. Valid until the
   // next call.
@@ -66,10 +67,11 @@ class Neighbourhood {
   std::array<CachedList, 4> cache_;
   std::size_t current_ = 0;
   GatheredPoints tube_;  // gathered for one call
-  // The points of list narrow_of_ within the reach of its positions near narrow_.centre.
+  // The points of cache_[narrow_of_] within the reach of any position nearer than narrow_margin_ to
+  // narrow_.centre.
   CachedList narrow_;
   std::size_t narrow_of_ = 0;
-  Vec3 last_W_ = Vec3::Zero();  // of the last call of narrowed()
+  Vec3 last_W_ = Vec3::Zero();  // position in the last call of narrowed()
 };
 
 }  // namespace remote_touch

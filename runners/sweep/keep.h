@@ -14,8 +14,8 @@ namespace remote_touch {
 enum class Keep { runs, tally, events };
 
 // Reads the key "keep" of a sweep; runs if it is missing. Throws InputError for another value, for a sweep
-// with refinement that does not keep its runs, and for events of a sweep without the measure of an event.
-// label: names the source in errors.
+// with refinement that does not keep its runs, and for "events" in a sweep none of whose measures is an event
+// (is_event()). label: names the source in errors.
 Keep read_keep(const Json& sweep, const std::vector<Measure>& measures, const std::string& label);
 const char* name_of(Keep keep);
 

@@ -89,8 +89,8 @@ std::string damage_text(const StoredSweep& stored) {
   if (stored.damaged_runs == 0) return "";
   const bool is_one = stored.damaged_runs == 1;
   return std::to_string(stored.damaged_runs) + (is_one ? " run has" : " runs have") +
-         " a wrong checksum, because of a partial write or damage: left out; the command of the sweep makes " +
-         (is_one ? "it" : "them") + " again";
+         " a wrong checksum, because of a partial write or damage: " + (is_one ? "it is" : "they are") +
+         " left out, and the command of the sweep makes " + (is_one ? "it" : "them") + " again";
 }
 
 StoredSweep read_runs_or_outline(const std::filesystem::path& file) {

@@ -17,10 +17,11 @@ StoredSweep read_stored_sweep(const std::filesystem::path& file);
 StoredSweep read_stored_outline(const Hdf5Reader& file);
 // Reads a sweep as read_stored_sweep() does, but a part stays a part.
 StoredSweep read_stored_part(const std::filesystem::path& file);
-// The same; of a tally, which keeps no runs, the outline.
+// Reads a sweep as read_stored_part() does. For a tally, which keeps no runs, returns the outline.
 StoredSweep read_runs_or_outline(const std::filesystem::path& file);
 
-// Returns one line about the runs of a sweep in progress whose checksum is wrong; empty if there are none.
+// Returns one line with the number of runs of a sweep in progress that have a wrong checksum; empty if there
+// are none.
 std::string damage_text(const StoredSweep& stored);
 
 }  // namespace remote_touch

@@ -86,12 +86,13 @@ std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit
          "Along the axis the event becomes " + (rises ? "more" : "less") + " probable. ";
 }
 
-// Returns a sentence if it is not known of some runs whether the event happened.
+// Returns a sentence with the number of runs in which it is unknown whether the event happened; empty if it
+// is known in all.
 std::string unknown_sentence(const Asked& asked, const std::string& event, std::size_t measure) {
   const auto [done, unknown] = asked.unknown(measure);
   if (unknown == 0) return {};
   return event + " is unknown in " + std::to_string(unknown) + " of " + std::to_string(done) +
-         " runs, which count as runs without the event. ";
+         " runs; a run in which it is unknown counts as a run without the event. ";
 }
 
 void add_limits(Figure& figure, const Asked& asked, const SweepQuestion& question, const std::string& event) {
@@ -184,7 +185,8 @@ std::vector<std::size_t> axes_with_common_noise(const Json& config, std::size_t 
 
 namespace {
 
-// Returns the first measure of such an event that is known in a run; is_known gets the number of a measure.
+// Returns the first measure of default_event() that has a value in some run; empty if there is none.
+// is_known: called with the number of a measure; true if that measure has a value in some run.
 template <class IsKnown>
 std::string first_event(const std::vector<Column>& measures, const IsKnown& is_known) {
   for (std::size_t i = 0; i < measures.size(); ++i)
@@ -263,7 +265,7 @@ Figure sweep_answer(const SweepResult& result, const std::string& config, const 
 }
 
 Figure sweep_answer(const SweepTally& tally, const std::string& config, const SweepQuestion& question) {
-  constexpr std::uint64_t kMaxCells = 10'000'000;  // an answer goes through all cells, made or not
+  constexpr std::uint64_t kMaxCells = 10'000'000;  // an answer reads all cells, also those without runs
   if (tally.cell_count() > kMaxCells)
     throw InputError("the tally", "has " + std::to_string(tally.cell_count()) + " cells: expected at most " +
                                       std::to_string(kMaxCells) + " for an analysis");

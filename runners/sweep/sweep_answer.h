@@ -43,9 +43,9 @@ inline constexpr const char* kAnswerName = "analysis";
 // not fit, and a sweep without a finished run.
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question);
 
-// The same of a tally. It knows neither single runs nor thresholds: throws InputError also for a difference,
-// for a limit of a measure that is no event or with another threshold than 0.5, for means over an axis with
-// common noise, and for more than 1e7 cells.
+// The same for a tally, which keeps neither single runs nor counts for other thresholds. Throws InputError
+// also for a difference, for a limit of a measure that is no event or with another threshold than 0.5, for
+// means over an axis with common noise, and for a sweep of more than 1e7 cells.
 Figure sweep_answer(const SweepTally& tally, const std::string& config, const SweepQuestion& question);
 
 }  // namespace remote_touch

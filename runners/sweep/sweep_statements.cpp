@@ -87,15 +87,15 @@ bool is_empty(const Json& value) {
   return value.is_null() || (value.is_array() && value.empty());
 }
 
-// A value that a run does not have as it is stated.
+// A stated value that differs from the value in the run.
 struct Contradiction {
   std::string path;
   const Json& stated;
   Json run;
 };
 
-// Returns the first value at or below the path that the run has otherwise: whole objects may be too long to
-// show where they differ.
+// Returns the first value at or below the path that differs in the run. It is not a whole object, which may
+// be too long to show the difference.
 std::optional<Contradiction> contradiction(const std::string& path, const Json& stated, const Json& run) {
   const bool are_lists = stated.is_array() && run.is_array() && stated.size() == run.size();
   if (!are_lists && !(stated.is_object() && run.is_object())) {

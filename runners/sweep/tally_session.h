@@ -12,13 +12,13 @@
 
 namespace remote_touch {
 
-// The tally of a sweep or a shard so far, and what its file states.
+// The runs of a sweep or a shard that a file holds, and the number that it should hold.
 struct TallyPlan {
   SweepTally tally;
-  TextAttributes attributes;   // the existing file's, else as given
+  TextAttributes attributes;   // attributes of the file; the given ones if it does not exist
   std::uint64_t own_runs = 0;  // number of runs of the shard
 };
-// Reads what is in the file, if that exists. attributes: configuration, provenance and shard. Throws
+// Reads the file, if it exists. attributes: configuration, provenance and shard of this call. Throws
 // InputError if the file belongs to another sweep, shard or build, or to other recordings, if some of its
 // runs are known to be wrong (require_trusted()), and if the shard has no cells or more than 1e6.
 TallyPlan tally_plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
@@ -30,8 +30,8 @@ TallyPlan tally_plan_in_file(const Sweep& sweep, const Shard& shard, const TextA
 // bytes however often it was interrupted, and with any number of threads.
 class TallySession {
  public:
-  // Takes the file's lock and reads what is there, see tally_plan_in_file(). Throws InputError also if
-  // another process writes the file.
+  // Locks the file and reads it with tally_plan_in_file(). Throws InputError also if another process writes
+  // the file.
   TallySession(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                const std::filesystem::path& file);
 
@@ -46,12 +46,12 @@ class TallySession {
   using DoBatch = std::function<void(SweepResult& batch)>;
   bool run(const DoBatch& do_batch, double batch_s, const Progress& progress);
 
-  // States in the file that some of its runs are wrong, which cannot be taken out of the sums. Nobody
+  // States in the file that some of its runs are wrong. They cannot be taken out of the sums, so no session
   // continues such a file. why: one line. do_batch may call it, and must then throw.
   void distrust(const std::string& why);
 
   const SweepTally& tally() const { return plan_.tally; }
-  const TextAttributes& attributes() const { return plan_.attributes; }  // of the file, without the digest
+  const TextAttributes& attributes() const { return plan_.attributes; }  // the file's, without the digest
   std::uint64_t own_runs() const { return plan_.own_runs; }
   const std::string& digest() const { return digest_; }  // digest of the file, after run()
 

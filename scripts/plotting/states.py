@@ -1,4 +1,4 @@
-"""The states of the runs of a sweep. In an unfinished one a run whose checksum is wrong was not made."""
+"""The states of the runs of a sweep. A run of an unfinished sweep whose checksum is wrong counts as not made."""
 import numpy as np
 
 from plotting.figure_file import text
@@ -8,7 +8,7 @@ PENDING, DONE = 1, 2
 
 
 def checksums(file, state):
-    """Those that the runs should have: FNV-1a over number, state, values and notes, as in analysis/sweeps/sweep_file.cpp."""
+    """Returns the checksums that the runs should have: FNV-1a over number, state, values and notes, as in sweep_file.cpp."""
     runs = dataset(file, "/sweep/run")[()] if "/sweep/run" in file else np.arange(state.size)
     words = [runs, state, *(dataset(file, f"/sweep/{name}")[()].view(np.uint64) for name in text(file.attrs, "measures").split(","))]
     if "/sweep/notes" in file:
@@ -21,6 +21,7 @@ def checksums(file, state):
 
 
 def read_states(file):
+    """Returns the states of the runs in the file; PENDING for a run with a wrong checksum."""
     state = dataset(file, "/sweep/state")[()]
     if "/sweep/checksum" not in file:
         return state

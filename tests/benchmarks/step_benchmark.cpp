@@ -119,8 +119,8 @@ class SearchedStep {
   GatheredPoints list_;
 };
 
-// Steps as the renderer does: the list of points is kept while the proxy stays near, and narrowed while it
-// moves slowly.
+// Makes steps as the renderer does: the list of points is kept while the proxy stays near, and a narrower
+// list is used while it moves slowly.
 class KeptStep {
  public:
   KeptStep(std::shared_ptr<const NeighbourSearch> search, const Kernels& kernels)

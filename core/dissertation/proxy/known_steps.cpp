@@ -8,7 +8,7 @@ namespace remote_touch {
 
 namespace {
 
-// Longer cycles are rare. A power of two.
+// Binary logarithm of the number of entries. Cycles of more positions are rare.
 constexpr std::size_t kEntryBits = 8;
 
 std::array<std::uint64_t, 3> bits(const Vec3& v) {
@@ -16,7 +16,8 @@ std::array<std::uint64_t, 3> bits(const Vec3& v) {
           std::bit_cast<std::uint64_t>(v.z())};
 }
 
-// Odd constants without structure; the upper bits of the sum of products depend on all bits.
+// Returns the index of the entry of a position. The factors are odd and without structure, so the upper bits
+// of the sum depend on all bits of the position.
 std::size_t entry_of(const Vec3& v) {
   const auto [x, y, z] = bits(v);
   return (x * 0x9E3779B97F4A7C15u + y * 0xC2B2AE3D27D4EB4Fu + z * 0x165667B19E3779F9u) >> (64 - kEntryBits);

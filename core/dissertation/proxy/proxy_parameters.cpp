@@ -20,7 +20,7 @@ Parameters parameters(ProxyParameters& p) {
        kLive},
       {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damper k_d of the virtual coupling (4.16)"},
       {"steps_per_tick", &p.steps_per_tick, 1, 100000,
-       "maximum number of proxy steps in a haptic tick; recommended where time matters: 8 with gamma = 0.5, which rests within 20 um of the same position in 0.3 of the time of 30 with gamma = 0.3"},
+       "maximum number of proxy steps in a haptic tick; recommended where time matters: 8 with gamma = 0.5, with which the proxy rests within 20 um of the position of 30 with gamma = 0.3, in 0.3 of the time"},
       {"max_exit_steps", &p.max_exit_steps, 0, 1000,
        "maximum number of extra steps (5.11) when a tick would end inside a forbidden region; 0: as printed"},
       {"velocity_estimate", &p.velocity_estimate, 0, 1,

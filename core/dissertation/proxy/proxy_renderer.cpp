@@ -138,7 +138,7 @@ ContactQuery ProxyRenderer::query(const PointsView& points, const Vec3& p_W) con
   return kernels_.proxy.contact_query(points, p_W.data(), regions);
 }
 
-// Returns a step without its motion.
+// Returns the step that begins at the proxy, without its motion.
 KnownStep ProxyRenderer::state_at_proxy() {
   const LocalQuery& here = local_query();
   return {.proxy_W = proxy_W_,
@@ -149,7 +149,7 @@ KnownStep ProxyRenderer::state_at_proxy() {
 
 // Runs the proxy movement algorithm, 4.2.3, and returns the number of steps. It ends before its budget when a
 // step leaves the proxy where it is, bit for bit, because every further step would do the same. A step that
-// was made before from the same position is not computed again.
+// known_steps_ holds is not computed again.
 int ProxyRenderer::move(const Vec3& hip_W) {
   known_steps_.set_hip(hip_W);
   bool touched = false;
@@ -173,7 +173,8 @@ int ProxyRenderer::move(const Vec3& hip_W) {
 
     if (!known) {
       here.motion_m = next_step(local_query_, u);
-      // Without a normal of its own, and in creases, a step also depends on the steps before.
+      // A step from a position without a normal (4.1), or with the rule for creases, also depends on earlier
+      // steps.
       if (has_normal && p_.contact_motion != ContactMotion::creases) known_steps_.remember(here);
     }
     const Vec3& s = here.motion_m;

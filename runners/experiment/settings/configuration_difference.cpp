@@ -10,10 +10,10 @@ namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kMaxLength = 60;  // bytes of a value that are shown
+constexpr std::size_t kMaxLength = 60;  // maximum number of bytes that text_from() returns from `first` on
 
-// Returns the first character of a value, such as [, and the text from there on, shortened. Never cuts a
-// UTF-8 character.
+// Returns the text from the byte `first` on, shortened. The first byte of a value, such as [, and "..." stand
+// for what is before it. No UTF-8 character is cut.
 std::string text_from(const std::string& text, std::size_t first) {
   while (first > 0 && first < text.size() && (static_cast<unsigned char>(text[first]) & 0xC0) == 0x80)
     --first;
@@ -22,9 +22,9 @@ std::string text_from(const std::string& text, std::size_t first) {
          (rest.size() <= kMaxLength ? rest : first_part(rest, kMaxLength - 3));
 }
 
-// Returns "3 against 4". Long values are shortened in such a way that the part that differs is shown.
+// Returns "3 against 4". Long values are shortened such that the first place at which they differ is shown.
 std::string both_texts(const Json* a, const Json* b) {
-  constexpr std::size_t kBefore = 20;  // bytes that are shown before that part
+  constexpr std::size_t kBefore = 20;  // number of bytes that are shown before that place
   const std::string first = a ? a->dump() : "absent", second = b ? b->dump() : "absent";
   const auto equal = static_cast<std::size_t>(
       std::mismatch(first.begin(), first.end(), second.begin(), second.end()).first - first.begin());

@@ -238,10 +238,11 @@ struct InspectRequest {
 int command_inspect(const CommandLine& line, const InspectRequest& request);
 // Prints how far the shards of a sweep in a folder are.
 int inspect_folder(const std::string& folder);
-// Prints the runs and the measures of a tally, and what each of its arrays is. content: that of the file.
+// Prints the runs and the measures of a tally, and the extent, unit, meaning and values of each of its
+// arrays. content: the content of the file.
 void print_tally(const std::string& file, const Hdf5Content& content);
-// Ends the line with the range and the mean of numbers, the counts of names, the number of texts that are not
-// empty and the first of them, or the last of hashes.
+// Prints the values of a column and ends the line: the range and the mean of numbers, the counts of names,
+// the number of texts that are not empty and the first of them, or the last of hashes.
 void print_values(const Column& column);
 
 }  // namespace remote_touch

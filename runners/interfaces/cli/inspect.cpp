@@ -172,7 +172,7 @@ std::vector<std::string> translated_names_in(const Hdf5Content& content) {
   return names;
 }
 
-// Prints one line for a sweep in progress some of whose runs are as good as not made.
+// Prints one line for a sweep in progress that has runs with a wrong checksum.
 void print_damaged_runs(const std::string& file, const Hdf5Content& content) {
   const auto is_checksum = [](const auto& dataset) { return dataset.first == "/sweep/checksum"; };
   if (std::none_of(content.datasets.begin(), content.datasets.end(), is_checksum)) return;
@@ -226,7 +226,7 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
   if (const std::string distrust = distrust_of(content.attributes); !distrust.empty())
     std::printf("  note         %s\n", printable(distrust).c_str());
   if (is_tally(content.attributes)) {
-    TextAttributes others = content.attributes;  // without those that print_tally() prints
+    TextAttributes others = content.attributes;  // all but those that print_tally() prints
     std::erase_if(others, [](const auto& each) { return each.first.starts_with("measure_"); });
     print_attributes(file, others);
     print_tally(file, content);

@@ -74,7 +74,8 @@ bool is_list(const std::string& name, const SweepTally& tally) {
          ends_with_one_of(name, {"/part", "/held_runs", "/note_kind", "/bucket_offset", "/run", "/cell"});
 }
 
-// "3 x 4" for a value of each cell, "27 x 3 x 4" for 27 of them; only the length of a list.
+// Returns "3 x 4" for an array with one value for each cell, "27 x 3 x 4" for one with 27 values for each
+// cell, and the length of a list.
 std::string extent_of(const std::string& name, const Column& column, const SweepTally& tally,
                       const std::string& cells) {
   const std::size_t size = column.length() * static_cast<std::size_t>(column.width);

@@ -91,7 +91,7 @@ void print_other_build(const TextAttributes& attributes) {
                   printable(theirs).c_str(), printable(ours).c_str());
 }
 
-// " (all runs of 1 of 3 cells)" for a tally, which does not have single runs; else empty.
+// Returns " (all runs of 1 of 3 cells)" for a tally, which does not keep single runs; else empty.
 std::string extent_of(const Recheck& check) {
   if (check.cells_in == 0) return "";
   return " (all runs of " + std::to_string(check.cells) + " of " + std::to_string(check.cells_in) + " cells)";

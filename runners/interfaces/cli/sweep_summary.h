@@ -23,10 +23,11 @@ int print_summary(const std::string& file, const SweepTally& tally, const std::s
 
 // Returns the sum of the tallies of all cells.
 CellTally over_all_cells(const SweepTally& tally);
-// "mean 0.25 0 .. 1 1, median 0, of 4 of 5 runs"
+// Returns, for example, "mean 0.25 0 .. 1 1, median 0, of 4 of 5 runs": mean, range, unit, median, and how
+// many runs have a finite value.
 std::string measure_text(const MeasureTally& all, const std::string& units);
 
-// The same of a sweep whose runs come in blocks.
+// The summary of a sweep whose runs come in blocks; prints what print_summary() prints.
 class SweepSummary {
  public:
   explicit SweepSummary(const SweepResult& outline);

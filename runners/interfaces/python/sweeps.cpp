@@ -106,7 +106,7 @@ SweepResult result_of(const py::tuple& parts) {
   return result;
 }
 
-// warning: set to one line if some runs are wrong or left out.
+// warning: set to one line if some runs are known to be wrong or are left out.
 Figure answer_of(const std::string& file, const SweepQuestion& question, std::string& warning) {
   const FileTurn turn;
   const Hdf5Reader reader(file);

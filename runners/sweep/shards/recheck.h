@@ -26,9 +26,9 @@ struct RecheckOptions {
 };
 struct Recheck {
   std::size_t made = 0;                 // number of runs that were made again
-  std::size_t cells = 0, cells_in = 0;  // of a tally: number of its cells that were made again, and of all
-  // Each run that differs, "run 99: max_force = 1.5, now 1.25"; of a tally each cell, "cell 3: mean of
-  // max_force = 1.5, now 1.25".
+  std::size_t cells = 0, cells_in = 0;  // number of cells of a tally that were made again; of all its cells
+  // A text for each run that differs, with the first difference, such as "run 99: max_force = 1.5, now 1.25".
+  // For a tally a text for each cell that differs, such as "cell 3: mean of max_force = 1.5, now 1.25".
   std::vector<std::string> different = {};
 };
 
@@ -37,7 +37,7 @@ struct Recheck {
 // configuration of the file. Throws Interrupted, and std::bad_alloc.
 Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options);
 
-// The same of a tally, which does not have single runs: makes all runs of the cells with is_rechecked()
+// The same for a tally, which does not keep single runs. Makes all runs of the cells with is_rechecked()
 // again, or of the cell in the middle if there is no such cell, and compares the tally of each cell.
 Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOptions& options);
 

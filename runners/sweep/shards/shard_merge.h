@@ -21,12 +21,12 @@ struct MergeRequest {
   std::string output;
   Partial partial = Partial::no;
   bool force = false;  // an output that is no sweep may be replaced
-  // Called with a line about a shard some of whose runs are left out, see damage_text(); may be empty.
+  // Called with a line about each shard that has runs with a wrong checksum, see damage_text(). May be empty.
   std::function<void(const std::string& line)> note = {};
 };
 
-// Calls write(), which writes the merged file, and returns its result. If it throws InputError, adds to the
-// text that nothing was changed: a merge that fails leaves all files as they were.
+// Calls write(), which writes the merged file, and returns its result. If write() throws InputError, throws
+// InputError with the same text and "; nothing was changed". A merge that fails changes no file.
 template <class Write>
 std::string or_unchanged(const Write& write) {
   try {

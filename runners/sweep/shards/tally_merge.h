@@ -12,9 +12,9 @@ struct MergedTally {
   SweepTally tally;
   std::string digest;
 };
-// Writes the merged tally, as merge_shards() does. Refuses a shard with wrong runs, see require_trusted().
-// The memory is that of the whole tally and of one shard. An output that is there already is replaced if its
-// runs are all in the shards.
+// Writes the merged tally, as merge_shards() does. Throws InputError also for a shard some of whose runs are
+// known to be wrong, see require_trusted(). An output that exists is replaced if its runs are all in the
+// shards. The memory holds the whole tally and one shard.
 MergedTally merge_tallies(const MergeRequest& request);
 
 }  // namespace remote_touch

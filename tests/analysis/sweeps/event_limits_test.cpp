@@ -73,7 +73,7 @@ TEST(EventLimits, HaveTheIntervalOfTheWilsonCurves) {
   EXPECT_LT(numbers(table, "limit_low")[0], numbers(table, "limit")[0]);
 }
 
-// Of 100 runs with the event in 25 and 75 the intervals are off 0.5, in 45 and 55 they are not.
+// The intervals of 25 and 75 of 100 runs with the event are off 0.5, those of 45 and 55 are not.
 TEST(EventLimits, AreEnclosedByTheValuesThatDifferClearlyFromTheLevel) {
   const Table table =
       limits_of(sweep_of({1, 2, 4, 8}, {{0, 25, 75, 100}, {0, 45, 55, 100}, {40, 60, 80, 90}}));

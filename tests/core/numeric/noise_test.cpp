@@ -153,7 +153,7 @@ TEST(Noise, HasTheSameBitsForAnySubsetInAnyOrderOnEveryLevel) {
 // Every point whose normals match the request is found. Other points are found only if their words leave it
 // open.
 TEST(Noise, CandidatesAreFoundByTheirWords) {
-  // Rows whose last vector is partly empty, in a wider grid.
+  // The last vector of a row has lanes without a point, and the rows are parts of longer ones.
   constexpr std::size_t kColumns = 197, kRows = 203, kCount = kColumns * kRows;
   constexpr PointRectangle kPoints{.first = 12345, .stride = 211, .columns = kColumns, .rows = kRows};
   const NoiseStream stream = noise_stream({5, 2, 1}, NoiseUse::point_position, 3);
@@ -164,7 +164,7 @@ TEST(Noise, CandidatesAreFoundByTheirWords) {
   const Normals normals = draw(stream, every);
   for (const double x : {0.0, 0.5, -2.0, 3.5})
     for (const double z : {0.0, 1.0, -2.5}) {
-      // The bounds differ from column to column and from row to row: half of them are the others mirrored.
+      // The bounds differ from column to column and from row to row: every second one has the other sign.
       const auto sided = [](double bound, std::size_t i) { return i % 2 == 0 ? bound : -bound; };
       std::vector<std::uint64_t> x_bounds(kColumns + kLanes), z_bounds(kRows);
       for (std::size_t i = 0; i < kColumns; ++i) x_bounds[i] = word_bounds(std::abs(x), sided(x, i));

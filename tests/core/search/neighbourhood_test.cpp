@@ -38,7 +38,7 @@ TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
 }
 
 // The path has short and long steps, so that the list is narrow at some positions and not at others. A narrow
-// list has the same points within reach, and fewer others.
+// list has every point within the reach, and fewer points beyond it than the list of around().
 TEST(Neighbourhood, NarrowedListHoldsEveryRegionWithinReach) {
   const auto points = cloud_with_fixtures();
   const PointCloud& cloud = static_cast<const CloudSearch&>(*points).cloud();
@@ -63,8 +63,8 @@ TEST(Neighbourhood, NarrowedListHoldsEveryRegionWithinReach) {
   EXPECT_LT(static_cast<double>(narrowed_size), 0.95 * static_cast<double>(wide_size));
 }
 
-// The point is beyond the list of the cube that the proxy leaves at its corner, but within the reach of the
-// next position.
+// The proxy leaves a cube at its corner. One point is not in the list of that cube, but is within the reach
+// of the next position.
 TEST(Neighbourhood, NarrowedListOfACubeIsNotUsedInTheNext) {
   const double half_edge = kReach / 16, step = 0.00006;
   const Vec3 corner = Vec3::Constant(half_edge), out = Vec3::Ones().normalized();

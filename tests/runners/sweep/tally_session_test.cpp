@@ -97,12 +97,12 @@ TEST_F(TallySessions, AnswerTheQuestionsThatNeedNoSingleRuns) {
              "a tally counts only the events themselves");
 }
 
-// A run of which it is not known whether the event happened is told.
+// An answer states in how many runs it is unknown whether the event happened.
 TEST_F(TallySessions, AnswersTellHowManyRunsAreUnknown) {
   SweepResult runs = run_sweep(quick({"keep=runs"}), {});
   SweepTally tally = tally_in(made("t.h5", quick()));
   const std::string config = quick().to_json(),
-                    told = "popped_through is unknown in 1 of 60 runs, which count as";
+                    told = "popped_through is unknown in 1 of 60 runs; a run in which";
   SweepQuestion question;
   question.limit = "popped_through";
   EXPECT_EQ(sweep_answer(runs, config, question).caption.find("unknown"), std::string::npos);

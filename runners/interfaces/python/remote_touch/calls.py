@@ -107,7 +107,8 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
 def open(path):
     """Reads a result: a trace, a sweep or a tally as a Dataset; a figure or a scorecard as a dict of Datasets, its tables.
 
-    A folder of a scorecard stands for the file scorecard.h5 in it. Warns if some runs are known to be wrong or are left out.
+    A folder of a scorecard stands for the file scorecard.h5 in it. Warns if some runs are known to be wrong, or are left out because
+    their checksum is wrong.
     """
     from remote_touch import dataset
     file = _native(path)
@@ -119,7 +120,7 @@ def open(path):
 
 
 def _warned(result, file):
-    """The same, after a warning if some runs in the file are wrong or left out."""
+    """Returns the result, after a warning if some runs in the file are known to be wrong or are left out."""
     if result.get("warning"):
         import warnings
         warnings.warn(f"{os.fsdecode(file) or 'the data set'}: {result['warning']}", stacklevel=3)

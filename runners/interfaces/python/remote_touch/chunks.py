@@ -93,7 +93,7 @@ class Engine:
                 future.cancel()
 
     def _drop_unchecked(self):
-        """A tally adds the runs of a batch only after all checks of the batch have passed; a sweep keeps each run."""
+        """Forgets the runs of a batch of a tally whose checks have not all passed. A sweep that keeps its runs keeps them all."""
         if self.is_tally and self.unchecked and self.made_by:
             runs = np.concatenate([runs for of_worker in self.made_by.values() for runs in of_worker])
             self.forget(runs, "")
@@ -207,7 +207,7 @@ _OUTCOME = {"inputs": str, "states": np.ndarray, "values": np.ndarray, "notes": 
 
 
 def _is_whole(made, count):
-    """Whether an executor returned what do_runs() does for so many runs, as far as it can be seen without the sweep."""
+    """True if made has the form of what do_runs() returns for `count` runs, as far as it can be checked without the sweep."""
     if not isinstance(made, dict):
         return False
     form = _FORM if "problem" in made else _FORM | _OUTCOME

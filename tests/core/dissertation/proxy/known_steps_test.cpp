@@ -66,9 +66,10 @@ PointCloud noisy_plane(double sigma_m, unsigned seed, bool with_regions) {
   return cloud;
 }
 
-// Where a proxy is after each tick over frames with new noise, while the HIP rests below the surface for a
-// few ticks at a time. A change of settings makes the renderer forget its steps, so the second renderer,
-// which makes each tick of 30 in ticks of one step, computes every step.
+// Compares the positions of two proxies after each tick, over frames with new noise. The HIP rests below the
+// surface for some ticks at a time. The second proxy makes the 30 steps of a tick in 30 ticks of one step,
+// with a change of settings after each, which makes its renderer forget the known steps. So it computes every
+// step.
 struct Rest {
   int repeated = 0;  // ticks in a cycle of positions
   int different = 0;
@@ -83,7 +84,7 @@ Rest compare(ProxyParameters p, double sigma_m, bool with_regions) {
     const PointCloud cloud = noisy_plane(sigma_m, frame, with_regions);
     whole.on_frame(scenes::frame(cloud, static_cast<int>(frame)));
     single.on_frame(scenes::frame(cloud, static_cast<int>(frame)));
-    std::vector<Vec3> ends_W;  // of the ticks that did not settle
+    std::vector<Vec3> ends_W;  // positions at the ends of ticks that used all steps
     for (int tick = 0; tick < 30; ++tick) {
       // The HIP comes down in the first frame, and moves in the middle of each later one.
       const Vec3 hip_W(0, frame == 0 && tick < 10 ? 0.02 : -0.01 - 0.001 * (frame + (tick + 15) / 30),

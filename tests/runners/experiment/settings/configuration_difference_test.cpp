@@ -37,7 +37,7 @@ TEST(ConfigurationDifferences, DoNotCutACharacter) {
   EXPECT_EQ(found, (Texts{"path \"x" + umlauts.substr(0, 54) + "... against 1"}));
 }
 
-// Two long values that begin alike do not look alike.
+// Long values that differ only after their beginning are shown from shortly before the difference on.
 TEST(ConfigurationDifferences, ShowThePartThatDiffers) {
   const std::string folder(100, 'a');
   EXPECT_EQ(

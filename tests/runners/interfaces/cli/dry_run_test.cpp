@@ -52,7 +52,7 @@ TEST(DryRun, RefusesATallyThatTheSweepWouldRefuse) {
   EXPECT_HAS(refusal([&] { command_sweep(line, request); }), "has 1001000 cells: expected 1 to 1000000");
 }
 
-// With fewer runs than it would try, each is tried once.
+// Each run is tried once if there are fewer than it would try.
 TEST(DryRun, TriesEachOfFewRuns) {
   const TestFolder folder("dry_run");
   CommandLine line;

@@ -110,7 +110,7 @@ def test_a_sweep_goes_on_where_it_stopped(tmp_path):
     damaged = bytearray(file.read_bytes())
     damaged[offset] ^= 1
     file.write_bytes(damaged)
-    with pytest.warns(UserWarning, match="map.h5: 1 run has a wrong checksum, .*: left out; the command of the sweep makes it again"):
+    with pytest.warns(UserWarning, match="map.h5: 1 run has a wrong checksum, .*: it is left out, and the command of the sweep makes it"):
         assert int((rt.open(file).state == 2).sum()) == done - 1
     with pytest.warns(UserWarning, match="1 run has a wrong checksum"):
         rt.analyse(file, mean="max_force")
@@ -200,7 +200,7 @@ def test_no_axis_of_a_tally_has_the_name_of_a_variable(tmp_path):
 
 
 def test_an_axis_of_a_sweep_may_be_named_failed():
-    """Only a tally has a variable of that name."""
+    """Only the data set of a tally has a variable of that name."""
     axis = {"name": "failed", "parameters": ["trajectory.depth_m"], "values": [[0.01], [0.02]]}
     assert rt.sweep({**SWEEP, "axes": [axis], "measures": ["max_force"]}).failed.dims == ("failed",)
 

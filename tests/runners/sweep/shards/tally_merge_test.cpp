@@ -44,7 +44,7 @@ TEST_F(TallyMerges, TakeUnfinishedShardsOnlyAsAPart) {
   EXPECT_HAS(refusal([&] { merge_tallies({{two, two}, file("x.h5")}); }), "is shard 2/2, which is also in");
 }
 
-// The wrong runs are in its sums, and would be in those of the merged file.
+// Its sums contain the wrong runs, which would enter the sums of the merged file.
 TEST_F(TallyMerges, RefuseAShardWithWrongRuns) {
   const std::string one = made("1.h5", quick(), {1, 2}), two = made("2.h5", quick(), {2, 2}),
                     whole = file("w.h5");
