@@ -40,6 +40,9 @@ class ContactList final : public NearContactSource {
   // whose field value is above look_ahead_m plus the radius of the largest disk, or beyond the reach of the
   // field. Only for ContactRule::continuous. Valid until the next call.
   const NearPoints& points_within(const ToolPose& pose, double reach_m);
+  // Does the same with reach_m = way.far, but leaves out some of the points that are certain to keep
+  // way.touch during the motion.
+  const NearPoints& points_on_way(const ToolPose& pose, SlabWay way);
 
   // Returns the contacts of all disks that are within within_m of the tool, or within NearDisks::kSearch_m if
   // that is more. Disks beyond look_ahead_m or beyond the reach of the field are left out. side: as for
@@ -53,6 +56,7 @@ class ContactList final : public NearContactSource {
   Touched touched(const ToolPose& pose);
 
  private:
+  double max_single_m() const;
   void append_contacts(double side);
   void gather_cells();
   void gather_deepest(double side);

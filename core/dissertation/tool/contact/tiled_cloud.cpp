@@ -127,7 +127,9 @@ void TiledCloud::clear() {
   for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_, &extent_m_}) column->clear();
   tile_spheres_.clear(), group_spheres_.clear();
   tiles_.clear(), blocks_.clear();
-  merged_.reset();
+  number_.clear();
+  for (auto* column : {&slab_nx_, &slab_ny_, &slab_nz_, &slab_half_m_}) column->clear();
+  merged_.reset(), packed_.reset();
   without_normal_ = 0;
 }
 
@@ -211,14 +213,18 @@ void TiledCloud::assign(const PointCloud& cloud, double merged_cube_m) {
   measure_spacing(cloud);
   extent_m_.assign(x_.size(), 0);
   finish();
-  if (merged_cube_m > 0) merge(merged_cube_m);
+  if (!(merged_cube_m > 0) || !is_dense()) return;
+  merge(merged_cube_m);
+  pack();
+}
+
+// False if merged_points() would merge nothing.
+bool TiledCloud::is_dense() const {
+  return std::any_of(spacing_m_.begin(), spacing_m_.end(),
+                     [](double spacing_m) { return spacing_m > 0 && spacing_m <= kMaxMergedSpacing_m; });
 }
 
 void TiledCloud::merge(double cube_m) {
-  const bool is_coarse = std::none_of(spacing_m_.begin(), spacing_m_.end(), [](double spacing_m) {
-    return spacing_m > 0 && spacing_m <= kMaxMergedSpacing_m;
-  });
-  if (is_coarse) return;  // merged_points() would merge nothing
   std::vector<CloudPoint> points;
   for (std::uint32_t i = 0; i < x_.size(); ++i)
     if (x_[i] != kFarAway) points.push_back({point(i), normal(i), spacing_m_[i]});

@@ -53,7 +53,7 @@ class TiledCloud {
  public:
   // Assigns the points of a cloud. A tile of an organised cloud is 8 x 8 pixels; a tile of any other cloud is
   // up to 64 points along a space-filling curve. Points that are not finite are left out. If merged_cube_m is
-  // above 0, a merged() cloud is made if it saves enough points. Allocates.
+  // above 0, a merged() cloud is made if it saves enough points, and a packed() one. Allocates.
   void assign(const PointCloud& cloud, double merged_cube_m = 0);
   // Assigns those tiles of another cloud that reach into a ball, in the same order and with their points
   // changed. Allocates, unless reserve() was called for at least as many points. If the cloud is an image,
@@ -77,6 +77,11 @@ class TiledCloud {
   // far-away one.
   SphereColumns tile_spheres() const { return tile_spheres_.columns(); }
   SphereColumns group_spheres() const { return group_spheres_.columns(); }
+  // Slabs of every group. pre: has_slabs().
+  SlabColumns slabs() const {
+    return {group_spheres(), slab_nx_.data(), slab_ny_.data(), slab_nz_.data(), slab_half_m_.data()};
+  }
+  bool has_slabs() const { return !slab_half_m_.empty(); }
 
   Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
   Vec3 normal(std::uint32_t i) const { return {nx_[i], ny_[i], nz_[i]}; }  // NaN: none
@@ -91,6 +96,11 @@ class TiledCloud {
   double max_extent_m() const { return max_extent_m_; }
   // Returns the cloud of fewer points that represent all, merged_points(); null if there is none.
   const TiledCloud* merged() const { return merged_.get(); }
+  // Returns a cloud of the same points in an order in which groups are smaller, with slabs, if the points are
+  // dense and assign() was asked to merge; else this cloud. number() is the index in this cloud of point i of
+  // that one.
+  const TiledCloud& packed() const { return packed_ ? *packed_ : *this; }
+  std::uint32_t number(std::uint32_t i) const { return number_.empty() ? i : number_[i]; }
   int count_without_normal() const { return without_normal_; }
 
  private:
@@ -106,7 +116,11 @@ class TiledCloud {
   void gather_tile_spheres();
   void gather_blocks();
   void measure_spacing(const PointCloud& cloud);
+  bool is_dense() const;
   void merge(double cube_m);
+  void pack();
+  void assign_packed(const TiledCloud& all, std::span<const std::uint32_t> points);
+  void gather_slabs();
   void assign_merged(std::span<const PointOrDisk> points);
 
   std::vector<TileBlock> blocks_;
@@ -122,7 +136,9 @@ class TiledCloud {
   };
   Spheres tile_spheres_, group_spheres_;
   double max_spacing_m_ = 0, max_extent_m_ = 0;
-  std::unique_ptr<TiledCloud> merged_;
+  std::unique_ptr<TiledCloud> merged_, packed_;
+  std::vector<std::uint32_t> number_;
+  std::vector<double> slab_nx_, slab_ny_, slab_nz_, slab_half_m_;
   int without_normal_ = 0;
 };
 

@@ -24,9 +24,9 @@ Touched TouchedPoints::query(const TouchFinder& finder, const Kernels& kernels, 
   const TouchLimits limits{reach_m, voxels_m, touch_m_, finder.max_slope(), groups.passed_m};
   TouchedSummary sum{};
   sum.cluster = clusters_.data(), sum.unclear = unclear_.data();
-  kernels.tool.touched_points(finder.cloud().columns(), groups.group, groups.count, disk_radius_ratio_,
-                              kClustersPer_m, posed_field(finder.tool(), pose), finder.voxels(), limits,
-                              groups.nearest_m, groups.is_new, sum);
+  kernels.tool.touched_points(finder.cloud().packed().columns(), groups.group, groups.count,
+                              disk_radius_ratio_, kClustersPer_m, posed_field(finder.tool(), pose),
+                              finder.voxels(), limits, groups.nearest_m, groups.is_new, sum);
   groups_.on_measured();
   Touched all;
   all.points = static_cast<int>(sum.point_count);
@@ -45,7 +45,7 @@ Touched TouchedPoints::query(const TouchFinder& finder, const Kernels& kernels, 
 void TouchedPoints::add_unclear(const TouchFinder& finder, const ToolPose& pose, const TouchLimits& limits,
                                 Touched& all) {
   const VoxelTool& tool = finder.tool();
-  const TiledCloud& cloud = finder.cloud();
+  const TiledCloud& cloud = finder.cloud().packed();
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
   for (std::size_t k = 0; k < unclear_count_; ++k) {
     const std::uint32_t i = unclear_[k];
