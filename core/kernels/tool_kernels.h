@@ -37,6 +37,8 @@ struct SlabColumns {
   const double* ny;
   const double* nz;
   const double* half;
+  const double* facing[3];  // mean of the normals of the points, apart from points without one
+  const double* deviation;  // largest length of the difference of a normal from it
 };
 
 // The range of the slope of a field in blocks of 2^shift cells along each side, and in `around` cells on each
@@ -97,9 +99,10 @@ struct SlabWay {
   double turned[3][3];
   double a_T[3];
   double shift, turn;
-  double slope;  // largest length of the field's gradient
-  double far;    // points with a larger distance before the motion do not matter
-  double touch;  // distance that points have to keep
+  double slope;       // largest length of the field's gradient
+  double far;         // points with a larger distance before the motion do not matter
+  double touch;       // distance that points have to keep
+  double ahead_W[3];  // points do not matter if their normals have a positive product with it; or zero
 };
 
 // When this constant is added to a number below 2^51, the number is rounded to a whole one, which is then in
@@ -175,13 +178,13 @@ struct ToolKernels {
   std::size_t (*slabs_in_field)(const SlabColumns&, const std::uint32_t* groups, std::size_t group_count,
                                 const PosedField&, const SlopeTable&, const SlabLimits&, std::uint32_t* found,
                                 double* nearest);
-  // Finds those of the slabs number[0..count) whose points can come nearer than way.touch during a motion, in
-  // order, and some others. A point counts if it is within way.far before the motion. Slabs with nearest >
-  // passed are skipped. Writes their indices in the list `number` into found, which has capacity for all.
-  // Returns how many there are.
-  std::size_t (*slabs_on_way)(const SlabColumns&, const std::uint32_t* number, std::size_t count,
-                              const PosedField&, const SlopeTable&, const SlabWay&, const double* nearest,
-                              double passed, std::uint32_t* found);
+  // Finds those of the slabs number[index[0..count)] whose points can come nearer than way.touch during a
+  // motion, in order, and some others; fewer others if it is cut in more parts. The points of slab number[i]
+  // are at least nearest[i] - change away before the motion. Writes their indices i into found, which has
+  // capacity for all, and may be `index`. Returns their number.
+  std::size_t (*slabs_on_way)(const SlabColumns&, const std::uint32_t* number, const std::uint32_t* index,
+                              std::size_t count, const PosedField&, const SlopeTable&, const SlabWay&,
+                              int parts, const double* nearest, double change, std::uint32_t* found);
   // Finds the points of the groups that lie in a cell whose value is min or more, in order. A NaN point is in
   // no cell. A point less than a cell below the grid counts as inside it. Writes their indices into found,
   // which has capacity for all. Returns their number.

@@ -54,15 +54,17 @@ inline GradientBox gradient_box(const PosedField& f, const SlopeTable& slopes, c
 }
 
 // Returns the extent of a slab along an axis; n: that coordinate of its normal.
+// The root of 1 - n^2 is smaller than the first terms of its series.
 inline Doubles extent_along(Doubles n, Doubles radius, Doubles half) {
-  const Doubles squared = 1 + 1e-12 - n * n;
-  return radius * root(squared < 0 ? Doubles{} : squared) + half * magnitude(n);
+  const Doubles squared = n * n;
+  return radius * (1 - squared * (0.5 + 0.125 * squared)) + half * magnitude(n);
 }
 
 // Returns a lower bound of the field over slabs whose centres are moved by up to +- path from p_T, where the
 // field is `distance`; minus infinity if the box of the gradient does not cover them.
-inline Doubles least_over(const PosedField& f, const SlopeTable& slopes, const Slabs& slabs,
-                          const Doubles3& p_T, Doubles distance, const Doubles3& path) {
+[[gnu::always_inline]] inline Doubles least_over(const PosedField& f, const SlopeTable& slopes,
+                                                 const Slabs& slabs, const Doubles3& p_T, Doubles distance,
+                                                 const Doubles3& path) {
   const GradientBox g = gradient_box(f, slopes, p_T);
   const Doubles3 &n = slabs.n_T, &middle = g.middle;
   const Doubles3 extent{extent_along(n.x, slabs.radius, slabs.half) + magnitude(path.x),
@@ -115,12 +117,10 @@ std::size_t slabs_in_field(const SlabColumns& slabs, const std::uint32_t* groups
 
 namespace {
 
-// Returns the lanes whose points are certain to keep way.touch during the whole motion, or to be beyond
-// way.far before it.
-Flags is_clear(const Slabs& slabs, const PosedField& f, const SlopeTable& slopes, const SlabWay& way) {
-  constexpr int kParts = 2;
-  const Doubles distance = sample(f, slabs.c_T).distance;
-  const Doubles before = least_over(f, slopes, slabs, slabs.c_T, distance, Doubles3{});
+// Returns the lanes whose points are certain to keep way.touch during the whole motion, which is cut in
+// `parts` equal parts. before: lower bounds of the distances before the motion.
+[[gnu::always_inline]] inline Flags is_clear(const Slabs& slabs, Doubles before, const PosedField& f,
+                                             const SlopeTable& slopes, const SlabWay& way, int parts) {
   const Doubles3 end_T = rotated(
       way.turned, slabs.c_T - Doubles3{broadcast(way.a_T[0]), broadcast(way.a_T[1]), broadcast(way.a_T[2])});
   const Doubles3 along_T = end_T - slabs.c_T;
@@ -130,31 +130,33 @@ Flags is_clear(const Slabs& slabs, const PosedField& f, const SlopeTable& slopes
   const Doubles bend =
       way.slope / 8 * way.turn * (way.turn * (norm(slabs.c_T) + slabs.radius + way.shift) + 2 * way.shift);
   const Doubles needed = way.touch + bend + kRounding_m;
-  Flags clear = (before > way.far) | (before - way.slope * (norm(along_T) + spread) > needed);
-  if (mask_of(clear) == (1u << kDoubles) - 1) return clear;
+  const Flags is_short = before - way.slope * (norm(along_T) + spread) > needed;
+  if (mask_of(is_short) == (1u << kDoubles) - 1) return is_short;
   Flags stays = ~Flags{};
   const Slabs wider{slabs.c_T, slabs.n_T, slabs.radius + spread, slabs.half + spread};
-  const Doubles3 path = broadcast(0.5 / kParts) * along_T;
-  for (int part = 0; part < kParts && is_any(stays); ++part) {
-    const Doubles3 middle = slabs.c_T + broadcast((part + 0.5) / kParts) * along_T;
+  const Doubles3 path = broadcast(0.5 / parts) * along_T;
+  for (int part = 0; part < parts && is_any(stays); ++part) {
+    const Doubles3 middle = slabs.c_T + broadcast((part + 0.5) / parts) * along_T;
     stays &= least_over(f, slopes, wider, middle, sample(f, middle).distance, path) > needed;
   }
-  return clear | stays;
+  return is_short | stays;
+}
+
+// Returns the lanes none of whose points with a normal faces way.ahead_W.
+inline Flags is_behind(const Doubles3& facing, Doubles deviation, const SlabWay& way) {
+  const Doubles3 ahead{broadcast(way.ahead_W[0]), broadcast(way.ahead_W[1]), broadcast(way.ahead_W[2])};
+  return dot(facing, ahead) - deviation * norm(ahead) > 0;
 }
 
 }  // namespace
 
-std::size_t slabs_on_way(const SlabColumns& slabs, const std::uint32_t* number, std::size_t count,
-                         const PosedField& f, const SlopeTable& slopes, const SlabWay& way,
-                         const double* nearest, double passed, std::uint32_t* found) {
+std::size_t slabs_on_way(const SlabColumns& slabs, const std::uint32_t* number, const std::uint32_t* index,
+                         std::size_t count, const PosedField& f, const SlopeTable& slopes, const SlabWay& way,
+                         int parts, const double* nearest, double change, std::uint32_t* found) {
   std::size_t n = 0;
-  for (std::size_t k = 0; k < count;) {
+  for (std::size_t k = 0; k < count; k += kDoubles) {
     std::uint32_t at[kDoubles];  // indices in the list
-    std::size_t lanes = 0;
-    for (; lanes < kDoubles && k < count; ++k)
-      if (!(nearest[k] > passed)) at[lanes++] = static_cast<std::uint32_t>(k);
-    if (lanes == 0) break;
-    for (std::size_t lane = lanes; lane < kDoubles; ++lane) at[lane] = at[0];
+    for (std::size_t lane = 0; lane < kDoubles; ++lane) at[lane] = index[k + lane < count ? k + lane : k];
     const auto of = [&](const double* column) {
       Doubles a;
       for (int lane = 0; lane < kDoubles; ++lane) a[lane] = column[number[at[lane]]];
@@ -164,8 +166,13 @@ std::size_t slabs_on_way(const SlabColumns& slabs, const std::uint32_t* number, 
     const Slabs here{placed(f, {of(s.x), of(s.y), of(s.z)}),
                      rotated(f.R_TW, {of(slabs.nx), of(slabs.ny), of(slabs.nz)}), of(s.radius),
                      of(slabs.half)};
-    const Flags is_slab = lane_numbers() < static_cast<long>(lanes);
-    n += put_numbers(is_slab & ~is_clear(here, f, slopes, way), at, found + n);
+    Doubles before;
+    for (int lane = 0; lane < kDoubles; ++lane) before[lane] = nearest[at[lane]];
+    Flags may = lane_numbers() < static_cast<long>(count - k);
+    may &=
+        ~is_behind({of(slabs.facing[0]), of(slabs.facing[1]), of(slabs.facing[2])}, of(slabs.deviation), way);
+    if (!is_any(may)) continue;
+    n += put_numbers(may & ~is_clear(here, before - change, f, slopes, way, parts), at, found + n);
   }
   return n;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/geometry/bounding_box.h"
 #include "tests/support/scenes.h"

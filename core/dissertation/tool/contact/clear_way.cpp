@@ -76,7 +76,7 @@ double ClearWay::fraction(const Motion& motion, const Vec3& p_T, double distance
 }
 
 SlabWay ClearWay::slab_way(const Motion& motion, double far_m) const {
-  SlabWay way{{}, {}, motion.shift_m, motion.turn_rad, max_slope_, far_m, kTouch_m};
+  SlabWay way{{}, {}, motion.shift_m, motion.turn_rad, max_slope_, far_m, kTouch_m, {}};
   for (int axis = 0; axis < 3; ++axis) {
     for (int k = 0; k < 3; ++k) way.turned[axis][k] = motion.turned(axis, k);
     way.a_T[axis] = motion.a_T[axis];

@@ -40,8 +40,8 @@ class ContactList final : public NearContactSource {
   // whose field value is above look_ahead_m plus the radius of the largest disk, or beyond the reach of the
   // field. Only for ContactRule::continuous. Valid until the next call.
   const NearPoints& points_within(const ToolPose& pose, double reach_m);
-  // Does the same with reach_m = way.far, but leaves out some of the points that are certain to keep
-  // way.touch during the motion.
+  // Does the same with reach_m = way.far, but leaves out some of the points that cannot stop the motion, as
+  // NearPoints does.
   const NearPoints& points_on_way(const ToolPose& pose, SlabWay way);
 
   // Returns the contacts of all disks that are within within_m of the tool, or within NearDisks::kSearch_m if

@@ -78,14 +78,18 @@ double ContinuousContacts::known_fraction(const Vector6& a_g) const {
   return motion_m > max_motion_m_ ? max_motion_m_ / motion_m : 1;
 }
 
-const NearPoints& ContinuousContacts::on_way(const ToolPose& pose, const ClearWay::Motion& motion) const {
-  return points_->points_on_way(pose, way_.slab_way(motion, way_.far_m(motion, reach_m_)));
+// ahead_W: direction away from which the normals of points can be left out; zero: all matter.
+const NearPoints& ContinuousContacts::on_way(const ToolPose& pose, const ClearWay::Motion& motion,
+                                             const Vec3& ahead_W) const {
+  SlabWay way = way_.slab_way(motion, way_.far_m(motion, reach_m_));
+  std::copy_n(ahead_W.data(), 3, way.ahead_W);
+  return points_->points_on_way(pose, way);
 }
 
 double ContinuousContacts::clear_fraction(const ToolPose& pose, const Vector6& a_g) {
   const ClearWay::Motion motion(pose, a_g);
   double clear = known_fraction(a_g);
-  const NearPoints& points = on_way(pose, motion);
+  const NearPoints& points = on_way(pose, motion, Vec3::Zero());
   const TiledCloud& cloud = points_->finder().cloud().packed();
   std::size_t first = points.size();
   const auto add = [&](std::size_t i) {
@@ -107,7 +111,7 @@ double ContinuousContacts::fraction_ahead(const ToolPose& pose, const Vector6& a
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
   const ClearWay::Motion motion(pose, a_g);
   double clear = known_fraction(a_g);
-  const NearPoints& points = on_way(pose, motion);
+  const NearPoints& points = on_way(pose, motion, side * a_g.head<3>());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 n_T = R_TW * points_->finder().cloud().packed().normal(points.number(i));
     if (!(side * n_T.dot(motion.a_T) < 0)) continue;

@@ -35,4 +35,17 @@ GroupSlab group_slab(std::span<const Vec3> points) {
   return slab;
 }
 
+NormalCone normal_cone(std::span<const Vec3> normals_W) {
+  constexpr double kSpare = 1e-9;  // more than the rounding of normals and their products
+  NormalCone cone{Vec3::Zero(), 0};
+  int count = 0;
+  for (const Vec3& n_W : normals_W)
+    if (n_W.allFinite()) cone.middle_W += n_W, ++count;
+  if (count == 0) return cone;
+  cone.middle_W /= count;
+  for (const Vec3& n_W : normals_W)
+    if (n_W.allFinite()) cone.deviation = std::max(cone.deviation, (n_W - cone.middle_W).norm() + kSpare);
+  return cone;
+}
+
 }  // namespace remote_touch

@@ -19,4 +19,11 @@ struct GroupSlab {
 // pre: there is a point, and all are finite.
 GroupSlab group_slab(std::span<const Vec3> points);
 
+// Every finite normal differs from the middle by no more than the deviation. Both are zero if there is none.
+struct NormalCone {
+  Vec3 middle_W;
+  double deviation;
+};
+NormalCone normal_cone(std::span<const Vec3> normals_W);
+
 }  // namespace remote_touch

@@ -23,9 +23,16 @@ void NearPoints::query(const TouchFinder& finder, const Kernels& kernels, const 
                        const SlabWay& way) {
   if (!finder.cloud().packed().has_slabs()) return query(finder, kernels, pose, way.far);
   const GroupsInReach all = groups_.within(finder, pose, way.far);
-  const std::size_t count = kernels.tool.slabs_on_way(finder.cloud().packed().slabs(), all.group, all.count,
-                                                      posed_field(finder.tool(), pose), finder.slopes(), way,
-                                                      all.nearest_m, all.passed_m, on_way_.index.data());
+  const PosedField field = posed_field(finder.tool(), pose);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < all.count; ++i) {
+    on_way_.index[count] = static_cast<std::uint32_t>(i);
+    count += all.nearest_m[i] > all.passed_m ? 0 : 1;
+  }
+  for (const int parts : {1, 2, 4})
+    count = kernels.tool.slabs_on_way(finder.cloud().packed().slabs(), all.group, on_way_.index.data(), count,
+                                      field, finder.slopes(), way, parts, all.nearest_m,
+                                      all.passed_m - way.far, on_way_.index.data());
   for (std::size_t i = 0; i < count; ++i) {
     on_way_.group[i] = all.group[on_way_.index[i]];
     on_way_.nearest_m[i] = all.nearest_m[on_way_.index[i]];

@@ -14,8 +14,8 @@ class NearPoints {
   // Finds the points of the finder's cloud whose field value is reach_m or less, in the order of the packed()
   // cloud's tiles. pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
-  // Does the same, but leaves out some of the points that are certain to keep way.touch during the motion.
-  // pre: way.far is reach_m.
+  // Does the same, but leaves out some of the points that are certain to keep way.touch during the motion,
+  // and some of those with a normal away from way.ahead_W. pre: way.far is reach_m.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, const SlabWay& way);
 
   std::size_t size() const { return count_; }

@@ -36,16 +36,18 @@ void TiledCloud::assign_packed(const TiledCloud& all, std::span<const std::uint3
 // Replaces the bounding spheres of the groups by slabs, whose spheres have the same centres and radii.
 void TiledCloud::gather_slabs() {
   group_spheres_.clear();
-  std::vector<Vec3> points;
+  std::vector<Vec3> points, normals;
   for (std::uint32_t first = 0; first < x_.size(); first += kLanes) {
-    points.clear();
+    points.clear(), normals.clear();
     for (std::uint32_t i = first; i < first + kLanes; ++i)
-      if (x_[i] != kFarAway) points.push_back(point(i));
+      if (x_[i] != kFarAway) points.push_back(point(i)), normals.push_back(normal(i));
     const GroupSlab slab =
         points.empty() ? GroupSlab{Vec3::Constant(kFarAway), Vec3::Zero(), 0, 0} : group_slab(points);
     group_spheres_.add({slab.centre_W, slab.radius_m});
-    slab_nx_.push_back(slab.n_W.x()), slab_ny_.push_back(slab.n_W.y()), slab_nz_.push_back(slab.n_W.z());
-    slab_half_m_.push_back(slab.half_m);
+    const NormalCone cone = normal_cone(normals);
+    const double values[] = {slab.n_W.x(),      slab.n_W.y(),      slab.n_W.z(),      slab.half_m,
+                             cone.middle_W.x(), cone.middle_W.y(), cone.middle_W.z(), cone.deviation};
+    for (std::size_t k = 0; k < slabs_.size(); ++k) slabs_[k].push_back(values[k]);
   }
 }
 

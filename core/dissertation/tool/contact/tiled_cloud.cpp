@@ -128,7 +128,7 @@ void TiledCloud::clear() {
   tile_spheres_.clear(), group_spheres_.clear();
   tiles_.clear(), blocks_.clear();
   number_.clear();
-  for (auto* column : {&slab_nx_, &slab_ny_, &slab_nz_, &slab_half_m_}) column->clear();
+  for (auto& column : slabs_) column.clear();
   merged_.reset(), packed_.reset();
   without_normal_ = 0;
 }

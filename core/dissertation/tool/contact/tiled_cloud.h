@@ -3,6 +3,7 @@
 // far from the tool.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -79,9 +80,12 @@ class TiledCloud {
   SphereColumns group_spheres() const { return group_spheres_.columns(); }
   // Slabs of every group. pre: has_slabs().
   SlabColumns slabs() const {
-    return {group_spheres(), slab_nx_.data(), slab_ny_.data(), slab_nz_.data(), slab_half_m_.data()};
+    const auto& s = slabs_;
+    return {group_spheres(), s[0].data(), s[1].data(),
+            s[2].data(),     s[3].data(), {s[4].data(), s[5].data(), s[6].data()},
+            s[7].data()};
   }
-  bool has_slabs() const { return !slab_half_m_.empty(); }
+  bool has_slabs() const { return !slabs_[0].empty(); }
 
   Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
   Vec3 normal(std::uint32_t i) const { return {nx_[i], ny_[i], nz_[i]}; }  // NaN: none
@@ -138,7 +142,7 @@ class TiledCloud {
   double max_spacing_m_ = 0, max_extent_m_ = 0;
   std::unique_ptr<TiledCloud> merged_, packed_;
   std::vector<std::uint32_t> number_;
-  std::vector<double> slab_nx_, slab_ny_, slab_nz_, slab_half_m_;
+  std::array<std::vector<double>, 8> slabs_;  // normal, half thickness, facing, deviation
   int without_normal_ = 0;
 };
 

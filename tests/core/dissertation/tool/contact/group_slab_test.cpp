@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -46,6 +48,19 @@ TEST(GroupSlab, PointsOnALineHaveABall) {
     EXPECT_TRUE(slab.n_W.isZero(0));
     EXPECT_EQ(slab.half_m, 0);
     expect_holds(slab, points);
+  }
+}
+
+TEST(NormalCone, HoldsTheFiniteNormals) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Vec3> normals{Vec3::UnitX(), Vec3::Constant(nan), Vec3(1, 1, 0).normalized(),
+                                  Vec3::UnitX()};
+  const NormalCone cone = normal_cone(normals);
+  for (const std::size_t i : {0u, 2u, 3u}) EXPECT_LE((normals[i] - cone.middle_W).norm(), cone.deviation);
+  EXPECT_LT(cone.deviation, 0.6);
+  for (const auto& none : {std::vector<Vec3>{}, {Vec3::Constant(nan)}}) {
+    EXPECT_TRUE(normal_cone(none).middle_W.isZero(0));
+    EXPECT_EQ(normal_cone(none).deviation, 0);
   }
 }
 

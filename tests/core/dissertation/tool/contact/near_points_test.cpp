@@ -192,15 +192,20 @@ TEST(NearPoints, OnAWayAreAllThatCanStopTheTool) {
       std::size_t stopping = 0, found = 0, all = 0;
       for (int i = 0; i < 60; ++i) {
         const ToolPose& pose = walk.step(i);
-        const ClearWay::Motion motion(pose, walk.motion(i % 3 == 0 ? 0.1 : 1));
+        const Vector6 a_g = walk.motion(i % 3 == 0 ? 0.1 : 1);
+        const ClearWay::Motion motion(pose, a_g);
         const double far_m = way.far_m(motion, 0.03);
-        query.points.query(query.finder, *kernels, pose, way.slab_way(motion, far_m));
+        SlabWay slab_way = way.slab_way(motion, far_m);
+        const Vec3 ahead_W = i % 2 == 0 ? Vec3(Vec3::Zero()) : Vec3(a_g.head<3>());
+        std::copy_n(ahead_W.data(), 3, slab_way.ahead_W);
+        query.points.query(query.finder, *kernels, pose, slab_way);
         const std::vector<Place> places = found_places(query.points);
         std::size_t next = 0;
         for (const Place& place : plain_places(query.finder.cloud().packed(), pose, far_m)) {
           const bool is_found = next < places.size() && places[next] == place;
           if (is_found) ++next;
-          const bool stops = way.fraction(motion, place.p_T, place.distance_m) < 1;
+          const bool is_behind = query.finder.cloud().packed().normal(place.number).dot(ahead_W) > 0;
+          const bool stops = !is_behind && way.fraction(motion, place.p_T, place.distance_m) < 1;
           ASSERT_TRUE(is_found || !stops) << kernels->isa << " " << i << " " << place.number;
           stopping += stops ? 1 : 0, ++all;
         }
