@@ -117,9 +117,8 @@ NearContacts ContactList::near(const ToolPose& pose, double side, double within_
   return found;
 }
 
-const NearPoints& ContactList::points_within(const ToolPose& pose, double reach_m) {
-  points_.query(finder_, kernels_, pose, std::min(reach_m, max_single_m()));
-  return points_;
+bool ContactList::has_point_below(const ToolPose& pose, double value_m) {
+  return points_.has_below(finder_, kernels_, pose, value_m, std::min(p_.look_ahead_m, max_single_m()));
 }
 
 const NearPoints& ContactList::points_on_way(const ToolPose& pose, SlabWay way) {

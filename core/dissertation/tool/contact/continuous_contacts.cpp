@@ -67,10 +67,7 @@ NearContacts ContinuousContacts::near(const ToolPose& pose, double side, double)
 }
 
 bool ContinuousContacts::has_points_inside(const ToolPose& pose) const {
-  const NearPoints& points = points_->points_within(pose, 0);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (points.distance_m(i) < -ClearWay::kInside_m) return true;
-  return false;
+  return points_->has_point_below(pose, -ClearWay::kInside_m);
 }
 
 double ContinuousContacts::known_fraction(const Vector6& a_g) const {

@@ -35,6 +35,7 @@ void KeptGroups::drop_far_groups() {
 
 GroupsInReach KeptGroups::within(const TouchFinder& finder, const ToolPose& pose, double reach_m) {
   if (!(searched_m_ - max_change_m(finder, searched_at_, pose) > reach_m)) search(finder, pose, reach_m);
+  is_new_ = is_new_ && pose == searched_at_;  // nearest_m_ belongs to that pose
   return {groups_.data(), count_, nearest_m_.data(), is_new_,
           remote_touch::passed_m(reach_m, max_change_m(finder, searched_at_, pose))};
 }

@@ -34,7 +34,7 @@ class KeptGroups {
   // Returns groups that contain all points whose field value is reach_m or less, in order. Valid until the
   // next call. pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
   GroupsInReach within(const TouchFinder& finder, const ToolPose& pose, double reach_m);
-  void on_measured();  // call it after the kernel
+  void on_measured();  // call it after the kernel, if it measured all groups
 
  private:
   void search(const TouchFinder& finder, const ToolPose& pose, double reach_m);
@@ -45,7 +45,7 @@ class KeptGroups {
   std::size_t count_ = 0;
   ToolPose searched_at_;
   double searched_m_ = -1;
-  bool is_new_ = false;  // the groups were not measured since the search
+  bool is_new_ = false;  // not all groups were measured since the search
 };
 
 }  // namespace remote_touch

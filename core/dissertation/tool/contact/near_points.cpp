@@ -1,5 +1,6 @@
 #include "core/dissertation/tool/contact/near_points.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/dissertation/tool/contact/posed_field.h"
@@ -42,6 +43,23 @@ void NearPoints::query(const TouchFinder& finder, const Kernels& kernels, const 
   for (std::size_t i = 0; all.is_new && i < count; ++i)
     all.nearest_m[on_way_.index[i]] = on_way_.nearest_m[i];
   groups_.on_measured();
+}
+
+// Measures the points in portions, because the first portion of a surface in the tool mostly has one.
+bool NearPoints::has_below(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
+                           double value_m, double search_m) {
+  constexpr std::size_t kPortion = 64;
+  const GroupsInReach all = groups_.within(finder, pose, search_m);
+  const double passed_m = all.passed_m - search_m + value_m;
+  for (std::size_t first = 0; first < all.count; first += kPortion) {
+    measure(finder, kernels, pose, value_m,
+            {all.group + first, std::min(kPortion, all.count - first), all.nearest_m + first, all.is_new,
+             passed_m});
+    for (std::size_t i = 0; i < count_; ++i)
+      if (distance_m(i) < value_m) return true;
+  }
+  groups_.on_measured();
+  return false;
 }
 
 void NearPoints::measure(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,

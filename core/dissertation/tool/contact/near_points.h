@@ -18,6 +18,12 @@ class NearPoints {
   // and some of those with a normal away from way.ahead_W. pre: way.far is reach_m.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, const SlabWay& way);
 
+  // Returns true if the field value of a point is below value_m. The search covers points up to search_m, so
+  // that the next query does not need one. The points of the last query are lost. pre: value_m <= search_m,
+  // and as above.
+  bool has_below(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double value_m,
+                 double search_m);
+
   std::size_t size() const { return count_; }
   Vec3 p_T(std::size_t i) const { return {points_[kX][i], points_[kY][i], points_[kZ][i]}; }
   double distance_m(std::size_t i) const { return points_[kDistance][i]; }  // the field there

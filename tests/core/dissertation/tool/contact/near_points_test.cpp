@@ -217,6 +217,33 @@ TEST(NearPoints, OnAWayAreAllThatCanStopTheTool) {
     }
 }
 
+// Queries of other kinds at the same pose do not change the result.
+TEST(NearPoints, KnowsWhetherOneIsBelowAValue) {
+  for (const auto& [cloud, start_W] : dense_clouds())
+    for (const double cube_m : {0.0, kCube_m}) {
+      Query query(cloud, scenes::kernels(), cube_m);
+      Walk walk(start_W - Vec3(0, 2e-4, 0));
+      int yes = 0, no = 0;
+      for (int i = 0; i < 100; ++i) {
+        const ToolPose& pose = walk.step(i);
+        const std::vector<Place> inside = plain_places(query.finder.cloud().packed(), pose, 0);
+        for (const double value_m : {-2e-6, -1e-4, -6e-4, -4e-3}) {
+          const bool expected = std::any_of(inside.begin(), inside.end(),
+                                            [&](const Place& place) { return place.distance_m < value_m; });
+          ASSERT_EQ(query.points.has_below(query.finder, scenes::kernels(), pose, value_m, 1e-3), expected)
+              << i;
+          ++(expected ? yes : no);
+        }
+        std::size_t count = 0;
+        if (i % 2 == 0) {
+          ASSERT_TRUE(query.is_right(pose, i % 4 == 0 ? 2e-3 : 2e-4, count)) << i;
+        }
+      }
+      EXPECT_GT(yes, 20);
+      EXPECT_GT(no, 20);
+    }
+}
+
 TEST(NearPoints, OfAPackedCloudOutsideTheGridAreMeasuredToo) {
   const VoxelGrid& grid = kTool->grid;
   PointCloud cloud;
