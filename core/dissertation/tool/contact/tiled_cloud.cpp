@@ -85,17 +85,17 @@ void TiledCloud::finish_tile(std::uint32_t first) {
 // Copies a tile of another cloud without a change.
 void TiledCloud::copy_tile(const TiledCloud& all, const Tile& tile) {
   const auto first = static_cast<std::uint32_t>(x_.size());
-  const auto append = [](std::vector<double>& to, const std::vector<double>& from, std::size_t begin,
+  const auto append = [](LineVector<double>& to, const LineVector<double>& from, std::size_t begin,
                          std::size_t count) {
     const auto at = from.begin() + static_cast<std::ptrdiff_t>(begin);
     to.insert(to.end(), at, at + static_cast<std::ptrdiff_t>(count));
   };
-  constexpr std::vector<double> TiledCloud::*kColumns[] = {
+  constexpr LineVector<double> TiledCloud::*kColumns[] = {
       &TiledCloud::x_,  &TiledCloud::y_,  &TiledCloud::z_,        &TiledCloud::nx_,
       &TiledCloud::ny_, &TiledCloud::nz_, &TiledCloud::spacing_m_};
   for (const auto column : kColumns) append(this->*column, all.*column, tile.first, tile.padded_count);
-  constexpr std::vector<double> Spheres::*kParts[] = {&Spheres::x, &Spheres::y, &Spheres::z,
-                                                      &Spheres::radius_m};
+  constexpr LineVector<double> Spheres::*kParts[] = {&Spheres::x, &Spheres::y, &Spheres::z,
+                                                     &Spheres::radius_m};
   for (const auto part : kParts)
     append(group_spheres_.*part, all.group_spheres_.*part, tile.first / kLanes, tile.padded_count / kLanes);
   tiles_.push_back({tile.sphere, first, tile.padded_count});

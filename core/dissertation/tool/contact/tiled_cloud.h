@@ -12,6 +12,7 @@
 #include "core/dissertation/tool/contact/merged_points.h"
 #include "core/geometry/point_cloud.h"
 #include "core/kernels/tool_kernels.h"
+#include "core/numeric/whole_lines.h"
 
 namespace remote_touch {
 
@@ -129,10 +130,10 @@ class TiledCloud {
 
   std::vector<TileBlock> blocks_;
   std::vector<Tile> tiles_;
-  std::vector<double> x_, y_, z_, nx_, ny_, nz_;
-  std::vector<double> spacing_m_, extent_m_;
+  LineVector<double> x_, y_, z_, nx_, ny_, nz_;
+  LineVector<double> spacing_m_, extent_m_;
   struct Spheres {
-    std::vector<double> x, y, z, radius_m;
+    LineVector<double> x, y, z, radius_m;
 
     void clear() { x.clear(), y.clear(), z.clear(), radius_m.clear(); }
     void add(const BoundingSphere& sphere);
@@ -142,7 +143,7 @@ class TiledCloud {
   double max_spacing_m_ = 0, max_extent_m_ = 0;
   std::unique_ptr<TiledCloud> merged_, packed_;
   std::vector<std::uint32_t> number_;
-  std::array<std::vector<double>, 8> slabs_;  // normal, half thickness, facing, deviation
+  std::array<LineVector<double>, 8> slabs_;  // normal, half thickness, facing, deviation
   int without_normal_ = 0;
 };
 
