@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
@@ -12,6 +13,19 @@ namespace remote_touch {
 namespace {
 
 constexpr double kClustersPer_m = 100;  // touching points within a centimetre are counted as one cluster
+
+// Drops most repeated numbers, which would only make the sorting longer. Returns how many are left.
+std::size_t drop_repeated(std::uint64_t* numbers, std::size_t count) {
+  std::uint64_t seen[64];
+  std::fill(std::begin(seen), std::end(seen), ~std::uint64_t{0});  // no cell has this number
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t& last = seen[(numbers[i] * 0x9e3779b97f4a7c15u) >> 58];
+    if (last == numbers[i]) continue;
+    last = numbers[kept++] = numbers[i];
+  }
+  return kept;
+}
 
 }  // namespace
 
@@ -36,6 +50,7 @@ Touched TouchedPoints::query(const TouchFinder& finder, const Kernels& kernels, 
   if (all.points > 0) all.state = sum.is_inside ? ContactState::entrenched : ContactState::contact;
   cluster_count_ = sum.clusters, unclear_count_ = sum.unclear_count;
   add_unclear(finder, kernels, pose, limits, all);
+  cluster_count_ = drop_repeated(clusters_.data(), cluster_count_);
   std::sort(clusters_.data(), clusters_.data() + cluster_count_);
   all.clusters =
       static_cast<int>(std::unique(clusters_.data(), clusters_.data() + cluster_count_) - clusters_.data());
