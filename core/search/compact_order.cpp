@@ -1,7 +1,6 @@
 #include "core/search/compact_order.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/geometry/bounding_box.h"
 
@@ -18,27 +17,36 @@ std::size_t half(std::size_t count) {
   return 0;
 }
 
-void sort(std::span<const Vec3> points, std::span<std::uint32_t> order) {
-  const std::size_t first = half(order.size());
+struct Item {
+  Vec3 p;
+  std::uint32_t index;
+};
+
+void sort(std::span<Item> items) {
+  const std::size_t first = half(items.size());
   if (first == 0) return;
   BoundingBox box;
-  for (const std::uint32_t i : order) box.extend(points[i]);
+  for (const Item& item : items) box.extend(item.p);
   int axis = 0;
   box.sizes().maxCoeff(&axis);
   // Equal coordinates are ordered by index, so that the parts do not depend on the library.
-  const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
-    return points[a][axis] < points[b][axis] || (points[a][axis] == points[b][axis] && a < b);
+  const auto is_before = [axis](const Item& a, const Item& b) {
+    return a.p[axis] < b.p[axis] || (a.p[axis] == b.p[axis] && a.index < b.index);
   };
-  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(first), order.end(), is_before);
-  sort(points, order.first(first)), sort(points, order.subspan(first));
+  std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(first), items.end(), is_before);
+  sort(items.first(first)), sort(items.subspan(first));
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> compact_order(std::span<const Vec3> points) {
-  std::vector<std::uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0u);
-  sort(points, order);
+  std::vector<Item> items;
+  items.reserve(points.size());
+  for (const Vec3& p : points) items.push_back({p, static_cast<std::uint32_t>(items.size())});
+  sort(items);
+  std::vector<std::uint32_t> order;
+  order.reserve(items.size());
+  for (const Item& item : items) order.push_back(item.index);
   return order;
 }
 
