@@ -217,6 +217,26 @@ TEST(NearPoints, OnAWayAreAllThatCanStopTheTool) {
     }
 }
 
+// A motion onto a plane ends nearer to it than a point may be, but not in it.
+TEST(NearPoints, OnAWayAreThoseThatTheToolComesTooCloseTo) {
+  const ClearWay way(*kTool);
+  for (const Kernels* kernels : supported_kernels()) {
+    Query query(scenes::dense_plane(), *kernels, kCube_m);
+    for (const double height_m : {1e-4, 5e-4, 9e-4})
+      for (const double end_m : {0.5e-6, 1.5e-6}) {
+        const ToolPose pose{{0, 0.005 + height_m, 0}, Eigen::Quaterniond::Identity()};
+        Vector6 a_g = Vector6::Zero();
+        a_g[1] = end_m - height_m;
+        query.points.query(query.finder, *kernels, pose, way.slab_way({pose, a_g}, 1e-3));
+        const std::vector<Place> found = found_places(query.points);
+        const auto below = std::count_if(found.begin(), found.end(), [](const Place& place) {
+          return std::abs(place.p_T.x()) < 0.0121 && std::abs(place.p_T.z()) < 0.004;  // not near an edge
+        });
+        EXPECT_EQ(below, end_m < ClearWay::kTouch_m ? 81 * 27 : 0) << height_m << " " << kernels->isa;
+      }
+  }
+}
+
 // Queries of other kinds at the same pose do not change the result.
 TEST(NearPoints, KnowsWhetherOneIsBelowAValue) {
   for (const auto& [cloud, start_W] : dense_clouds())
