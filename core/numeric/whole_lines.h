@@ -11,7 +11,7 @@ inline constexpr std::size_t kLineBytes = 64;
 
 template <class T>
 struct WholeLines {
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the name that the standard library has
 
   WholeLines() = default;
   template <class Other>
