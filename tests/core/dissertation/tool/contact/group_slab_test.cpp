@@ -33,7 +33,8 @@ TEST(GroupSlab, HoldsItsPoints) {
 
 TEST(GroupSlab, IsThinOnASurface) {
   std::vector<Vec3> points;
-  for (int i = 0; i < 8; ++i) points.push_back(Vec3(i % 4, i / 4, 0.5 * (i % 4)) * 3e-4);
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 4; ++column) points.push_back(Vec3(column, row, 0.5 * column) * 3e-4);
   points[5].z() += 2e-6;
   const GroupSlab slab = group_slab(points);
   EXPECT_LT(slab.half_m, 4e-6);
