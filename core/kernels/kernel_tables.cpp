@@ -35,6 +35,8 @@ const ProxyKernels kProxyKernels = {
 };
 
 Kernel<&ToolKernels::near_spheres> near_spheres;
+Kernel<&ToolKernels::slabs_in_field> slabs_in_field;
+Kernel<&ToolKernels::slabs_on_way> slabs_on_way;
 Kernel<&ToolKernels::points_in_cells> points_in_cells;
 Kernel<&ToolKernels::disks_in_field> disks_in_field;
 Kernel<&ToolKernels::points_in_field> points_in_field;
@@ -43,6 +45,8 @@ Kernel<&ToolKernels::disk_contacts> disk_contacts;
 
 const ToolKernels kToolKernels = {
     .near_spheres = near_spheres,
+    .slabs_in_field = slabs_in_field,
+    .slabs_on_way = slabs_on_way,
     .points_in_cells = points_in_cells,
     .disks_in_field = disks_in_field,
     .points_in_field = points_in_field,

@@ -29,6 +29,26 @@ struct SphereColumns {
   const double* radius;
 };
 
+// Slabs around groups of points: all points are within radius of the centre, and within half of the plane
+// through it with this unit normal (zero: half is zero too). Lengths in m.
+struct SlabColumns {
+  SphereColumns sphere;
+  const double* nx;
+  const double* ny;
+  const double* nz;
+  const double* half;
+  const double* facing[3];  // mean of the normals of the points, apart from points without one
+  const double* deviation;  // largest length of the difference of a normal from it
+};
+
+// The range of the slope of a field in blocks of 2^shift cells along each side, and in `around` cells on each
+// side of them. Per block: the least and the largest change per cell along x, then y, then z, m.
+struct SlopeTable {
+  const float* range;
+  int blocks[3];
+  int shift, around;
+};
+
 // Interprets a table as distances: no position of a cell is nearer to the tool than (zero - value) * unit
 // cells. reach: distance to search, cells; per_m: cells per metre, for radii.
 struct NearnessCode {
@@ -65,6 +85,24 @@ struct PosedField {
   int cells[3];
   double origin_T[3];
   double size;
+};
+
+// Limits that select slabs, m.
+struct SlabLimits {
+  double reach;  // largest distance
+  double slope;  // largest length of the field's gradient at distances up to `trusted`
+  double trusted;
+};
+
+// The motion of ClearWay::Motion, as the motion of points in the tool frame from p to turned (p - a). m, rad.
+struct SlabWay {
+  double turned[3][3];
+  double a_T[3];
+  double shift, turn;
+  double slope;       // largest length of the field's gradient
+  double far;         // points with a larger distance before the motion do not matter
+  double touch;       // distance that points have to keep
+  double ahead_W[3];  // points do not matter if their normals have a positive product with it; or zero
 };
 
 // When this constant is added to a number below 2^51, the number is rounded to a whole one, which is then in
@@ -134,6 +172,19 @@ struct ToolKernels {
   std::size_t (*near_spheres)(const SphereColumns&, const std::uint32_t* groups, std::size_t group_count,
                               const CellTransform&, const CellTable&, const NearnessCode&,
                               std::uint32_t* found);
+  // Finds the slabs of the groups that contain positions within reach of the tool, in order, and some others.
+  // Writes their indices into found and lower bounds of the distances of their positions into nearest; both
+  // have capacity for all. Returns their number.
+  std::size_t (*slabs_in_field)(const SlabColumns&, const std::uint32_t* groups, std::size_t group_count,
+                                const PosedField&, const SlopeTable&, const SlabLimits&, std::uint32_t* found,
+                                double* nearest);
+  // Finds those of the slabs number[index[0..count)] whose points can come nearer than way.touch during a
+  // motion, in order, and some others; fewer others if it is cut in more parts. The points of slab number[i]
+  // are at least nearest[i] - change away before the motion. Writes their indices i into found, which has
+  // capacity for all, and may be `index`. Returns their number.
+  std::size_t (*slabs_on_way)(const SlabColumns&, const std::uint32_t* number, const std::uint32_t* index,
+                              std::size_t count, const PosedField&, const SlopeTable&, const SlabWay&,
+                              int parts, const double* nearest, double change, std::uint32_t* found);
   // Finds the points of the groups that lie in a cell whose value is min or more, in order. A NaN point is in
   // no cell. A point less than a cell below the grid counts as inside it. Writes their indices into found,
   // which has capacity for all. Returns their number.
@@ -151,15 +202,16 @@ struct ToolKernels {
                                 const DiskColumns&, std::size_t& outside_count);
   // Computes the points of the groups that are within the limits, in the order of the points, with the values
   // of sample_field(), bit for bit. A point outside the grid is included if the nearest position of the grid
-  // is within reach. nearest and is_new are as above, one for each group[i]. Returns the number of points;
-  // outside_count is the number of those outside the grid.
+  // is within reach. nearest: a lower bound of the distances of each group[i]; if it is more than
+  // limits.passed, the group is skipped. If is_new, the smallest distance of every other group is written
+  // there. Returns the number of points; outside_count is the number of those outside the grid.
   std::size_t (*points_in_field)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
                                  const PosedField&, const PointLimits&, double* nearest, bool is_new,
                                  const PositionColumns&, std::size_t& outside_count);
   // Finds the touched points of the groups. A point is touched if it lies in a voxel (1: shell, 2: interior),
   // or if the distance of its centre is at most limits.touch. A point is unclear if it lies outside the grid,
   // or if its disk, of radius fraction x spacing + extent, may be as near as limits.touch and only a search
-  // can show it. nearest and is_new are as above, one for each group[i].
+  // can show it. nearest and is_new are as for points_in_field().
   void (*touched_points)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
                          double fraction, double clusters_per_m, const PosedField&, const CellTable& voxels,
                          const TouchLimits&, double* nearest, bool is_new, TouchedSummary&);

@@ -11,7 +11,7 @@ std::size_t points_in_field(const PointColumns& points, const std::uint32_t* gro
   std::size_t found = 0;
   outside_count = 0;
   for (std::size_t g = 0; g < group_count; ++g) {
-    if (!is_new && nearest[g] > limits.passed) continue;
+    if (nearest[g] > limits.passed) continue;
     Doubles min = broadcast(1e300);
     const std::size_t first = kLanes * std::size_t{groups[g]};
     for (std::size_t i = first; i < first + kLanes; i += kDoubles) {

@@ -66,7 +66,7 @@ void touched_points(const PointColumns& points, const std::uint32_t* groups, std
   Doubles least_of_all = broadcast(kInfinite);
   Flags inside{};
   for (std::size_t g = 0; g < group_count; ++g) {
-    if (!is_new && nearest[g] > limits.passed) continue;
+    if (nearest[g] > limits.passed) continue;
     Doubles least_of_group = broadcast(kInfinite);
     for (std::size_t i = kLanes * std::size_t{groups[g]}; i < kLanes * (std::size_t{groups[g]} + 1);
          i += kDoubles) {

@@ -12,6 +12,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kShortest = 1e-5;  // parts of a path shorter than this fraction are not halved again
+constexpr double kSpare_m = 1e-9;   // more than the rounding of the field on a path
 
 // A cubic on [from, until] by its Bernstein coefficients.
 struct Cubic {
@@ -32,14 +33,14 @@ struct Cubic {
 };
 
 // Returns the first fraction at which a cubic can be below min_m, to within kShortest; 1 if it cannot on this
-// part.
-double first_below(const Cubic& cubic, double min_m, double from, double until) {
-  if (cubic.least() >= min_m) return 1;
+// part, or only beyond `limit`.
+double first_below(const Cubic& cubic, double min_m, double from, double until, double limit) {
+  if (from > limit || cubic.least() >= min_m) return 1;
   if (until - from <= kShortest) return from;
   Cubic first, second;
   cubic.halve(first, second);
-  const double middle = 0.5 * (from + until), found = first_below(first, min_m, from, middle);
-  return found < 1 ? found : first_below(second, min_m, middle, until);
+  const double middle = 0.5 * (from + until), found = first_below(first, min_m, from, middle, limit);
+  return found < 1 ? found : first_below(second, min_m, middle, until, limit);
 }
 
 }  // namespace
@@ -60,16 +61,27 @@ ClearWay::Motion::Motion(const ToolPose& from, const Vector6& a_g) {
 
 // The curve is rotation(-s alpha) (p - s a): its second derivative is no more than
 // |alpha|^2 |p - s a| + 2 |alpha| |a|.
-double ClearWay::fraction(const Motion& motion, const Vec3& p_T, double distance_m) const {
+double ClearWay::fraction(const Motion& motion, const Vec3& p_T, double distance_m, double limit) const {
   const Vec3 end_T = motion.turned * (p_T - motion.a_T), along_T = end_T - p_T;
   const double bent =
       motion.turn_rad * (motion.turn_rad * (p_T.norm() + motion.shift_m) + 2 * motion.shift_m);
   const double bend_m = 0.5 * max_slope_ * bent, size_m = tool_.grid.size_m;
-  const double spare_m = distance_m - kTouch_m - bend_m / 4;
-  if (max_slope_ * along_T.norm() < spare_m || distance_m < -kInside_m) return 1;
+  // A path that is clear up to `end` has no first part that begins at `limit` or before.
+  const double end = std::min(limit + 2 * kShortest, 1.0);
+  const double spare_m = distance_m - kTouch_m - bend_m / 4 - (end < 1 ? kSpare_m : 0);
+  if (max_slope_ * end * along_T.norm() < spare_m || distance_m < -kInside_m) return 1;
   Chord chord{(p_T - tool_.grid.origin_T) / size_m, along_T / size_m, bend_m, std::min(kTouch_m, distance_m)};
-  if (spare_m > 0 && slopes_.min_change_m(chord.from, chord.along) > -spare_m) return 1;
-  return first_below(chord);
+  if (spare_m > 0 && slopes_.min_change_m(chord.from, end * chord.along) > -spare_m) return 1;
+  return first_below(chord, limit);
+}
+
+SlabWay ClearWay::slab_way(const Motion& motion, double far_m) const {
+  SlabWay way{{}, {}, motion.shift_m, motion.turn_rad, max_slope_, far_m, kTouch_m, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < 3; ++k) way.turned[axis][k] = motion.turned(axis, k);
+    way.a_T[axis] = motion.a_T[axis];
+  }
+  return way;
 }
 
 namespace {
@@ -91,10 +103,10 @@ double next_plane(const Vec3& start, const Vec3& along, double from) {
 }  // namespace
 
 // Steps from cell to cell along the chord. Returns the fraction at which the field can first be too low; 1 if
-// it cannot.
-double ClearWay::first_below(const Chord& chord) const {
+// it cannot, or only beyond `limit`.
+double ClearWay::first_below(const Chord& chord, double limit) const {
   constexpr double kRounding_m = 1e-12;  // the field at the start is computed in two ways that differ by less
-  for (double from = 0; from < 1;) {
+  for (double from = 0; from < 1 && from <= limit;) {
     const double until = next_plane(chord.from, chord.along, from);
     const Vec3 middle = chord.from + 0.5 * (from + until) * chord.along;
     std::array<int, 3> cell;
@@ -110,7 +122,7 @@ double ClearWay::first_below(const Chord& chord) const {
       value[i] = field(start + s * chord.along) - chord.bend_m * s * (1 - s);
     }
     const double found =
-        remote_touch::first_below(Cubic::through(value), chord.min_m - kRounding_m, from, until);
+        remote_touch::first_below(Cubic::through(value), chord.min_m - kRounding_m, from, until, limit);
     if (found < 1) return found;
     from = until;
   }

@@ -10,6 +10,7 @@
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/slope_blocks.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/kernels/tool_kernels.h"
 
 namespace remote_touch {
 
@@ -39,8 +40,12 @@ class ClearWay {
     return kTouch_m + max_slope_ * (motion.shift_m + motion.turn_rad * (reach_m + motion.shift_m));
   }
   // Returns the fraction of a motion that the tool may make so that a point that is outside stays there; 1:
-  // all of it. p_T, distance_m: the point before the motion, and the field there.
-  double fraction(const Motion& motion, const Vec3& p_T, double distance_m) const;
+  // all of it. p_T, distance_m: the point before the motion, and the field there. A fraction above `limit` is
+  // not computed exactly: the result is then any number above `limit`, or 1.
+  double fraction(const Motion& motion, const Vec3& p_T, double distance_m, double limit = 1) const;
+  // Returns the motion for kernels: fraction() is 1 for every point that keeps their distance `touch`. Points
+  // farther than far_m before the motion do not matter.
+  SlabWay slab_way(const Motion& motion, double far_m) const;
 
  private:
   struct Chord {
@@ -48,7 +53,7 @@ class ClearWay {
     double bend_m;     // the field on the curve is at least that on the chord less bend_m s (1 - s)
     double min_m;      // lowest field value allowed
   };
-  double first_below(const Chord& chord) const;
+  double first_below(const Chord& chord, double limit) const;
 
   const VoxelTool& tool_;
   SlopeBlocks slopes_;

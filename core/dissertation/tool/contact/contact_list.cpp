@@ -117,10 +117,18 @@ NearContacts ContactList::near(const ToolPose& pose, double side, double within_
   return found;
 }
 
-const NearPoints& ContactList::points_within(const ToolPose& pose, double reach_m) {
-  const double max_m = std::min(p_.look_ahead_m + max_disk_m_, kMaxReach_m);
-  points_.query(finder_, kernels_, pose, std::min(reach_m, max_m));
+bool ContactList::has_point_below(const ToolPose& pose, double value_m) {
+  return points_.has_below(finder_, kernels_, pose, value_m, std::min(p_.look_ahead_m, max_single_m()));
+}
+
+const NearPoints& ContactList::points_on_way(const ToolPose& pose, SlabWay way) {
+  way.far = std::min(way.far, max_single_m());
+  points_.query(finder_, kernels_, pose, way);
   return points_;
+}
+
+double ContactList::max_single_m() const {
+  return std::min(p_.look_ahead_m + max_disk_m_, kMaxReach_m);
 }
 
 VoxelContacts ContactList::in_voxels(const ToolPose& pose) {

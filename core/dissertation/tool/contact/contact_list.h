@@ -36,10 +36,14 @@ class ContactList final : public NearContactSource {
   void reserve(std::size_t padded_size);                   // reserves memory for clouds of this size
   const TouchFinder& finder() const { return finder_; }
   const NearDisks& near_disks() const { return disks_; }  // disks of the last near()
-  // Returns every single point, none merged, with a field value of at most reach_m. No point is returned
-  // whose field value is above look_ahead_m plus the radius of the largest disk, or beyond the reach of the
-  // field. Only for ContactRule::continuous. Valid until the next call.
-  const NearPoints& points_within(const ToolPose& pose, double reach_m);
+  // Returns true if a single point, none merged, has a field value below value_m, which is 0 or less. Only
+  // for ContactRule::continuous.
+  bool has_point_below(const ToolPose& pose, double value_m);
+  // Returns every single point, none merged, with a field value of at most way.far, apart from some that
+  // cannot stop the motion, as NearPoints does. No point is returned whose field value is above look_ahead_m
+  // plus the radius of the largest disk, or beyond the reach of the field. Only for ContactRule::continuous.
+  // Valid until the next call.
+  const NearPoints& points_on_way(const ToolPose& pose, SlabWay way);
 
   // Returns the contacts of all disks that are within within_m of the tool, or within NearDisks::kSearch_m if
   // that is more. Disks beyond look_ahead_m or beyond the reach of the field are left out. side: as for
@@ -53,6 +57,7 @@ class ContactList final : public NearContactSource {
   Touched touched(const ToolPose& pose);
 
  private:
+  double max_single_m() const;
   void append_contacts(double side);
   void gather_cells();
   void gather_deepest(double side);

@@ -44,6 +44,7 @@ class ContinuousContacts final : public NearContactSource {
   void add_stop(const Vec3& p_W);
   void add_stops(const ToolPose& pose);
   double known_fraction(const Vector6& a_g) const;
+  const NearPoints& on_way(const ToolPose& pose, const ClearWay::Motion& motion, const Vec3& ahead_W) const;
 
   const VoxelTool& tool_;
   const double reach_m_;  // largest distance of a near point from the tool's centre of mass

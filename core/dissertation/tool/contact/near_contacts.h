@@ -29,7 +29,7 @@ class NearContactSource {
     return near(pose, side, std::numeric_limits<double>::infinity());
   }
   // Returns the fraction of a motion from this pose that the tool may make. A source that cannot check this
-  // returns 1. pre: pose is that of the last call of near().
+  // returns 1.
   virtual double clear_fraction(const ToolPose&, const Vector6&) { return 1; }
 };
 

@@ -85,17 +85,17 @@ void TiledCloud::finish_tile(std::uint32_t first) {
 // Copies a tile of another cloud without a change.
 void TiledCloud::copy_tile(const TiledCloud& all, const Tile& tile) {
   const auto first = static_cast<std::uint32_t>(x_.size());
-  const auto append = [](std::vector<double>& to, const std::vector<double>& from, std::size_t begin,
+  const auto append = [](LineVector<double>& to, const LineVector<double>& from, std::size_t begin,
                          std::size_t count) {
     const auto at = from.begin() + static_cast<std::ptrdiff_t>(begin);
     to.insert(to.end(), at, at + static_cast<std::ptrdiff_t>(count));
   };
-  constexpr std::vector<double> TiledCloud::*kColumns[] = {
+  constexpr LineVector<double> TiledCloud::*kColumns[] = {
       &TiledCloud::x_,  &TiledCloud::y_,  &TiledCloud::z_,        &TiledCloud::nx_,
       &TiledCloud::ny_, &TiledCloud::nz_, &TiledCloud::spacing_m_};
   for (const auto column : kColumns) append(this->*column, all.*column, tile.first, tile.padded_count);
-  constexpr std::vector<double> Spheres::*kParts[] = {&Spheres::x, &Spheres::y, &Spheres::z,
-                                                      &Spheres::radius_m};
+  constexpr LineVector<double> Spheres::*kParts[] = {&Spheres::x, &Spheres::y, &Spheres::z,
+                                                     &Spheres::radius_m};
   for (const auto part : kParts)
     append(group_spheres_.*part, all.group_spheres_.*part, tile.first / kLanes, tile.padded_count / kLanes);
   tiles_.push_back({tile.sphere, first, tile.padded_count});
@@ -127,7 +127,9 @@ void TiledCloud::clear() {
   for (auto* column : {&x_, &y_, &z_, &nx_, &ny_, &nz_, &spacing_m_, &extent_m_}) column->clear();
   tile_spheres_.clear(), group_spheres_.clear();
   tiles_.clear(), blocks_.clear();
-  merged_.reset();
+  number_.clear();
+  for (auto& column : slabs_) column.clear();
+  merged_.reset(), packed_.reset();
   without_normal_ = 0;
 }
 
@@ -211,14 +213,18 @@ void TiledCloud::assign(const PointCloud& cloud, double merged_cube_m) {
   measure_spacing(cloud);
   extent_m_.assign(x_.size(), 0);
   finish();
-  if (merged_cube_m > 0) merge(merged_cube_m);
+  if (!(merged_cube_m > 0) || !is_dense()) return;
+  merge(merged_cube_m);
+  pack();
+}
+
+// False if merged_points() would merge nothing.
+bool TiledCloud::is_dense() const {
+  return std::any_of(spacing_m_.begin(), spacing_m_.end(),
+                     [](double spacing_m) { return spacing_m > 0 && spacing_m <= kMaxMergedSpacing_m; });
 }
 
 void TiledCloud::merge(double cube_m) {
-  const bool is_coarse = std::none_of(spacing_m_.begin(), spacing_m_.end(), [](double spacing_m) {
-    return spacing_m > 0 && spacing_m <= kMaxMergedSpacing_m;
-  });
-  if (is_coarse) return;  // merged_points() would merge nothing
   std::vector<CloudPoint> points;
   for (std::uint32_t i = 0; i < x_.size(); ++i)
     if (x_[i] != kFarAway) points.push_back({point(i), normal(i), spacing_m_[i]});

@@ -3,6 +3,7 @@
 // far from the tool.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -11,6 +12,7 @@
 #include "core/dissertation/tool/contact/merged_points.h"
 #include "core/geometry/point_cloud.h"
 #include "core/kernels/tool_kernels.h"
+#include "core/numeric/whole_lines.h"
 
 namespace remote_touch {
 
@@ -53,7 +55,7 @@ class TiledCloud {
  public:
   // Assigns the points of a cloud. A tile of an organised cloud is 8 x 8 pixels; a tile of any other cloud is
   // up to 64 points along a space-filling curve. Points that are not finite are left out. If merged_cube_m is
-  // above 0, a merged() cloud is made if it saves enough points. Allocates.
+  // above 0, a merged() cloud is made if it saves enough points, and a packed() one. Allocates.
   void assign(const PointCloud& cloud, double merged_cube_m = 0);
   // Assigns those tiles of another cloud that reach into a ball, in the same order and with their points
   // changed. Allocates, unless reserve() was called for at least as many points. If the cloud is an image,
@@ -77,6 +79,14 @@ class TiledCloud {
   // far-away one.
   SphereColumns tile_spheres() const { return tile_spheres_.columns(); }
   SphereColumns group_spheres() const { return group_spheres_.columns(); }
+  // Slabs of every group. pre: has_slabs().
+  SlabColumns slabs() const {
+    const auto& s = slabs_;
+    return {group_spheres(), s[0].data(), s[1].data(),
+            s[2].data(),     s[3].data(), {s[4].data(), s[5].data(), s[6].data()},
+            s[7].data()};
+  }
+  bool has_slabs() const { return !slabs_[0].empty(); }
 
   Vec3 point(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
   Vec3 normal(std::uint32_t i) const { return {nx_[i], ny_[i], nz_[i]}; }  // NaN: none
@@ -91,6 +101,11 @@ class TiledCloud {
   double max_extent_m() const { return max_extent_m_; }
   // Returns the cloud of fewer points that represent all, merged_points(); null if there is none.
   const TiledCloud* merged() const { return merged_.get(); }
+  // Returns a cloud of the same points in an order in which groups are smaller, with slabs, if the points are
+  // dense and assign() was asked to merge; else this cloud. number() is the index in this cloud of point i of
+  // that one.
+  const TiledCloud& packed() const { return packed_ ? *packed_ : *this; }
+  std::uint32_t number(std::uint32_t i) const { return number_.empty() ? i : number_[i]; }
   int count_without_normal() const { return without_normal_; }
 
  private:
@@ -106,15 +121,19 @@ class TiledCloud {
   void gather_tile_spheres();
   void gather_blocks();
   void measure_spacing(const PointCloud& cloud);
+  bool is_dense() const;
   void merge(double cube_m);
+  void pack();
+  void assign_packed(const TiledCloud& all, std::span<const std::uint32_t> points);
+  void gather_slabs();
   void assign_merged(std::span<const PointOrDisk> points);
 
   std::vector<TileBlock> blocks_;
   std::vector<Tile> tiles_;
-  std::vector<double> x_, y_, z_, nx_, ny_, nz_;
-  std::vector<double> spacing_m_, extent_m_;
+  LineVector<double> x_, y_, z_, nx_, ny_, nz_;
+  LineVector<double> spacing_m_, extent_m_;
   struct Spheres {
-    std::vector<double> x, y, z, radius_m;
+    LineVector<double> x, y, z, radius_m;
 
     void clear() { x.clear(), y.clear(), z.clear(), radius_m.clear(); }
     void add(const BoundingSphere& sphere);
@@ -122,7 +141,9 @@ class TiledCloud {
   };
   Spheres tile_spheres_, group_spheres_;
   double max_spacing_m_ = 0, max_extent_m_ = 0;
-  std::unique_ptr<TiledCloud> merged_;
+  std::unique_ptr<TiledCloud> merged_, packed_;
+  std::vector<std::uint32_t> number_;
+  std::array<LineVector<double>, 8> slabs_;  // normal, half thickness, facing, deviation
   int without_normal_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/dissertation/tool/contact/posed_field.h"
 #include "core/dissertation/tool/shape/outer_field.h"
 
 namespace remote_touch {
@@ -75,6 +76,7 @@ TouchFinder::TouchFinder(std::shared_ptr<const VoxelTool> tool, const Kernels& k
       max_slope_(remote_touch::max_slope(tool_->grid, tool_->distance_m, kFieldMargin_m)),
       grid_reach_m_(farthest_corner_m(tool_->grid)),
       max_voxel_m_(remote_touch::max_voxel_m(*tool_)),
+      slopes_(tool_->grid, tool_->distance_m),
       nearness_(nearness_of_cells(*tool_)) {
   voxels_.reserve(tool_->voxels.size() + 3);
   for (const Voxel v : tool_->voxels) voxels_.push_back(static_cast<std::int8_t>(v));
@@ -111,8 +113,15 @@ CellTransform TouchFinder::to_cells(const ToolPose& pose) const {
   return to_cells;
 }
 
-std::span<const std::uint32_t> TouchFinder::groups_within(const TiledCloud& cloud, const ToolPose& pose,
-                                                          double distance_m) const {
+// The margin of two voxels is more than the error of the field far from the surface.
+NearnessCode TouchFinder::code_within(double distance_m) const {
+  const double size_m = tool_->grid.size_m;
+  return {kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / size_m, distance_m / size_m + 2,
+          1 / size_m};
+}
+
+std::span<const std::uint32_t> TouchFinder::tiles_within(const TiledCloud& cloud, const ToolPose& pose,
+                                                         double distance_m) const {
   const auto beyond = [&](const BoundingSphere& sphere) {
     const double reach = tool_->reach_m + distance_m + sphere.radius_m;
     return (sphere.centre_W - pose.p_W).squaredNorm() > reach * reach;
@@ -124,16 +133,27 @@ std::span<const std::uint32_t> TouchFinder::groups_within(const TiledCloud& clou
       rows_[rows++] = (block.first + tile) / static_cast<std::uint32_t>(kLanes);
   }
   if (rows == 0) return {};
-  // The search goes from rows to tiles and then to groups. The margin of two voxels is more than the error of
-  // the field far from the surface.
-  const double size_m = tool_->grid.size_m;
-  const NearnessCode code{kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / size_m,
-                          distance_m / size_m + 2, 1 / size_m};
-  const CellTransform transform = to_cells(pose);
-  const std::size_t tiles = kernels_.tool.near_spheres(cloud.tile_spheres(), rows_.data(), rows, transform,
-                                                       table(nearness_), code, tiles_.data());
-  const std::size_t groups = kernels_.tool.near_spheres(cloud.group_spheres(), tiles_.data(), tiles,
-                                                        transform, table(nearness_), code, groups_.data());
+  const std::size_t tiles =
+      kernels_.tool.near_spheres(cloud.tile_spheres(), rows_.data(), rows, to_cells(pose), table(nearness_),
+                                 code_within(distance_m), tiles_.data());
+  return {tiles_.data(), tiles};
+}
+
+std::span<const std::uint32_t> TouchFinder::groups_within(const TiledCloud& cloud, const ToolPose& pose,
+                                                          double distance_m) const {
+  const std::span<const std::uint32_t> tiles = tiles_within(cloud, pose, distance_m);
+  const std::size_t groups =
+      kernels_.tool.near_spheres(cloud.group_spheres(), tiles.data(), tiles.size(), to_cells(pose),
+                                 table(nearness_), code_within(distance_m), groups_.data());
+  return {groups_.data(), groups};
+}
+
+std::span<const std::uint32_t> TouchFinder::slabs_within(const TiledCloud& cloud, const ToolPose& pose,
+                                                         double distance_m, double* nearest_m) const {
+  const std::span<const std::uint32_t> tiles = tiles_within(cloud, pose, distance_m);
+  const std::size_t groups = kernels_.tool.slabs_in_field(
+      cloud.slabs(), tiles.data(), tiles.size(), posed_field(*tool_, pose), slopes(),
+      {distance_m, max_slope_, kFieldMargin_m}, groups_.data(), nearest_m);
   return {groups_.data(), groups};
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/dissertation/tool/contact/tiled_cloud.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/dissertation/tool/shape/slope_blocks.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/search/gathered_points.h"
@@ -47,9 +48,16 @@ class TouchFinder {
   std::span<const std::uint32_t> groups_within(const TiledCloud& cloud, const ToolPose& pose,
                                                double distance_m) const;
 
+  // Returns the same groups of a cloud that has slabs, but fewer of the others. Writes a lower bound of the
+  // field values of the points of each group into nearest_m, which has capacity for all groups.
+  std::span<const std::uint32_t> slabs_within(const TiledCloud& cloud, const ToolPose& pose,
+                                              double distance_m, double* nearest_m) const;
+
   Voxel voxel(const Vec3& p_T) const;
   // The voxels, for kernels.
   CellTable voxels() const { return table(voxels_); }
+  // The slope of the field around every position of the grid, for kernels.
+  SlopeTable slopes() const { return slopes_.table(); }
 
  private:
   CellTable table(const std::vector<std::int8_t>& values) const {
@@ -57,12 +65,16 @@ class TouchFinder {
     return {values.data(), {n[0], n[1], n[2]}};
   }
   CellTransform to_cells(const ToolPose& pose) const;
+  NearnessCode code_within(double distance_m) const;
+  std::span<const std::uint32_t> tiles_within(const TiledCloud& cloud, const ToolPose& pose,
+                                              double distance_m) const;
   std::span<const std::uint32_t> find(const TiledCloud& cloud, const ToolPose& pose, double distance_m,
                                       const std::vector<std::int8_t>& values, int min) const;
 
   std::shared_ptr<const VoxelTool> tool_;
   const Kernels& kernels_;
   const double max_slope_, grid_reach_m_, max_voxel_m_;
+  const SlopeBlocks slopes_;
   std::vector<std::int8_t> voxels_, nearness_;  // value of every cell, and three more readable bytes
   std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
   mutable Buffer<std::uint32_t> rows_, tiles_, groups_, found_;

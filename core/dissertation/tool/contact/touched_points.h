@@ -5,7 +5,9 @@
 #pragma once
 
 #include <limits>
+#include <span>
 
+#include "core/dissertation/tool/contact/column_block.h"
 #include "core/dissertation/tool/contact/kept_groups.h"
 #include "core/dissertation/tool/contact/touch_finder.h"
 #include "core/rendering/renderer.h"
@@ -25,7 +27,9 @@ class TouchedPoints {
 
   // Counts points in voxels. If with_disks is true, points whose disk touches the tool count too.
   TouchedPoints(double disk_radius_ratio, bool with_disks)
-      : disk_radius_ratio_(disk_radius_ratio), touch_m_(with_disks ? kTouch_m : kNever_m) {}
+      : disk_radius_ratio_(disk_radius_ratio), touch_m_(with_disks ? kTouch_m : kNever_m) {
+    points_.grow(kPortion), disks_.grow(kPortion + kLanes), contacts_.grow(kPortion);
+  }
 
   void on_frame() { groups_.on_frame(); }  // call it for each new cloud of the finder
   void reserve(std::size_t padded_size);   // reserves memory for clouds of this size
@@ -38,11 +42,23 @@ class TouchedPoints {
  private:
   static constexpr double kNever_m = -std::numeric_limits<double>::infinity();
 
-  void add_unclear(const TouchFinder& finder, const ToolPose& pose, const TouchLimits& limits, Touched& all);
+  void add_unclear(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
+                   const TouchLimits& limits, Touched& all);
+  void search_disks(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
+                    std::span<const std::uint32_t> numbers);
+  void add_single(std::uint32_t number, const TouchFinder& finder, const ToolPose& pose,
+                  const TouchLimits& limits, Touched& all);
+  void add_touched(const Vec3& p_T, ContactState state, Touched& all);
 
   const double disk_radius_ratio_, touch_m_;
   KeptGroups groups_;
   Buffer<std::uint32_t> unclear_;
+  // The disks of some unclear points, and the distances of their nearest positions; NaN: not known.
+  static constexpr std::size_t kPortion = 256;
+  ColumnBlock<8> points_;
+  ColumnBlock<16> disks_;
+  Buffer<ContactNumbers> contacts_;
+  Vec3 disk_p_T(std::size_t i) const { return {disks_[0][i], disks_[1][i], disks_[2][i]}; }
   Buffer<std::uint64_t> clusters_;
   std::size_t cluster_count_ = 0, unclear_count_ = 0;
 };

@@ -28,25 +28,28 @@ ContinuousMotion::ContinuousMotion(const ToolParameters& parameters, const Voxel
       frame_reach_m_(std::min(parameters.frame_reach_m, step_m_ * max_steps(parameters.detections_per_tick))),
       motion_(parameters, tool, tool.reach_m) {}
 
-bool ContinuousMotion::is_clear(const NearContacts& near, const ToolPose& pose) const {
-  return near.deepest_m <= ContinuousContacts::kGap_m && !near_.has_points_inside(pose);
+// Returns the contacts of a pose if no point is in the tool. Points are checked first, because that takes
+// less time than contacts if there is one.
+std::optional<NearContacts> ContinuousMotion::contacts_if_clear(const ToolPose& pose) {
+  if (near_.has_points_inside(pose)) return {};
+  const NearContacts near = near_.near(pose, 0);
+  return near.deepest_m <= ContinuousContacts::kGap_m ? std::optional(near) : std::nullopt;
 }
 
 // True if a surface is close on the side that held the tool, and no point is in the tool.
-bool ContinuousMotion::is_supported(const NearContacts& near, const ToolPose& pose) const {
+bool ContinuousMotion::is_supported(const ToolPose& pose) {
   const Vec3 push_T = pose.q_WT.conjugate() * push_W_;
-  return is_clear(near, pose) &&
-         std::any_of(near.contacts.begin(), near.contacts.end(),
-                     [&](const auto& contact) { return contact.n_T.dot(push_T) > 0.5; });
+  const std::optional<NearContacts> near = contacts_if_clear(pose);
+  return near && std::any_of(near->contacts.begin(), near->contacts.end(),
+                             [&](const auto& contact) { return contact.n_T.dot(push_T) > 0.5; });
 }
 
 // Moves the pose out to the first position that is supported. Returns the distance, or kNotFound_m if there
 // is none.
 double ContinuousMotion::leave(ToolPose& pose, int& detections) {
   for (double done_m = 0;;) {
-    const NearContacts near = near_.near(pose, 0);
     ++detections;
-    if (is_supported(near, pose)) return done_m;
+    if (is_supported(pose)) return done_m;
     const double step_m = std::min(step_m_, frame_reach_m_ - done_m);
     const Vector6 a_g = translation(step_m * push_W_);
     if (!(step_m > 0) || near_.fraction_ahead(pose, a_g, motion_.side()) < 1) return kNotFound_m;
@@ -62,7 +65,6 @@ double ContinuousMotion::approach(ToolPose& pose, double distance_m, int& detect
   while (done_m < distance_m) {
     const double step_m = std::min(step_m_, distance_m - done_m);
     const Vector6 a_g = translation(-step_m * push_W_);
-    near_.near(pose, 0);
     ++detections;
     const double clear = near_.clear_fraction(pose, a_g);
     pose = moved(pose, clear * a_g);
@@ -78,7 +80,7 @@ void ContinuousMotion::come_from_outside(ToolPose& pose, ToolMotionReport& repor
   if (out_m <= 0) return;
   // If no point is in the tool, the surface has left it. It may have moved away from the tool, so that
   // direction is checked as well.
-  if (is_clear(near_.near(pose, 0), pose)) {
+  if (contacts_if_clear(pose)) {
     ToolPose ahead = pose;
     if (approach(ahead, out_m, report.detections) < out_m) return;
   }

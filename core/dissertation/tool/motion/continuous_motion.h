@@ -12,6 +12,8 @@
 // certain that the tool passes no points in that tick. Not in the dissertation.
 #pragma once
 
+#include <optional>
+
 #include "core/dissertation/tool/contact/continuous_contacts.h"
 #include "core/dissertation/tool/motion/look_ahead_motion.h"
 
@@ -28,8 +30,8 @@ class ContinuousMotion final : public ToolMotion {
   double frame_reach_m() const { return frame_reach_m_; }
 
  private:
-  bool is_clear(const NearContacts& near, const ToolPose& pose) const;
-  bool is_supported(const NearContacts& near, const ToolPose& pose) const;
+  std::optional<NearContacts> contacts_if_clear(const ToolPose& pose);
+  bool is_supported(const ToolPose& pose);
   double leave(ToolPose& pose, int& detections);
   double approach(ToolPose& pose, double distance_m, int& detections);
   void come_from_outside(ToolPose& pose, ToolMotionReport& report);

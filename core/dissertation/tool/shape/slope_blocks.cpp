@@ -27,18 +27,20 @@ SlopeBlocks::Range SlopeBlocks::range_around(const VoxelGrid& grid, const std::v
     last[axis] = std::min(kSize * (block[axis] + 1) + kAround, cells_[axis]);
   }
   Range range;
-  std::fill_n(range.low, 3, std::numeric_limits<float>::max());
-  std::fill_n(range.high, 3, std::numeric_limits<float>::lowest());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    range[2 * axis] = std::numeric_limits<float>::max();
+    range[2 * axis + 1] = std::numeric_limits<float>::lowest();
+  }
   for (int k = first[2]; k <= last[2]; ++k)
     for (int j = first[1]; j <= last[1]; ++j)
       for (int i = first[0]; i <= last[0]; ++i) {
         const std::size_t node = i + row * j + layer * k;
         const int at[3] = {i, j, k};
-        for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
           if (at[axis] == last[axis]) continue;
           const float change = distance_m[node + next[axis]] - distance_m[node];
-          range.low[axis] = std::min(range.low[axis], change);
-          range.high[axis] = std::max(range.high[axis], change);
+          range[2 * axis] = std::min(range[2 * axis], change);
+          range[2 * axis + 1] = std::max(range[2 * axis + 1], change);
         }
       }
   return range;
@@ -55,8 +57,10 @@ double SlopeBlocks::min_change_m(const Vec3& at, const Vec3& along) const {
   }
   const Range& range = ranges_[block[0] + blocks_[0] * (block[1] + std::size_t(blocks_[1]) * block[2])];
   double change_m = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    change_m += std::min(along[axis] * range.low[axis], along[axis] * range.high[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double by = along[static_cast<int>(axis)];
+    change_m += std::min(by * range[2 * axis], by * range[2 * axis + 1]);
+  }
   return std::min(change_m, 0.0);
 }
 

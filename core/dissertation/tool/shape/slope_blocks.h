@@ -2,15 +2,17 @@
 // They show with one table access that a point which slides along a flat face of a tool stays outside.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/kernels/tool_kernels.h"
 
 namespace remote_touch {
 
 class SlopeBlocks {
  public:
-  static constexpr int kSize = 4;    // cells along a block
+  static constexpr int kShift = 2, kSize = 1 << kShift;  // cells along a block
   static constexpr int kAround = 2;  // cells on each side of a block that its range also covers
 
   SlopeBlocks(const VoxelGrid& grid, const std::vector<float>& distance_m);
@@ -19,11 +21,13 @@ class SlopeBlocks {
   // from `at` to `at + along` (both in cells from the grid's origin). Returns minus infinity if the path is
   // longer than kAround cells along an axis, or starts outside the grid.
   double min_change_m(const Vec3& at, const Vec3& along) const;
+  // The ranges, for kernels.
+  SlopeTable table() const {
+    return {ranges_.data()->data(), {blocks_[0], blocks_[1], blocks_[2]}, kShift, kAround};
+  }
 
  private:
-  struct Range {
-    float low[3], high[3];  // range of the change per cell along each axis, m
-  };
+  using Range = std::array<float, 6>;  // least and largest change per cell along x, y and z, m
   Range range_around(const VoxelGrid& grid, const std::vector<float>& distance_m,
                      const std::array<int, 3>& block) const;
 

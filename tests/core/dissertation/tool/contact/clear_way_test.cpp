@@ -63,6 +63,28 @@ TEST_F(OfABox, SlidesAlongAFaceAndLeavesIt) {
   EXPECT_EQ(fraction({0.002, -0.001, 0.005}, shift({1e-3, 0, -1e-6})), 1) << "from the surface itself";
 }
 
+// With a limit, a smaller fraction is the same, and a larger one is only known to be larger.
+TEST_F(OfABox, FractionsUpToALimitAreThoseWithoutOne) {
+  std::mt19937 random(29);
+  std::uniform_real_distribution<double> any(-1, 1);
+  int below = 0, above = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3 p_T = Vec3(0.016, 0.011, 0.006).cwiseProduct(Vec3(any(random), any(random), any(random)));
+    Vector6 a_g;
+    for (int k = 0; k < 6; ++k) a_g[k] = (k < 3 ? 1e-3 : 0.03) * any(random);
+    const ClearWay::Motion motion({}, a_g);
+    const double distance_m = field(tool_, p_T), exact = way_.fraction(motion, p_T, distance_m);
+    if (exact == 1) continue;
+    for (const double limit : {exact, 0.5 * (any(random) + 1), exact + 1e-6 * any(random)}) {
+      const double found = way_.fraction(motion, p_T, distance_m, limit);
+      EXPECT_TRUE(exact <= limit ? found == exact : found > limit) << found << " " << exact << " " << limit;
+      ++(exact <= limit ? below : above);
+    }
+  }
+  EXPECT_GT(below, 1000);
+  EXPECT_GT(above, 500);
+}
+
 // A turn alone: the face comes down on a point at a lever of 12 mm.
 TEST_F(OfABox, EndsWhereATurnTouches) {
   const double distance_m = 1e-4, lever_m = 0.012, turn_rad = 0.02;

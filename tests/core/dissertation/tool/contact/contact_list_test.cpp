@@ -194,7 +194,9 @@ TEST(ContactList, PointsWithinReachAreNeverMerged) {
   for (std::size_t i = 0; i < cloud.size(); ++i)
     expected += sample_field(*kTool, cloud.point(i) - pose.p_W).distance_m <= kReach_m ? 1 : 0;
   EXPECT_GT(expected, 600u);
-  EXPECT_EQ(list.points_within(pose, kReach_m).size(), expected);
+  SlabWay way{};
+  way.far = kReach_m, way.touch = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(list.points_on_way(pose, way).size(), expected);
 }
 
 TEST(ContactList, HasNoContactBeforeAFrame) {

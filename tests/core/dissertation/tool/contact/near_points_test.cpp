@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
 #include <vector>
 
+#include "core/dissertation/tool/contact/clear_way.h"
 #include "core/kernels/isa.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/formatted.h"
@@ -51,18 +55,19 @@ struct Query {
   NearPoints points;
   const Kernels& kernels;
 
-  Query(const PointCloud& cloud, const Kernels& kernels_) : finder(kTool, kernels_), kernels(kernels_) {
-    show(cloud);
+  Query(const PointCloud& cloud, const Kernels& kernels_, double merged_cube_m = 0)
+      : finder(kTool, kernels_), kernels(kernels_) {
+    show(cloud, merged_cube_m);
   }
-  void show(const PointCloud& cloud) {
-    finder.on_frame(formatted<TiledCloud>(cloud));
+  void show(const PointCloud& cloud, double merged_cube_m = 0) {
+    finder.on_frame(formatted<TiledCloud>(cloud, merged_cube_m));
     points.reserve(finder.cloud().padded_size());
     points.on_frame();
   }
   // True if the points are those found one by one, bit for bit. count: number of points found one by one.
   bool is_right(const ToolPose& pose, double reach_m, std::size_t& count) {
     points.query(finder, kernels, pose, reach_m);
-    const auto expected = plain_places(finder.cloud(), pose, reach_m);
+    const auto expected = plain_places(finder.cloud().packed(), pose, reach_m);
     count = expected.size();
     return found_places(points) == expected;
   }
@@ -114,6 +119,160 @@ TEST(NearPoints, PlacesALittleOutsideTheGridAreMeasuredToo) {
   const ToolPose at_home{Vec3::Zero(), Eigen::Quaterniond::Identity()};
   std::size_t count = 0;
   EXPECT_TRUE(query.is_right(at_home, kFieldMargin_m + 3 * grid.size_m, count));
+  EXPECT_EQ(count, cloud.size());
+}
+
+// --- packed clouds, whose groups have slabs ---
+
+constexpr double kCube_m = 0.002;
+
+PointCloud wavy_plane() {
+  PointCloud cloud;
+  for (int j = 0; j < 150; ++j)
+    for (int i = 0; i < 150; ++i) {
+      const double x = (i - 75) * 3e-4, z = (j - 75) * 3e-4;
+      cloud.append(Vec3(x, 5e-4 * std::sin(150 * x) * std::cos(90 * z), z), Vec3::UnitY());
+    }
+  return cloud;
+}
+
+// Clouds that are packed, and a position of the tool on each: a surface, and points all around the tool with
+// some at the same place.
+std::vector<std::pair<PointCloud, Vec3>> dense_clouds() {
+  PointCloud all_around = scenes::random_cloud(20000, 0.004, 31);
+  for (int i = 0; i < 30; ++i) all_around.append({0.001, -0.0005, 0});
+  return {{wavy_plane(), {0, 0.0055, 0}}, {all_around, {0.002, 0.006, -0.001}}};
+}
+
+class Walk {
+ public:
+  explicit Walk(const Vec3& start_W) : pose_{start_W, Eigen::Quaterniond::Identity()} {}
+  Vector6 motion(double size) {
+    Vector6 a_g;
+    for (int k = 0; k < 6; ++k) a_g[k] = (k < 3 ? 5e-4 : 0.02) * size * any_(random_);
+    return a_g;
+  }
+  // Mostly short steps, and a far one at times; it stays near the start.
+  const ToolPose& step(int i) {
+    pose_ = moved(pose_, motion(i % 9 == 8 ? 3 : 0.1));
+    pose_.p_W += 0.1 * (start_W_ - pose_.p_W);
+    return pose_;
+  }
+
+ private:
+  std::mt19937 random_{7};
+  std::uniform_real_distribution<double> any_{-1, 1};
+  ToolPose pose_;
+  const Vec3 start_W_ = pose_.p_W;
+};
+
+TEST(NearPoints, OfPackedCloudsAreThoseOfAPlainLoopAtEveryPose) {
+  for (const auto& [cloud, start_W] : dense_clouds())
+    for (const Kernels* kernels : supported_kernels()) {
+      Query query(cloud, *kernels, kCube_m);
+      ASSERT_TRUE(query.finder.cloud().packed().has_slabs());
+      Walk walk(start_W);
+      std::size_t count = 0, most = 0;
+      for (int i = 0; i < 60; ++i) {
+        const double reach_m = i % 4 == 3 ? 2e-3 : i % 4 == 2 ? 0 : 2e-4;
+        ASSERT_TRUE(query.is_right(walk.step(i), reach_m, count)) << kernels->isa << " " << i;
+        most = std::max(most, count);
+      }
+      EXPECT_GT(most, 500u);
+    }
+}
+
+// No point that the motion can bring into the tool is left out, and most others are.
+TEST(NearPoints, OnAWayAreAllThatCanStopTheTool) {
+  const ClearWay way(*kTool);
+  for (const auto& [cloud, start_W] : dense_clouds())
+    for (const Kernels* kernels : supported_kernels()) {
+      Query query(cloud, *kernels, kCube_m);
+      Walk walk(start_W);
+      std::size_t stopping = 0, found = 0, all = 0;
+      for (int i = 0; i < 60; ++i) {
+        const ToolPose& pose = walk.step(i);
+        const Vector6 a_g = walk.motion(i % 3 == 0 ? 0.1 : 1);
+        const ClearWay::Motion motion(pose, a_g);
+        const double far_m = way.far_m(motion, 0.03);
+        SlabWay slab_way = way.slab_way(motion, far_m);
+        const Vec3 ahead_W = i % 2 == 0 ? Vec3(Vec3::Zero()) : Vec3(a_g.head<3>());
+        std::copy_n(ahead_W.data(), 3, slab_way.ahead_W);
+        query.points.query(query.finder, *kernels, pose, slab_way);
+        const std::vector<Place> places = found_places(query.points);
+        std::size_t next = 0;
+        for (const Place& place : plain_places(query.finder.cloud().packed(), pose, far_m)) {
+          const bool is_found = next < places.size() && places[next] == place;
+          if (is_found) ++next;
+          const bool is_behind = query.finder.cloud().packed().normal(place.number).dot(ahead_W) > 0;
+          const bool stops = !is_behind && way.fraction(motion, place.p_T, place.distance_m) < 1;
+          ASSERT_TRUE(is_found || !stops) << kernels->isa << " " << i << " " << place.number;
+          stopping += stops ? 1 : 0, ++all;
+        }
+        ASSERT_EQ(next, places.size()) << "others are found, or not in order";
+        found += places.size();
+      }
+      EXPECT_GT(stopping, 100u);
+      EXPECT_LT(found, all);
+    }
+}
+
+// A motion onto a plane ends nearer to it than a point may be, but not in it.
+TEST(NearPoints, OnAWayAreThoseThatTheToolComesTooCloseTo) {
+  const ClearWay way(*kTool);
+  for (const Kernels* kernels : supported_kernels()) {
+    Query query(scenes::dense_plane(), *kernels, kCube_m);
+    for (const double height_m : {1e-4, 5e-4, 9e-4})
+      for (const double end_m : {0.5e-6, 1.5e-6}) {
+        const ToolPose pose{{0, 0.005 + height_m, 0}, Eigen::Quaterniond::Identity()};
+        Vector6 a_g = Vector6::Zero();
+        a_g[1] = end_m - height_m;
+        query.points.query(query.finder, *kernels, pose, way.slab_way({pose, a_g}, 1e-3));
+        const std::vector<Place> found = found_places(query.points);
+        const auto below = std::count_if(found.begin(), found.end(), [](const Place& place) {
+          return std::abs(place.p_T.x()) < 0.0121 && std::abs(place.p_T.z()) < 0.004;  // not near an edge
+        });
+        EXPECT_EQ(below, end_m < ClearWay::kTouch_m ? 81 * 27 : 0) << height_m << " " << kernels->isa;
+      }
+  }
+}
+
+// Queries of other kinds at the same pose do not change the result.
+TEST(NearPoints, KnowsWhetherOneIsBelowAValue) {
+  for (const auto& [cloud, start_W] : dense_clouds())
+    for (const double cube_m : {0.0, kCube_m}) {
+      Query query(cloud, scenes::kernels(), cube_m);
+      Walk walk(start_W - Vec3(0, 2e-4, 0));
+      int yes = 0, no = 0;
+      for (int i = 0; i < 100; ++i) {
+        const ToolPose& pose = walk.step(i);
+        const std::vector<Place> inside = plain_places(query.finder.cloud().packed(), pose, 0);
+        for (const double value_m : {-2e-6, -1e-4, -6e-4, -4e-3}) {
+          const bool expected = std::any_of(inside.begin(), inside.end(),
+                                            [&](const Place& place) { return place.distance_m < value_m; });
+          ASSERT_EQ(query.points.has_below(query.finder, scenes::kernels(), pose, value_m, 1e-3), expected)
+              << i;
+          ++(expected ? yes : no);
+        }
+        std::size_t count = 0;
+        if (i % 2 == 0) {
+          ASSERT_TRUE(query.is_right(pose, i % 4 == 0 ? 2e-3 : 2e-4, count)) << i;
+        }
+      }
+      EXPECT_GT(yes, 20);
+      EXPECT_GT(no, 20);
+    }
+}
+
+TEST(NearPoints, OfAPackedCloudOutsideTheGridAreMeasuredToo) {
+  const VoxelGrid& grid = kTool->grid;
+  PointCloud cloud;
+  for (int i = 0; i < 50; ++i)
+    cloud.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-4 * i, 0), Vec3::UnitX());
+  Query query(cloud, scenes::kernels(), kCube_m);
+  ASSERT_TRUE(query.finder.cloud().packed().has_slabs());
+  std::size_t count = 0;
+  EXPECT_TRUE(query.is_right({}, kFieldMargin_m + 3 * grid.size_m, count));
   EXPECT_EQ(count, cloud.size());
 }
 

@@ -209,5 +209,62 @@ TEST(TiledCloud, AMergedCloudIsMadeOnRequestAndHasWhatMergedPointsFinds) {
   EXPECT_FALSE(tiled.merged());
 }
 
+// True if the slab of its group holds a point.
+bool slab_holds(const SlabColumns& slabs, std::size_t group, const Vec3& p) {
+  const Vec3 offset = p - Vec3(slabs.sphere.x[group], slabs.sphere.y[group], slabs.sphere.z[group]);
+  const double height = Vec3(slabs.nx[group], slabs.ny[group], slabs.nz[group]).dot(offset);
+  return holds(slabs.sphere, group, p) && std::abs(height) <= slabs.half[group];
+}
+
+void expect_packed(const TiledCloud& all) {
+  const TiledCloud& packed = all.packed();
+  ASSERT_TRUE(packed.has_slabs());
+  std::set<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < packed.padded_size(); ++i) {
+    if (packed.x()[i] == kFarAway) continue;
+    const std::uint32_t number = packed.number(i);
+    EXPECT_EQ(packed.point(i), all.point(number));
+    EXPECT_TRUE(packed.normal(i) == all.normal(number) || !all.normal(number).allFinite());
+    EXPECT_EQ(packed.spacing_m(i), all.spacing_m(number));
+    EXPECT_TRUE(slab_holds(packed.slabs(), i / kLanes, packed.point(i)));
+    EXPECT_TRUE(holds(packed.tile_spheres(), i / kTilePoints, packed.point(i)));
+    numbers.insert(number);
+  }
+  EXPECT_EQ(numbers.size(), points_of(all).size());
+  EXPECT_LE(packed.padded_size(), all.padded_size());
+}
+
+TEST(TiledCloud, APackedCloudOfDensePointsHasEachOnceInSmallGroups) {
+  TiledCloud tiled;
+  tiled.assign(scenes::dense_plane(), 0.002);
+  expect_packed(tiled);
+  const auto mean_radius_m = [](const TiledCloud& cloud) {
+    double sum_m = 0;
+    for (std::size_t group = 0; group < cloud.padded_size() / kLanes; ++group)
+      sum_m += cloud.group_spheres().radius[group];
+    return sum_m / static_cast<double>(cloud.padded_size() / kLanes);
+  };
+  EXPECT_LT(mean_radius_m(tiled.packed()), 0.7 * mean_radius_m(tiled));
+  PointCloud some = scenes::cloud_with_normals(3001, 0.002, 6);
+  for (const double odd : {kNaN, std::numeric_limits<double>::infinity()})
+    some.append({0, odd, 0}, Vec3::UnitY());
+  for (int i = 0; i < 20; ++i) some.append({0.001, 0.001, 0}, Vec3::UnitY());
+  tiled.assign(some, 0.002);
+  expect_packed(tiled);
+}
+
+TEST(TiledCloud, OtherCloudsAreTheirOwnPackedOnes) {
+  TiledCloud tiled;
+  for (const PointCloud& cloud :
+       {scenes::flat_grid(50, 0.002), PointCloud{}, scenes::random_cloud(1, 1, 1)}) {
+    tiled.assign(cloud, 0.002);
+    EXPECT_EQ(&tiled.packed(), &tiled);
+    EXPECT_FALSE(tiled.has_slabs());
+  }
+  tiled.assign(scenes::dense_plane());
+  EXPECT_EQ(&tiled.packed(), &tiled);
+  EXPECT_EQ(tiled.number(17), 17u);
+}
+
 }  // namespace
 }  // namespace remote_touch::tiled_cloud_test

@@ -1,0 +1,17 @@
+// An order of points in which runs of points are compact: their boxes are nearly cubes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+// Returns the indices of the points in such an order. Each run of 8, 64, 512 or 4096 that begins at a
+// multiple of its length is one part of a halving of the cloud, across its longest side each time. So all
+// runs but the last are full. pre: the points are finite.
+std::vector<std::uint32_t> compact_order(std::span<const Vec3> points);
+
+}  // namespace remote_touch
