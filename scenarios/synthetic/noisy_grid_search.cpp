@@ -57,9 +57,9 @@ void NoisyGridSearch::make(const Cylinder& cylinder, const Kernels& kernels) con
   const auto stride = static_cast<std::uint32_t>(grid_.columns),
              first =
                  static_cast<std::uint32_t>(rows.first) * stride + static_cast<std::uint32_t>(columns.first);
-  make_points(kernels.noise.candidates(stream_, {first, stride, width, height}, x_bounds_.data(),
-                                       z_bounds_.data(), index_.data()),
-              cylinder, kernels);
+  const std::size_t candidates = kernels.noise.candidates(stream_, {first, stride, width, height},
+                                                          x_bounds_.data(), z_bounds_.data(), index_.data());
+  make_points(candidates, cylinder, kernels);
   cached_cylinder_ = cylinder;
   near_ball_.radius = -1;
 }
