@@ -63,9 +63,9 @@ std::vector<std::string> note_kind_names() {
   return names;
 }
 
-std::int32_t note_bits(const std::vector<Note>& notes) {
-  std::int32_t bits = 0;
-  for (const Note& note : notes) bits |= std::int32_t{1} << number_of_kind(note.kind);
+std::uint64_t note_bits(const std::vector<Note>& notes) {
+  std::uint64_t bits = 0;
+  for (const Note& note : notes) bits |= std::uint64_t{1} << number_of_kind(note.kind);
   return bits;
 }
 

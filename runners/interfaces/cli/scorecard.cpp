@@ -69,6 +69,8 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
   require_same_benchmark(sweeps);
   require_all_of(std::filesystem::path(request.folder) / kScorecardFile, plan);
   make_scorecard_folder(request.folder);
+  require_report(line, (std::filesystem::path(request.folder) / "scorecard.json").string(), {},
+                 kScorecardJson);
   try {
     do_scorecard_runs(line, sweeps);
     Progress after("traces and results", line.quiet);

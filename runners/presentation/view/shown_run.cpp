@@ -275,6 +275,11 @@ std::size_t ShownRun::frame_count() const {
 }
 
 void ShownRun::mark_divergence_from(const ShownRun& other) {
+  const auto rate = [](const ShownRun& run) { return run.state_->experiment.settings().haptic_rate_hz; };
+  if (rate(*this) != rate(other))
+    throw InputError(other.source().name, "has " + Json(rate(other)).dump() + " ticks per second, but " +
+                                              source().name + " has " + Json(rate(*this)).dump() +
+                                              ": expected two runs with the same haptic_rate_hz");
   const TraceComparison comparison =
       compare_traces(*state_->source.columns, *other.state_->source.columns, {},
                      configuration_differences(stored_configuration(state_->of("config")),

@@ -105,7 +105,8 @@ void for_each_block(RunSpool& spool, const EachBlock& each) {
     const std::vector<std::int32_t> states = numbers("state");
     for (const std::int32_t state : states) block.state.push_back(static_cast<RunState>(state));
     block.error = std::get<std::vector<std::string>>(spool.values("error", first, count));
-    if (!block.note_kinds.empty()) block.notes = numbers("notes");
+    if (!block.note_kinds.empty())
+      block.notes = std::get<std::vector<std::uint64_t>>(spool.values("notes", first, count));
     if (spool.is_refined()) block.round = numbers("round");
     each(block);
   }

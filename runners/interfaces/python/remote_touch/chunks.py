@@ -218,7 +218,7 @@ def _is_whole(made, count):
     if "problem" in made:
         return True
     states, values, notes = made["states"], made["values"], made["notes"]
-    return (states.shape == notes.shape == (count,) and states.dtype.kind == notes.dtype.kind == "i" and values.ndim == 2
+    return (states.shape == notes.shape == (count,) and states.dtype.kind == "i" and notes.dtype.kind == "u" and values.ndim == 2
             and values.shape[1] == count and values.dtype == np.float64 and made["seconds"] >= 0
             and len(made["errors"]) == count and all(isinstance(text, str) for text in made["errors"]))
 

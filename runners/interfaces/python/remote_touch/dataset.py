@@ -72,7 +72,7 @@ def of_sweep(result):
                  for name, units, long_name, values, value_names in result["measures"]}
     if "notes" in variables:  # as CF says of numbers that are sets of flags
         kinds = dict(result["attributes"])["note_kinds"].split(",")
-        variables["notes"][2].update(flag_masks=np.array([1 << bit for bit in range(len(kinds))], dtype=np.int32),
+        variables["notes"][2].update(flag_masks=np.array([1 << bit for bit in range(len(kinds))], dtype=np.uint64),
                                      flag_meanings=" ".join(kind.replace(" ", "_") for kind in kinds))
     if any(result["error"]):
         shape = variables["state"][1].shape
