@@ -129,7 +129,7 @@ std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, doub
   constexpr int kFrames = 2;  // see first_touch.h
   if (!crossing_ || crossing_->frames > kFrames) return {};
   const Site& site = crossing_->site;
-  const double before_s = std::max(0.0, site.time_s - 1 / scenario.frame_rate_hz());
+  const double before_s = std::max(0.0, site.time_s - 1 / scenario.frame_rate_hz());  // no NaN
   const double moved_m = scenario.signed_distance(site.position_W, before_s) -
                          scenario.signed_distance(site.position_W, site.time_s);
   if (!(moved_m > 0)) return {};

@@ -50,8 +50,8 @@ void add_few_frames(const std::vector<Phase>& of_scene, const Trace& trace, doub
   if (of_scene.empty()) return;
   double begins_s = end_s, ends_s = 0;
   for (const Phase& phase : of_scene) {
-    begins_s = std::min(begins_s, std::max(0.0, phase.begins_s));
-    ends_s = std::max(ends_s, std::min(end_s, phase.ends_s));
+    begins_s = std::min(begins_s, std::max(0.0, phase.begins_s));  // no NaN: settings
+    ends_s = std::max(ends_s, std::min(end_s, phase.ends_s));      // no NaN
   }
   const int frames = frames_between(trace, begins_s, ends_s);
   if (frames == 0 || frames >= kEnoughFrames || ends_s - begins_s < kBriefMotion_s) return;

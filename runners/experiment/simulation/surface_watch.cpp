@@ -59,7 +59,7 @@ void SurfaceWatch::add_step(const Vec3& hand_W, double time_s, double max_step_m
   last_W_ = hand_W;
   if (max_step_m <= 0 || !(step_m > max_step_m)) return;
   if (jumps_++ == 0) first_jump_s_ = time_s, first_jump_m_ = step_m;
-  longest_jump_m_ = std::max(longest_jump_m_, step_m);
+  longest_jump_m_ = std::max(longest_jump_m_, step_m);  // no NaN: above a limit
 }
 
 void SurfaceWatch::add(const Vec3& hand_W, double time_s) {

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/statistics/extremes.h"
+
 namespace remote_touch {
 
 namespace {
@@ -80,7 +82,7 @@ void Teleoperation::move_slave(double time_s) {
 }
 
 double Teleoperation::ticks_since_last(double time_s) const {
-  return std::max(1.0, std::round((time_s - last_s_) / tick_s_));
+  return std::max(1.0, std::round((time_s - last_s_) / tick_s_));  // no NaN: times
 }
 
 // ticks: since the last tick. All but the last of them were missed.
@@ -89,13 +91,13 @@ void Teleoperation::move_slave_until(double time_s, double ticks) {
   for (int left = static_cast<int>(std::min(ticks - 1, 1.0 * kMaxMissedTicks)); left > 0; --left) {
     const double at_s = time_s - left * tick_s_;
     move_slave(at_s);
-    peak_N = std::max(state_.peak_force_N, peak_N);  // keeps NaN
+    peak_N = max_or_nan(peak_N, state_.peak_force_N);
     if (is_passive()) slave_port_.observe(slave_force());
     receive_command(at_s);
     send_force(at_s);
   }
   move_slave(time_s);
-  state_.peak_force_N = std::max(state_.peak_force_N, peak_N);
+  state_.peak_force_N = max_or_nan(state_.peak_force_N, peak_N);
 }
 
 // Returns the motion of the hand since the last tick.
@@ -121,11 +123,16 @@ void Teleoperation::send_force(double time_s) {
                {.in_J = slave_port_.energy().in_J, .torque_Nm = torque_Nm}, time_s);
 }
 
-// Returns the force on the hand for the coming tick.
-Vec3 Teleoperation::receive_force(double time_s) {
-  if (!feels_slave()) return Vec3::Zero();
+// Returns the wrench on the hand for the coming tick.
+Wrench Teleoperation::receive_force(double time_s) {
+  if (!feels_slave()) return {};
   forces_.receive(time_s);
-  return forces_.receiver.shown(time_s).value_or(Vec3::Zero());
+  const std::optional<Vec3> shown_N = forces_.receiver.shown(time_s);
+  if (!shown_N) return {};
+  const std::optional<double> due_s = longest_silence_s(s_.forces.dead_band);
+  const double overdue_s = due_s ? forces_.receiver.silence_s(time_s) - *due_s : 0;
+  const double share = held_share(s_.feedback.hold, overdue_s);
+  return {share * *shown_N, share * forces_.newest.torque_Nm};
 }
 
 // last_displacement_m: of the hand, in the tick that has ended.
@@ -166,8 +173,7 @@ Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, d
   if (is_valid) commands_.send(command_W, orientation_W, {.in_J = hand_port_.energy().in_J}, time_s);
   receive_command(time_s);
   send_force(time_s);
-  Wrench wrench =
-      is_rendered ? rendered_wrench(out) : Wrench{receive_force(time_s), forces_.newest.torque_Nm};
+  Wrench wrench = is_rendered ? rendered_wrench(out) : receive_force(time_s);
   if (s_.feedback.force == Feedback::slave_force)
     wrench.force_N *= s_.feedback.gain, wrench.torque_Nm *= s_.feedback.gain;
   if (is_passive()) wrench.force_N = passive_force(wrench.force_N, moved_m / ticks);

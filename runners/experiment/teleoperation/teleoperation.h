@@ -80,7 +80,7 @@ class Teleoperation {
   Vec3 displacement_m(const DeviceState& device);
   void receive_command(double time_s);
   void send_force(double time_s);
-  Vec3 receive_force(double time_s);
+  Wrench receive_force(double time_s);
   Vec3 passive_force(const Vec3& force_N, const Vec3& last_displacement_m);
 
   const TeleoperationSettings s_;

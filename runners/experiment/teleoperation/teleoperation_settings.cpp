@@ -10,7 +10,7 @@ Parameters parameters(FeedbackSettings& s) {
        "what the hand feels: the renderer's force, nothing, the force of the scene on the slave, or this force with passivity control"},
       {"gain", &s.gain, 0, 100, "factor on the force of the scene on the slave, for slave-force"},
   };
-  return appended(own, parameters(s.passivity));
+  return appended(appended(own, parameters(s.hold)), parameters(s.passivity));
 }
 
 std::string validate(const FeedbackSettings& s) {

@@ -27,6 +27,7 @@ enum class Feedback { rendered, none, slave_force, passive_slave_force };
 struct FeedbackSettings {
   Feedback force = Feedback::rendered;
   double gain = 1;
+  HoldSettings hold;  // of the forces of the slave
   PassivitySettings passivity;
 };
 

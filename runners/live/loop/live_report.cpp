@@ -59,7 +59,7 @@ Table longer_than(const LiveReport::Times& times) {
     const auto at = static_cast<std::size_t>(std::lround(count * (1 - fraction)));
     if (at >= times.sorted.size() || at == last) continue;
     last = at;
-    log_us.push_back(std::log10(std::max(1e6 * times.sorted[at], 1e-2)));
+    log_us.push_back(std::log10(std::max(1e6 * times.sorted[at], 1e-2)));  // no NaN
     log_fraction.push_back(std::log10((count - static_cast<double>(at)) / count));
   }
   Table table{times.key, times.name};

@@ -16,7 +16,7 @@ namespace remote_touch {
 namespace {
 
 // Settings of the experiment steer-robot.
-constexpr double kAmplitude_m = 0.02, kShake_hz = 0.5, kFrameRate_hz = 30;
+constexpr double kAmplitude_m = 0.02, kShake_hz = 0.5, kFrameRate_hz = 30, kTick_s = 0.001;
 
 // --- the radius that is needed ---
 
@@ -24,8 +24,9 @@ struct Link {
   double frequency_hz, delay_s;  // natural frequency of the slave, and delay of its commands
 };
 
+// The slave reaches a command at the end of the tick after its arrival.
 double violation_m(const Link& link, double age_s) {
-  return following_error_m({kAmplitude_m, kShake_hz, link.frequency_hz, link.delay_s + age_s});
+  return following_error_m({kAmplitude_m, kShake_hz, link.frequency_hz, link.delay_s + kTick_s + age_s});
 }
 
 // Bounds of the radius without noise: the organ is seen at once, or a frame interval late.

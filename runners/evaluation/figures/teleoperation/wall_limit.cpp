@@ -8,7 +8,6 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kTick_s = 0.001;
 constexpr int kHalvings = 7;
 
 // The hand is in contact, on a path at rest, from 1.6 s on. An oscillation that grows is larger in the second
@@ -57,10 +56,6 @@ bool is_unstable(const Trace& trace) {
 }
 
 }  // namespace
-
-double linear_wall(double damping, int delay_ticks) {
-  return damping / (kTick_s / 2 + delay_ticks * kTick_s);
-}
 
 void bisect(FigureContext& context, const std::vector<WallLimit*>& limits) {
   for (int halving = 0; halving < kHalvings; ++halving) {
