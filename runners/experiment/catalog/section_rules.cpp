@@ -93,6 +93,14 @@ void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
   }
 }
 
+// Throws InputError if the stiffness is none: the force of a real device is scaled by it.
+double stiffness_of(const auto& factory, const std::string& renderer) {
+  const double stiffness = factory.stiffness_N_per_m();
+  if (stiffness >= 0 && std::isfinite(stiffness)) return stiffness;
+  throw InputError("max_stiffness_N_per_m of the renderer " + renderer + " = " + std::to_string(stiffness),
+                   "expected a finite number, 0 or more");
+}
+
 }  // namespace
 
 void check_changes(ExperimentConfiguration& configuration) {
@@ -100,12 +108,14 @@ void check_changes(ExperimentConfiguration& configuration) {
     const std::string problem = factory.validate();
     if (!problem.empty()) throw InputError(where, "after this change renderer." + problem);
   });
+  max_renderer_stiffness(configuration);
 }
 
 double max_renderer_stiffness(const ExperimentConfiguration& configuration) {
-  double max = configuration.renderer.factory->stiffness_N_per_m();
+  const std::string& name = configuration.renderer.name;
+  double max = stiffness_of(*configuration.renderer.factory, name);
   after_changes(configuration, [&](const auto& factory, const std::string&) {
-    max = std::max(max, factory.stiffness_N_per_m());
+    max = std::max(max, stiffness_of(factory, name));
   });
   return max;
 }

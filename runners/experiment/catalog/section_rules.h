@@ -23,6 +23,8 @@ void check_slave(ExperimentConfiguration& configuration);
 bool renders_tool(const ExperimentConfiguration& configuration);
 
 // Returns the largest max_stiffness_N_per_m() of the renderer's settings, at the start and after each change.
+// Throws InputError if one of them is not finite or negative, whatever factory it comes from. check_changes()
+// calls it, so that no experiment with such a renderer is read.
 double max_renderer_stiffness(const ExperimentConfiguration& configuration);
 
 }  // namespace remote_touch

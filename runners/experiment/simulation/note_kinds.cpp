@@ -53,6 +53,8 @@ const std::vector<NoteKind>& note_kinds() {
       {"slave loop gains energy",
        "the device gave much energy to the hand: hand, links and slave may oscillate"},
       {"setting without effect", "settings of the experiment that cannot act together"},
+      {"slave starts in contact",
+       "the slave starts behind the true surface, so that its largest forces may be those of its start"},
   };
   return kinds;
 }

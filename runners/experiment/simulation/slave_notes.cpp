@@ -45,6 +45,23 @@ bool feels_nothing(const Trace& trace) {
          std::all_of(trace.device_force_N.begin(), trace.device_force_N.end(), is_zero);
 }
 
+// The slave is put at its first command in one tick, and pushed out from the next one on.
+void add_start(const Trace& trace, std::vector<Note>& notes) {
+  constexpr double kRounding_m = 1e-9;
+  const auto is_known = [](const Vec3& position) { return position.allFinite(); };
+  const auto first = std::ranges::find_if(trace.slave_position_m, is_known);
+  const auto tick = static_cast<std::size_t>(first - trace.slave_position_m.begin());
+  const double depth_m = -trace.slave_clearance_m[tick];
+  if (!(depth_m > kRounding_m)) return;
+  const double force_N = tick + 1 < trace.length() ? trace.slave_peak_force_N[tick + 1] : 0;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the slave starts %.3g mm behind the true surface, with a force of %.3g N on it: largest "
+                "forces of the run may be those of its start",
+                1e3 * depth_m, force_N);
+  notes.push_back({"slave starts in contact", text});
+}
+
 }  // namespace
 
 std::vector<Note> slave_notes(const Trace& trace) {
@@ -61,6 +78,7 @@ std::vector<Note> slave_notes(const Trace& trace) {
         {"slave without surface",
          "the normal of the true surface is not known where the slave was behind it, so there was "
          "no force on it, and measures of its force have no value"});
+  add_start(trace, notes);
   if (kept_first_command(trace))
     notes.push_back(
         {"slave without command",

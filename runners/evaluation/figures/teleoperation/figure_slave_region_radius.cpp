@@ -63,7 +63,7 @@ std::vector<NeededRegion> needed_regions(FigureContext& context) {
     }
     const std::vector<double> clearances_m = context.measure(runs, min_slave_clearance_m);
     for (std::size_t i = 0; i < all.size(); ++i)
-      all[i].radius_m = std::max(0.0, all[i].radius_m - clearances_m[i]);
+      all[i].radius_m = max_or_nan(0.0, all[i].radius_m - clearances_m[i]);
   }
   return all;
 }
