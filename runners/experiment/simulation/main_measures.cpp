@@ -27,8 +27,10 @@ constexpr Priority kPriorities[] = {
     // Guidance has to lead the hand to its goal.
     {"guidance_error", When::always},
     {"guidance_error_angle", When::always},
-    // The first question about a method: does its proxy stay on the right side of the true surface?
+    // The first question about a method: does its proxy stay on the right side of the surface? Where a camera
+    // measured the surface, the second is on which side of the true one that is.
     {"popped_through", When::no_fixtures},
+    {"popped_through_truth", When::no_fixtures},
     {"first_pop_through_time", When::no_fixtures},  // has no value unless it happened
     {"tool_popped_through", When::no_fixtures},
     // How far was it wrong? The depth of points in a tool needs no truth.
