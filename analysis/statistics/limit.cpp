@@ -13,7 +13,7 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kTail = 0.025;
+constexpr double kLimitTail = 0.025;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Events of a rising curve: those of the absence if the event's own curve falls.
@@ -33,8 +33,8 @@ enum class End { low, high };
 bool is_clear(const EventCounts& c, double level, End end) {
   const auto n = static_cast<double>(c.runs());
   if (end == End::low)
-    return probability_of_at_most(static_cast<double>(c.events + c.unknown), n, level) <= kTail;
-  return probability_of_at_least(static_cast<double>(c.events), n, level) <= kTail;
+    return probability_of_at_most(static_cast<double>(c.events + c.unknown), n, level) <= kLimitTail;
+  return probability_of_at_least(static_cast<double>(c.events), n, level) <= kLimitTail;
 }
 
 // A walk over values in the order from one end.
@@ -108,7 +108,7 @@ void set_crossing(const std::vector<RunsAtValue>& values, double level, Limit& l
 }  // namespace
 
 std::int64_t runs_for_level(double level) {
-  return static_cast<std::int64_t>(std::ceil(std::log(kTail) / std::log1p(-level) - 1e-12));
+  return static_cast<std::int64_t>(std::ceil(std::log(kLimitTail) / std::log1p(-level) - 1e-12));
 }
 
 Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& rule) {
