@@ -54,6 +54,10 @@ void print(const ScorecardReport& report) {
       std::printf("\n");
     }
   }
+  if (card.tests > 0)
+    std::printf(
+        "%lld comparisons of two methods, corrected together (Holm): significant from %lld pairs of runs on\n",
+        static_cast<long long>(card.tests), static_cast<long long>(card.least_pairs));
   for (const auto& [name, why] : report.skipped)
     std::printf("%s\n  skipped: %s\n", name.c_str(), why.c_str());
 }

@@ -66,6 +66,7 @@ class WorkerSweep {
     std::vector<double> values;
     std::vector<std::int32_t> states;
     {
+      const UnchangedCatalog unchanged;
       const py::gil_scoped_release without_lock;
       const OneThread one_thread;
       part = sweep_->part(std::move(numbers));
@@ -187,6 +188,7 @@ py::dict sweep_in_chunks(const std::string& subject, const std::optional<std::st
   StoredSweep all;
   std::optional<StoredTally> tally;
   {
+    const UnchangedCatalog unchanged;
     const py::gil_scoped_release without_lock;
     const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
     const WorkElsewhere work{sweep, input_hashes(sweep.inputs()), do_round};
