@@ -35,7 +35,12 @@ struct SweepResult {
   // a note of the kind note_kinds[i]. It is 0 if the run is not done. Both are empty in results that were
   // stored without notes.
   std::vector<std::string> note_kinds;
-  std::vector<std::int32_t> notes;
+  std::vector<std::uint64_t> notes;
+
+  // Returns whether a number of `notes` has bits of the first `kinds` kinds only.
+  static bool are_known_notes(std::uint64_t bits, std::size_t kinds) {
+    return kinds >= 64 || bits >> kinds == 0;
+  }
 
   // Sizes the arrays and sets every run to not_sampled. pre: axes, replicates, part, measures and note_kinds
   // are set.

@@ -48,7 +48,7 @@ class NoteCounts {
   std::vector<std::string> lines() const;
 
  private:
-  void add_run(std::int32_t bits);
+  void add_run(std::uint64_t bits);
   mutable std::mutex mutex_;
   std::size_t runs_ = 0;
   std::map<std::size_t, std::size_t> of_kind_;  // by the number of the kind

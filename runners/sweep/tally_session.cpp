@@ -39,7 +39,7 @@ void add(const SweepResult& batch, const TallyLayout& layout, SweepTally& tally)
     for (std::size_t m = 0; m < values.size(); ++m)
       values[m] = std::get<std::vector<double>>(batch.measures[m].values)[place];
     if (batch.state[place] == RunState::done)
-      tally.add_done(layout, batch.run_at(place), values, static_cast<std::uint32_t>(batch.notes[place]));
+      tally.add_done(layout, batch.run_at(place), values, batch.notes[place]);
     if (batch.state[place] == RunState::failed)
       tally.add_failed(layout, batch.run_at(place), batch.error[place]);
   }

@@ -114,7 +114,7 @@ FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const Senso
 int FaultySensor::frame_count() const {
   const SensorFaults& s = settings_;
   const bool change = s.repeat_probability > 0 || s.rolling_shutter_s > 0 || s.flying_probability > 0 ||
-                      s.outlier_probability > 0 || s.ray_noise.sigma_m > 0;
+                      s.outlier_probability > 0 || s.ray_noise.sigma_m > 0 || s.late_probability > 0;
   const bool continues = !ends() && (change || loses_points());
   return continues ? std::numeric_limits<int>::max() : scenario_->frame_count();
 }

@@ -46,8 +46,8 @@ class FaultySensor final : public Scenario {
                const Kernels& kernels);
 
   double frame_rate_hz() const override { return scenario_->frame_rate_hz(); }
-  // If faults make frames of the same surface differ, the sensor delivers more frames after the scenario's
-  // last one, unless the scenario ends.
+  // If faults make frames of the same surface differ, in their points or in their delay, the sensor delivers
+  // more frames after the scenario's last one, unless the scenario ends.
   int frame_count() const override;
   double captured_s(int frame) const override;
   bool ends() const override { return scenario_->ends(); }

@@ -18,19 +18,33 @@ def distinct(values):
     return known[np.append(True, np.diff(known) > 1e-6 * np.ptp(known))] if known.size else known
 
 
-def cell_edges(column):
+def asks_for_log(columns):
+    """Returns whether the axis of these columns is logarithmic: declared so, or four values or more over a decade or
+    more in equal ratios."""
+    if any(column.is_log for column in columns):
+        return True
+    if not columns or any(column.names for column in columns):
+        return False
+    values = distinct(np.concatenate([column.values for column in columns]))
+    if not 4 <= values.size <= 100 or values[0] <= 0 or values[-1] < 10 * values[0]:
+        return False
+    ratios = values[1:] / values[:-1]
+    return bool(ratios.max() < 1.05 * ratios.min())
+
+
+def cell_edges(column, is_log):
     """Of each value of a whole grid the ends of its cell: half-way to its neighbours, on a log axis in equal ratios."""
     places = distinct(column.values)
     if not places.size:
         return column.values, column.values
-    at = np.log(places) if column.is_log else places
+    at = np.log(places) if is_log else places
     if at.size == 1:
-        half = 0.5 if column.is_log or column.names else 0.5 * (abs(at[0]) or 1.0)
+        half = 0.5 if is_log or column.names else 0.5 * (abs(at[0]) or 1.0)
         edges = np.array([at[0] - half, at[0] + half])
     else:
         middle = (at[1:] + at[:-1]) / 2
         edges = np.concatenate([[2 * at[0] - middle[0]], middle, [2 * at[-1] - middle[-1]]])
-    edges = np.exp(edges) if column.is_log else edges
+    edges = np.exp(edges) if is_log else edges
     cell = np.maximum(np.searchsorted(places, column.values, side="right") - 1, 0)
     return edges[cell], edges[cell + 1]
 
@@ -38,11 +52,18 @@ def cell_edges(column):
 def cell_ends(curve, panel):
     """Left and right, and lower and upper ends of the cells of all samples. A map is a grid; squares are some cells of
     one."""
+    return tuple(ends_along(curve, name, limits, asks_for_log([getattr(other, name) for other in panel.curves]))
+                 for name, limits in (("x", panel.x_range), ("y", panel.y_range)))
+
+
+def ends_along(curve, name, limits, is_log):
+    """Both ends of the cells along one axis, which is logarithmic or not."""
+    column = getattr(curve, name)
     if curve.style == "map":
-        return cell_edges(curve.x), cell_edges(curve.y)
-    halves = (cell_size(column.values, limits) / 2
-              for column, limits in ((curve.x, panel.x_range), (curve.y, panel.y_range)))
-    return tuple((column.values - half, column.values + half) for column, half in zip((curve.x, curve.y), halves))
+        return cell_edges(column, is_log)
+    at = np.log(column.values) if is_log else column.values
+    half = cell_size(at, [math.nan, math.nan] if is_log else limits) / 2
+    return tuple(np.exp(end) if is_log else end for end in (at - half, at + half))
 
 
 def outlines(curve, panel, shown):

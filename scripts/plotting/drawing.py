@@ -5,7 +5,7 @@ import re
 import matplotlib.ticker
 import numpy as np
 
-from plotting.cells import distinct
+from plotting.cells import asks_for_log, distinct
 from plotting.curves import DRAW, has_cells, is_sampled, reach, room_aside_in
 from plotting.style import LINES, is_formula, looks_in_panel
 from plotting.surface import draw_surface, is_surface
@@ -28,19 +28,6 @@ def wrapped_label(label, width_in):
     if last and text_width_in(typeset(last[0])) <= width_in:
         label = label[:last.start()] + last[0].replace(" ", "\u00a0")
     return wrapped(label, width_in).replace("\u00a0", " ")
-
-
-def asks_for_log(columns):
-    """Declared so, or four values or more over a decade or more in equal ratios."""
-    if any(column.is_log for column in columns):
-        return True
-    if not columns or any(column.names for column in columns):
-        return False
-    values = distinct(np.concatenate([column.values for column in columns]))
-    if not 4 <= values.size <= 100 or values[0] <= 0 or values[-1] < 10 * values[0]:
-        return False
-    ratios = values[1:] / values[:-1]
-    return bool(ratios.max() < 1.05 * ratios.min())
 
 
 def asks_for_log_heights(curves):
@@ -107,7 +94,7 @@ def few_values(columns, length_in, is_upright):
     values = distinct(np.concatenate([column.values for column in columns] or [[]]))
     if not 1 < values.size <= 8:
         return None
-    at = np.log(values) if any(column.is_log for column in columns) and values[0] > 0 else values
+    at = np.log(values) if asks_for_log(columns) and values[0] > 0 else values
     needed_in = 0.18 if is_upright else max(text_width_in(plain(value)) for value in values) + 0.07
     return values if np.diff(at).min() / np.ptp(at) * length_in > needed_in else None
 

@@ -5,8 +5,10 @@ import io
 import PIL.Image
 import PIL.PngImagePlugin
 
+from plotting.plot_error import PlotError
 from plotting.typeset import CONTROL
 
+MADE_BY = "remote-touch, scripts/plot"
 FORMATS = ("png", "svg", "pdf")
 PIXELS_DPI = 600  # of what vector formats have as pixels
 
@@ -20,7 +22,7 @@ def origin(figure):
 
 def metadata(figure, kind):
     """By the keys that the format has for it."""
-    said = {"title": figure.heading, "made_by": "remote-touch, scripts/plot", "origin": origin(figure),
+    said = {"title": figure.heading, "made_by": MADE_BY, "origin": origin(figure),
             "command": figure.attributes.get("command", "")}
     said = {key: CONTROL.sub("?", words) for key, words in said.items()}
     if kind == "png":
@@ -43,8 +45,15 @@ def save_png(canvas, file, said):
     pixels.convert("RGB").save(file, "PNG", compress_level=5, dpi=(canvas.dpi, canvas.dpi), pnginfo=info)
 
 
+def require_own(file):
+    """A picture that something else has made is kept."""
+    if file.is_file() and file.stat().st_size and MADE_BY.encode() not in file.read_bytes():
+        raise PlotError(f"{file}: is not a picture of scripts/plot: expected another folder, or that file removed")
+
+
 def save(canvas, file, figure):
     """A reader of the file sees the old picture or the new one."""
+    require_own(file)
     kind, memory = file.suffix.removeprefix("."), io.BytesIO()
     if kind == "png":
         save_png(canvas, memory, metadata(figure, kind))

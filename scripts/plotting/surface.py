@@ -23,9 +23,16 @@ def grid_of(curve):
     return across, along, heights
 
 
-def thinned(count):
-    """Numbers of the lines that are drawn, first and last included."""
-    return np.unique(np.linspace(0, count - 1, min(count, LONGEST)).round().astype(int))
+def thinned(heights, axis):
+    """Numbers of the lines across this axis that are drawn: the first, the last, and those with the lowest and with the
+    highest point of each share."""
+    count = heights.shape[axis]
+    if count <= LONGEST:
+        return np.arange(count)
+    low, high = (end(heights, axis=1 - axis, initial=empty, where=np.isfinite(heights))
+                 for end, empty in ((np.min, math.inf), (np.max, -math.inf)))
+    shares = np.array_split(np.arange(1, count - 1), LONGEST // 2 - 1)
+    return np.unique([0, count - 1, *(share[end(of[share])] for share in shares for of, end in ((low, np.argmin), (high, np.argmax)))])
 
 
 def few_ticks(low, high):
@@ -40,7 +47,7 @@ def draw_surface(axes, panel, axis_label):
     """axes: of three dimensions, equally scaled. axis_label: names an axis."""
     curve = next(curve for curve in panel.curves if curve.style == "surface")
     across, along, heights = grid_of(curve)
-    columns, rows = thinned(across.size), thinned(along.size)
+    columns, rows = thinned(heights, 1), thinned(heights, 0)
     shown = heights[np.ix_(rows, columns)]
     x, y = np.meshgrid(across[columns], along[rows])
     surface = axes.plot_surface(x, y, shown, cmap="viridis", rcount=rows.size, ccount=columns.size, linewidth=0,

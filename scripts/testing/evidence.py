@@ -19,11 +19,18 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
+def recordings():
+    """The folder of the recordings and the digest of its list; a test that passed without them did not see them."""
+    data = pathlib.Path(os.environ.get("REMOTE_TOUCH_DATA") or ROOT.parent / "shared" / "data")
+    listed = data / "MANIFEST.sha256"
+    return hashlib.sha256(listed.read_bytes()).hexdigest() if listed.is_file() else str(data.is_dir())
+
+
 def digest_of_sources():
-    """Of all files that git lists, tracked or new, but for pages."""
+    """Of all files that git lists, tracked or new, but for pages, and of the recordings."""
     names = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True,
                            capture_output=True, text=True).stdout.split("\0")
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(recordings().encode())
     for name in sorted(filter(None, names)):
         file = ROOT / name
         if file.suffix != ".md" and file.is_file():

@@ -22,7 +22,7 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-RESULT = re.compile(r"^ *\d+/\d+ Test +#\d+: (\S+) \.*( *Passed|\*\*\*\S+(?: \S+)?) +(\d+\.\d+) sec")
+RESULT = re.compile(r"^ *\d+/\d+ Test +#\d+: (\S+) \.*( *Passed|[A-Za-z ]*\*\*\*\S+(?: \S+)?) +(\d+\.\d+) sec")
 NEXT_TEST = re.compile(r"^ *(Start +\d+: |\d+/\d+ Test +#\d+: |\d+% tests passed)")
 SKIPPED_PART = re.compile(r"^skipped ([^:]+): ", re.MULTILINE)
 BEGUN = re.compile(r"^\[ RUN      \] ")

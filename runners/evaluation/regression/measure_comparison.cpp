@@ -36,7 +36,7 @@ std::optional<double> stored_held_depth_m(const TextAttributes& trace) {
 
 // True for measures that depend on Trace::held_depth_m.
 bool needs_held_depth(const std::string& measure) {
-  return measure == "popped_through" || measure == "tool_popped_through" ||
+  return measure.starts_with("popped_through") || measure == "tool_popped_through" ||
          measure == "wrong_side_fraction" || measure.starts_with("first_pop_through_");
 }
 

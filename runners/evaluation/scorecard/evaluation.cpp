@@ -2,9 +2,12 @@
 
 #include <omp.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/passivity.h"
 #include "runners/experiment/provenance/provenance.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
 
@@ -16,10 +19,21 @@ std::vector<StoredSweep> read_all(const std::vector<BenchmarkSweep>& sweeps) {
   return stored;
 }
 
-SceneScore score_of(const BenchmarkScene& scene, const std::vector<StoredSweep>& stored) {
+// True if the sweep draws an error of the registration: its directions are those of the replicate, at every
+// level of the noise.
+bool is_by_replicate(const Sweep& sweep) {
+  const Json run = parse_json(sweep.experiment(0, 0).to_json(), sweep.title());
+  const auto registration = run.find("registration");
+  return registration != run.end() &&
+         (registration->value("offset_m", 0.0) > 0 || registration->value("rotation_deg", 0.0) > 0);
+}
+
+SceneScore score_of(const BenchmarkScene& scene, const std::vector<BenchmarkSweep>& sweeps,
+                    const std::vector<StoredSweep>& stored) {
   SceneRules rules{scene.name, scene.title, scene.meaning, scene.success, {}, scene.old_success};
   for (const BenchmarkScene::Judged& judged : scene.measures)
     rules.measures.emplace_back(judged.measure, judged.better);
+  for (const BenchmarkSweep& one : sweeps) rules.by_replicate.push_back(is_by_replicate(one.sweep));
   std::vector<SweepResult> results;
   for (const StoredSweep& one : stored) results.push_back(one.result);
   return score(rules, results, scene.noise.empty());
@@ -84,7 +98,8 @@ std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, co
 
 Scorecard scores_of(const BenchmarkPlan& plan) {
   Scorecard card = empty_card(plan.benchmark.methods);
-  for (const ScenePlan& one : plan.scenes) card.scenes.push_back(score_of(one.scene, read_all(one.sweeps)));
+  for (const ScenePlan& one : plan.scenes)
+    card.scenes.push_back(score_of(one.scene, one.sweeps, read_all(one.sweeps)));
   correct(card);
   return card;
 }
@@ -97,7 +112,7 @@ ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, cons
   for (const ScenePlan& one : plan.scenes) {
     progress(report.card.scenes.size(), plan.scenes.size());
     const std::vector<StoredSweep> stored = read_all(one.sweeps);
-    report.card.scenes.push_back(score_of(one.scene, stored));
+    report.card.scenes.push_back(score_of(one.scene, one.sweeps, stored));
     report.card.scenes.back().truth = truth_of(one.sweeps.front().sweep, kernels);
     report.failures.emplace_back();
     for (std::size_t c = 0; c < stored.size(); ++c)
@@ -106,7 +121,7 @@ ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, cons
   }
   if (!plan.audit.empty()) report.audit = empty_card(plan.laws);
   for (const ScenePlan& one : plan.audit)
-    report.audit->scenes.push_back(score_of(reported(one.scene), read_all(one.sweeps)));
+    report.audit->scenes.push_back(score_of(reported(one.scene), one.sweeps, read_all(one.sweeps)));
   correct(report.card);
   report.costs = costs_of(plan, kernels, stop, folder / "costs.json");
   report.cpu = cpu_name();

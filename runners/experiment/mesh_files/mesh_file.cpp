@@ -235,7 +235,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run)
 
 std::string mesh_reader_version() {
   return "assimp " + std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." +
-         std::to_string(aiGetVersionPatch()) + ", concave polygons, strict text";
+         std::to_string(aiGetVersionPatch());
 }
 
 }  // namespace remote_touch

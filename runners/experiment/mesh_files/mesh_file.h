@@ -17,7 +17,8 @@ bool is_mesh_file(const std::filesystem::path& file);
 // cannot be cut. run: runs the child process, because the library reads the file only there.
 TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
-// Returns the version of the reader. Another version may read a file differently.
+// Returns the version of the library that reads the files, which is not a part of the program. Another
+// version may read a file differently.
 std::string mesh_reader_version();
 
 }  // namespace remote_touch

@@ -37,7 +37,8 @@ const std::vector<NoteKind>& note_kinds() {
       {"edges bridged", "image-scan treats depth jumps above edge_jump_m as surface"},
       {"object not scanned", "image-scan touches another thing than the nearest object"},
       {"camera changes", "a later CameraInfo or depth unit of a bag differs from the first, which is used"},
-      {"starts in contact", "the hand starts behind the surface, or within the contact radius of it"},
+      {"starts in contact",
+       "when the first frame arrives, the hand is behind the surface or within the contact radius of it"},
       {"lost at the first touch",
        "the surface passed the proxy before a third frame after the first contact"},
       {"object not pressed", "image-press presses another thing than the nearest object"},
@@ -55,6 +56,8 @@ const std::vector<NoteKind>& note_kinds() {
       {"setting without effect", "settings of the experiment that cannot act together"},
       {"slave starts in contact",
        "the slave starts behind the true surface, so that its largest forces may be those of its start"},
+      {"force not finite", "the renderer's force is not a number in some ticks; it counts as no force there"},
+      {"thin object", "the hand or the proxy passed the middle of a wall; it has no side from there on"},
   };
   return kinds;
 }
@@ -65,9 +68,9 @@ std::vector<std::string> note_kind_names() {
   return names;
 }
 
-std::int32_t note_bits(const std::vector<Note>& notes) {
-  std::int32_t bits = 0;
-  for (const Note& note : notes) bits |= std::int32_t{1} << number_of_kind(note.kind);
+std::uint64_t note_bits(const std::vector<Note>& notes) {
+  std::uint64_t bits = 0;
+  for (const Note& note : notes) bits |= std::uint64_t{1} << number_of_kind(note.kind);
   return bits;
 }
 

@@ -70,6 +70,20 @@ void add_contact(const Trace& trace, std::vector<Note>& notes) {
     notes.push_back(no_contact_note());
 }
 
+// Adds a note if the renderer's force or torque is not a finite number in some tick.
+void add_unknown_forces(const Trace& trace, std::vector<Note>& notes) {
+  std::size_t count = 0, first = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    if (trace.force_N[i].allFinite() && (!trace.has_tool() || trace.torque_Nm[i].allFinite())) continue;
+    if (count++ == 0) first = i;
+  }
+  if (count == 0) return;
+  notes.push_back({"force not finite", "the renderer's force is not a finite number in " +
+                                           std::to_string(count) + " of " + std::to_string(trace.length()) +
+                                           " ticks, first at " + seconds(trace.time_s[first]) +
+                                           ": it counts as no force there"});
+}
+
 }  // namespace
 
 Note no_contact_note() {
@@ -112,6 +126,7 @@ RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, cons
   add_late_phases(of_scene, of_hand, end_s, report.notes);
   add_few_frames(of_scene, trace, end_s, report.notes);
   add_contact(trace, report.notes);
+  add_unknown_forces(trace, report.notes);
   return report;
 }
 

@@ -123,7 +123,10 @@ std::string slave_summary(const Trace& trace) {
   const double clearance_m = min_slave_clearance_m(trace);
   if (std::isnan(clearance_m)) return {};
   char text[120];
-  if (slave_touched(trace) > 0)
+  const double touched = slave_touched(trace);
+  if (std::isnan(touched))
+    std::snprintf(text, sizeof text, "it is not known whether the slave touched: its force is unknown");
+  else if (touched > 0)
     std::snprintf(text, sizeof text,
                   "the slave touched first at %.3f s; largest force of the scene on it: %.3g N",
                   first_slave_contact_time_s(trace), max_slave_force_N(trace));

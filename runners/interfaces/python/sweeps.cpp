@@ -96,7 +96,7 @@ SweepResult result_of(const py::tuple& parts) {
   for (const auto state : parts[2].cast<std::vector<std::int32_t>>())
     result.state.push_back(static_cast<RunState>(state));
   result.replicates = parts[3].cast<int>();
-  result.notes = parts[4].cast<std::vector<std::int32_t>>();
+  result.notes = parts[4].cast<std::vector<std::uint64_t>>();
   bool fits = result.state.size() == result.run_count() &&
               (result.notes.empty() || result.notes.size() == result.run_count());
   for (const Column& measure : result.measures)

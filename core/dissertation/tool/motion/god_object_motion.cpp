@@ -8,8 +8,9 @@ namespace remote_touch {
 
 namespace {
 
-// A contact counts as touched if its distance exceeds the gap by no more than this.
-constexpr double kTouching_m = 1e-6;
+// A contact is a row of J if its distance exceeds the gap by no more than this. That is more than the error
+// of second order of a step, so that a contact that stopped a step is a row after it.
+constexpr double kTouching_m = ContinuousContacts::kGap_m;
 // A contact at which more than this distance is missing was put there by a frame.
 constexpr double kTolerance_m = 2 * ContinuousContacts::kGap_m;
 // A tick ends after this number of successive steps without progress, or of steps that contacts stop at once.
@@ -58,7 +59,7 @@ void GodObjectMotion::gather_touched(const NearContacts& near) {
   touched_.clear();
   for (ToolContact contact : near.contacts) {
     if (contact.depth_m < -kTouching_m) continue;
-    if (settling_ || contact.depth_m > kTolerance_m) contact.depth_m = 0;
+    if (settling_ || contact.depth_m > kTolerance_m) contact.depth_m = std::min(contact.depth_m, 0.0);
     touched_.push_back(contact);
   }
 }
@@ -70,7 +71,7 @@ Vector6 GodObjectMotion::constrained(const Vector6& a_gu, const ToolPose& pose, 
   const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   ConstrainedMotion motion = program_.solve(desired_T, touched_);
   if (motion.is_relaxed) {  // two walls leave no room for the gap; J a >= 0 is always feasible, with a = 0
-    for (ToolContact& contact : touched_) contact.depth_m = 0;
+    for (ToolContact& contact : touched_) contact.depth_m = std::min(contact.depth_m, 0.0);
     motion = program_.solve(desired_T, touched_);
   }
   has_failed_ = motion.failed;
@@ -122,7 +123,7 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
     ++report.steps;
     if (report.steps == 1) report.first_step_m = pose.p_W - start_W;
   }
-  if (pose == device) report.allowed_W.setZero();
+  if (report.at_rest) report.allowed_W.setZero();  // contacts prevent all that is left
   return report;
 }
 

@@ -18,9 +18,10 @@
 // normal of the disk. The tool never passes a point (clear_way.h); the time of contact with a disk is that of
 // the linearised motion. Edges of a scene are not known, and there is nothing where the sensor saw nothing.
 //
-// The tool is kept ContinuousContacts::kGap_m away from its contacts. While no frame has put points into the
-// tool, a contact at which up to twice this distance is missing is a row J a >= d, where d is the missing
-// distance, so that errors of second order do not accumulate. M is that of a body of 1 kg with the gyration
+// The tool is kept ContinuousContacts::kGap_m away from its contacts. A contact is a row J a >= d, where d is
+// the distance that is missing to this gap: up to twice the gap, while no frame has put points into the tool,
+// so that errors of second order do not accumulate; and down to minus the gap, so that these errors do not
+// take a contact that stopped the tool out of J. M is that of a body of 1 kg with the gyration
 // radius of the coupling about every axis, and not that of the tool, so that the spring is the same as with
 // the other methods.
 //

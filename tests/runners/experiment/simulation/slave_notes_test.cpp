@@ -163,6 +163,10 @@ TEST(SlaveNotes, TheSummaryHasTheFirstContactAndTheLargestForce) {
   add(12.34, -0.002);
   EXPECT_EQ(slave_summary(trace),
             "the slave touched first at 0.002 s; largest force of the scene on it: 12.3 N");
+  Trace unknown;
+  std::swap(trace, unknown);
+  add(std::nan(""), -0.001);
+  EXPECT_EQ(slave_summary(trace), "it is not known whether the slave touched: its force is unknown");
 }
 
 TEST(SlaveNotes, SayThatThereIsNoSurfaceToTouch) {

@@ -142,6 +142,22 @@ def test_joint_axes_are_coordinates():
     assert float(run.max_force) == float(sweep.max_force.sel(r_c=0.005, variant="slow", replicate=1))
 
 
+def test_a_selection_is_replayed_by_its_coordinates():
+    sweep = rt.sweep({**SWEEP, "axes": [SWEEP["axes"][0], VARIANTS]})
+    noise = SWEEP["axes"][0]["parameter"].split(".")[-1]
+    selections = [sweep.isel({noise: slice(1, None)}), sweep.isel({noise: [2, 0], "variant": 1}), sweep.sel(variant=["slow"]),
+                  sweep.isel(replicate=[1]), sweep.transpose("variant", noise, "replicate"), sweep[["max_force"]].isel({noise: -1})]
+    for selection in selections:
+        axes = [axis for axis in selection.max_force.dims if axis != "replicate"]
+        for place in np.ndindex(*(selection.sizes[axis] for axis in axes)):
+            run = rt.replay(selection, cell=place, replicate=0)
+            assert float(run.max_force) == float(selection.max_force.isel({**dict(zip(axes, place)), "replicate": 0}))
+    with pytest.raises(rt.InputError, match="cell = .*: expected the place on variant, or a dict"):
+        rt.replay(sweep.isel({noise: 0}), cell=(0, 0))
+    with pytest.raises(rt.InputError, match=f"expected .*{noise}=VALUE"):
+        rt.replay(sweep.isel({noise: 0}, drop=True), cell=(0,))
+
+
 def test_an_analysis_of_a_file_and_of_a_data_set_are_the_same(tmp_path):
     file = tmp_path / "map.h5"
     sweep = rt.sweep({**SWEEP, "axes": [SWEEP["axes"][0], VARIANTS]}, output=file)

@@ -41,9 +41,10 @@ export function missedDeadlines(run: Run, tick: number, seconds: number): { miss
   return { missed, ticks: tick + 1 - first, longestS };
 }
 
-// Its ticks are numbered from the first that came; those before the last keptS seconds are gone.
+// Its ticks are numbered by their time, so ticks that did not arrive leave a gap: before the page was opened, or while
+// the connection was lost. Those before the last keptS seconds are gone.
 export class LiveRun extends Run {
-  count = 0; // ticks that came
+  count = 0; // the number of the newest tick, plus one
   frameCount = 0; // frames that came
   private readonly kept: number;
   private readonly rows: [Column, Float64Array][] = [];
@@ -110,15 +111,33 @@ export class LiveRun extends Run {
 
   takeTicks(view: DataView): void {
     const count = view.getUint32(8, true), all = new Float64Array(view.buffer, view.byteOffset + 16);
+    const ticks = this.numbersOf(all, count);
+    this.forget(this.count, ticks[count - 1]);
     let at = 0;
-    for (const [column, numbers] of this.rows) {
-      for (let i = 0; i < count; ++i) {
-        const row = ((this.count + i) % this.kept) * column.width;
-        numbers.set(all.subarray(at, at + column.width), row);
+    for (const [column, numbers] of this.rows)
+      for (const tick of ticks) {
+        numbers.set(all.subarray(at, at + column.width), (tick % this.kept) * column.width);
         at += column.width;
       }
+    if (count > 0) this.count = ticks[count - 1] + 1;
+  }
+  // The numbers of ticks that arrive, increasing, from their times.
+  private numbersOf(all: Float64Array, count: number): number[] {
+    let at = 0, last = this.count - 1;
+    for (const [column] of this.rows) {
+      if (column.name === "time") break;
+      at += count * column.width;
     }
-    this.count += count;
+    return Array.from(all.subarray(at, at + count), (timeS) => {
+      const tick = Math.round(timeS * this.stored.haptic_rate_hz);
+      last = tick > last ? tick : last + 1;
+      return last;
+    });
+  }
+  // Sets the ticks from first to last to unknown.
+  private forget(first: number, last: number): void {
+    for (let tick = Math.max(first, last - this.kept + 1); tick <= last; ++tick)
+      for (const [column, numbers] of this.rows) numbers.fill(Number.NaN, (tick % this.kept) * column.width, (tick % this.kept + 1) * column.width);
   }
   takeFrame(view: DataView): void {
     const at = view.byteOffset, count = view.getUint32(12, true), parts = view.getUint32(16, true);

@@ -225,11 +225,12 @@ export class Plot {
   }
   // The smallest and the largest value of all ticks in each column of pixels.
   private addColumns(pen: Pen, curve: Curve, width: number, height: number): void {
-    const pixels = Math.max(Math.floor(width - this.left), 1), perPixel = this.ticks / pixels;
+    const pixels = Math.max(Math.floor(width - this.left), 1);
+    const firstOf = (pixel: number) => Math.floor((pixel * this.ticks) / pixels); // exact at the end of the last pixel
     const valueAt = valuesOf(curve);
     let down = false;
     for (let pixel = 0; pixel < pixels; ++pixel) {
-      const begin = Math.floor(pixel * perPixel), end = Math.max(Math.floor((pixel + 1) * perPixel), begin + 1);
+      const begin = firstOf(pixel), end = Math.max(firstOf(pixel + 1), begin + 1);
       let low = Number.POSITIVE_INFINITY, high = Number.NEGATIVE_INFINITY;
       for (let k = begin; k < end && k < this.ticks && this.first + k <= this.last; ++k) {
         const value = valueAt(this.first + k);
