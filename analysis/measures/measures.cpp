@@ -385,7 +385,9 @@ double mean_steps(const Trace& trace) {
 }
 
 double max_steps(const Trace& trace) {
-  return trace.length() == 0 ? 0 : *std::max_element(trace.proxy_steps.begin(), trace.proxy_steps.end());
+  return trace.length() == 0
+             ? 0
+             : *std::max_element(trace.proxy_steps.begin(), trace.proxy_steps.end());  // no NaN: integers
 }
 
 double unconverged_fraction(const Trace& trace) {

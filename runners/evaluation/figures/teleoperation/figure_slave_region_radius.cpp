@@ -18,11 +18,11 @@ namespace {
 constexpr double kOrganSlave_hz = 2;
 constexpr double kNoises_m[] = {0, 0.001, 0.002};
 constexpr double kShakes_hz[] = {0.25, 0.5, 1};
-constexpr double kLateShake_hz = 0.5;  // of the organ whose frames are late, too
+constexpr double kLateShake_hz = 0.5;  // frequency of the organ whose frames are late, too
 
 struct NeededRegion {
   double noise_m, shake_hz, delay_s;
-  bool has_late_frames = false;  // as late as the commands
+  bool has_late_frames = false;  // frames are as late as the commands
   double radius_m = 0;
 
   double frame_delay_s() const { return has_late_frames ? delay_s : 0; }

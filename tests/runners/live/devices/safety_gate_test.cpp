@@ -57,7 +57,7 @@ TEST(SafetyGate, BeginsOnlyBelowTheThresholdAndThenRisesEvenly) {
   EXPECT_NEAR(loop.tick({1, 0, 0}).force_N.x(), 1, 1e-12);
 }
 
-// After a camera has stopped the force falls to zero, and starts again gently when it comes back.
+// The force falls to zero after a camera has stopped, and starts again gently when it comes back.
 TEST(SafetyGate, AFrameThatIsTooOldEndsTheForceUntilTheNextOne) {
   SafetyLimits limits;
   limits.max_frame_age_s = 0.2;
