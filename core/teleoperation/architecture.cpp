@@ -97,7 +97,7 @@ class PositionPositionHand final : public HandEnd {
 
  private:
   const double stiffness_, damping_, tick_s_;
-  std::optional<Vec3> start_W_;  // where the slave starts, too
+  std::optional<Vec3> start_W_;  // the slave starts there, too
   Vec3 position_W_ = Vec3::Zero(), velocity_W_ = Vec3::Zero();
 };
 

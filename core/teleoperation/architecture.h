@@ -49,7 +49,7 @@ bool feels_slave(Feedback force);
 struct FeedbackSettings {
   Feedback force = Feedback::rendered;
   double gain = 1;
-  HoldSettings hold;  // of the forces of the slave
+  HoldSettings hold;  // forces of the slave
   PassivitySettings passivity;
   double stiffness_N_per_m = 600, damping_Ns_per_m = 10;  // K and B of position-position
   double impedance_Ns_per_m = 0;                          // b of wave; 0: matched
@@ -88,7 +88,7 @@ class WaveReceiver {
   Wave used_;
 };
 
-// What one end sends beside its position or force.
+// A message travels beside a position or a force.
 struct Message {
   double credit_J = 0;                                        // passivity control: of its port
   Vec3 position_W = Vec3::Zero(), velocity_W = Vec3::Zero();  // position-position: of the slave
@@ -99,7 +99,7 @@ class HandEnd {
  public:
   virtual ~HandEnd() = default;
 
-  // What the hand has done since the last call.
+  // The hand has done this since the last call.
   struct Motion {
     Vec3 position_W = Vec3::Zero();
     Vec3 displacement_m = Vec3::Zero();
@@ -108,11 +108,11 @@ class HandEnd {
   };
   virtual void observe(const Motion& motion) { energy_.add(-motion.applied_N.dot(motion.displacement_m)); }
   virtual Message message() const { return {}; }
-  // What has arrived from the slave: the newest message and its force. Both are zero before the first packet.
+  // The newest message that has arrived, and its force. Both are zero before the first packet.
   struct Arrival {
     Message message = {};
     Vec3 force_N = Vec3::Zero();
-    double share = 1;  // what remains of a force whose packets no longer arrive, see held_share()
+    double share = 1;  // the rest of a force whose packets no longer arrive, see held_share()
     bool has_come = false;
   };
   // Returns the force on the hand for the coming tick.
@@ -127,11 +127,11 @@ class SlaveEnd {
  public:
   virtual ~SlaveEnd() = default;
 
-  // What the slave has done in a tick, in the frame in which the hand works.
+  // The slave has done this in a tick, in the frame in which the hand works.
   struct Motion {
     Vec3 force_N = Vec3::Zero();  // mean force of the scene
     Vec3 position_W = Vec3::Zero(), velocity_W = Vec3::Zero();
-    // As in Slave::State.
+    // These have the meaning of Slave::State.
     Vec3 reference_displacement_m = Vec3::Zero(), drive_N = Vec3::Zero();
     double reference_work_J = 0, drive_work_J = 0;
   };
@@ -152,7 +152,7 @@ struct Ends {
   std::unique_ptr<SlaveEnd> slave;
 };
 
-// Without a force of the slave these are the ends of position-force, whose forces the caller ignores.
+// The ends are those of position-force if the hand feels no slave; the caller then ignores their forces.
 // hand_mass_kg: mass of hand and device, with which passivity control and waves predict the motion of the
 // hand; 0: not known, then it is predicted to move as in the last tick. pre: validate() is empty, tick_s > 0.
 Ends make_ends(const FeedbackSettings& feedback, const SlaveSettings& slave, double hand_mass_kg,

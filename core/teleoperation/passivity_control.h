@@ -43,7 +43,7 @@ struct PortEnergy {
   void add(double energy_J);
   // A credit that arrives late, after a larger one, changes nothing.
   void receive(double far_credit_J);
-  // What the far port may give out, which is sent to it.
+  // The energy that the far port may give out, which is sent to it.
   double credit_J() const { return in_J - repaid_J; }
   // The energy that may still leave the channel here. Negative: an older prediction was wrong.
   double balance_J() const { return received_J + repaid_J - out_J; }

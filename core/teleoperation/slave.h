@@ -85,12 +85,12 @@ class Slave {
     Vec3 value_W = Vec3::Zero();  // sqrt(W)
     double impedance_Ns_per_m = 0;
   };
-  // As move(), with a wave in place of a command. pre: move() has put the slave somewhere.
+  // Moves the slave by a wave in place of a command. pre: move() has put the slave somewhere.
   const State& move(const Wave& wave, double time_s);
   const State& state() const { return state_; }
 
  private:
-  using Guide = std::variant<Vec3, Wave>;  // what moves the reference in a tick: a velocity or a wave
+  using Guide = std::variant<Vec3, Wave>;  // a velocity or a wave, which moves the reference in a tick
   Vec3 drive_acceleration(const Vec3& reference_velocity) const;
   Vec3 reference_velocity(const Guide& guide) const;
   Vec3 contact_force(double before_s, double now_s);
