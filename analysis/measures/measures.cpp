@@ -273,6 +273,11 @@ constexpr Row kMeasures[] = {
     {"force_packet_rate", "1/s", "mean number of forces sent in a second", slave, neither,
      force_packet_rate_per_s},
     {"max_device_force", "N", "maximum force of the device on the hand", slave, neither, max_device_force_N},
+    {"min_channel_energy", "J",
+     "lowest energy of the channel between hand and slave; negative: it gave more than it received", slave,
+     neither, min_channel_energy_J},
+    {"dissipated_energy", "J", "energy that passivity control has kept from leaving this channel", slave,
+     neither, dissipated_energy_J},
     {"frame_packet_rate", "1/s", "mean number of frames that arrived in a second", slave, neither,
      frame_packet_rate_per_s},
 

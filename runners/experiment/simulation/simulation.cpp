@@ -185,6 +185,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     hand.apply(commanded_wrench(remote ? &*remote : nullptr, device, out, time_s));
     std::optional<SlaveState> slave;
     if (remote) {
+      remote->observe_exerted(hand.state()->force_N);
       slave = remote->state();
       slave->frame_packets = link.sent();
       link.observe_slave(slave->position_W, time_s);

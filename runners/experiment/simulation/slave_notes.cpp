@@ -112,7 +112,7 @@ std::vector<Note> slave_setting_notes(const Experiment& experiment, Experiment::
                                 ": the HIP is sent to the slave, and the hand does not feel the renderer"});
   const bool is_scripted = hand == Experiment::Hand::simulated && !setting("operator").is_object() &&
                            setting("trajectory.name") != "live-session";
-  if (is_scripted && force.ends_with("slave-force"))
+  if (is_scripted && force != "rendered" && force != "none")
     notes.push_back({kKind, "feedback.force = " + force +
                                 " moves nothing: without the section operator the hand follows its path, "
                                 "whatever the device exerts"});
