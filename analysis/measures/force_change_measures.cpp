@@ -17,7 +17,7 @@ namespace {
 // Change of a force or torque from one tick to the next.
 struct Change {
   double max = 0, squares = 0, count = 0;
-  double tick = kNoValue;  // of the first change that is the maximum; NaN if all are 0 or one is unknown
+  double tick = kNoValue;  // number of the first tick with the maximum; NaN if all are 0 or one is unknown
 
   double max_or_none() const { return count == 0 ? kNoValue : max; }
   double rms_or_none() const { return count == 0 ? kNoValue : std::sqrt(squares / count); }

@@ -20,7 +20,7 @@ double max_torque_jump_Nm(const Trace& trace);
 double rms_torque_jump_Nm(const Trace& trace);
 double torque_noise_Nm(const Trace& trace);
 
-// How the force settles after a touch. The final force is the mean magnitude of the force of contact over the
+// Settling of the force after a touch. The final force is the mean magnitude of the force of contact over the
 // last kFinal_s of the run. A run has these measures only if the force is steady at its end: if all
 // magnitudes of that time are within kSettledBand of the final force. NaN otherwise, without a final force,
 // and if a force is unknown.

@@ -76,7 +76,7 @@ class ContactWatch {
 // the next.
 class WallWatch {
  public:
-  // what: the position in words, such as "the hand". The scenario must outlive the watch.
+  // Parameter what: the position in words, such as "the hand". The scenario must outlive the watch.
   WallWatch(const Scenario& scenario, std::string what);
 
   // Must be called in each tick. Returns the distance of the position from the true surface, or NaN if it has
@@ -90,7 +90,7 @@ class WallWatch {
   const std::string what_;
   const bool has_walls_;
   std::optional<Vec3> outside_W_;    // the newest position outside of the objects
-  std::optional<Vec3> last_normal_;  // of the nearest surface in the tick before, inside of an object
+  std::optional<Vec3> last_normal_;  // normal of the nearest surface in the tick before, inside of an object
   Vec3 outward_ = Vec3::Zero();      // the side from which it came into the first wall
   int walls_ = 0;                    // walls between that side and the position
   double first_s_ = 0, half_m_ = 0;  // time and depth at the first middle of a wall

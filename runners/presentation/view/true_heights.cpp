@@ -23,7 +23,7 @@ float height_at(const Scenario& scenario, double x, double z, double time_s) {
   return static_cast<float>(y);
 }
 
-// at: the number of the node along x and z; 0.5 lies between two nodes.
+// i, k: numbers of the node along x and z; 0.5 lies between two nodes.
 float height_at_node(const Scenario& scenario, const BoundingBox& box_W, double i, double k, double time_s) {
   const Vec3 at = box_W.min() + Vec3(i, 0, k).cwiseProduct(box_W.sizes()) / (TrueHeights::kColumns - 1);
   return height_at(scenario, at.x(), at.z(), time_s);
@@ -102,7 +102,7 @@ std::vector<HeightsAtTime> refined(const Scenario& scenario, const BoundingBox& 
   std::vector<HeightsAtTime> list;
   const auto at = [&](double time_s) { return HeightsAtTime{time_s, heights_at(scenario, box_W, time_s)}; };
   for (const double time_s : times_s) list.push_back(at(time_s));
-  struct Gap {  // between two times that follow each other
+  struct Gap {  // two times that follow each other, and the middle between them
     double error_m;
     HeightsAtTime before, middle, after;
     bool operator<(const Gap& other) const { return error_m < other.error_m; }

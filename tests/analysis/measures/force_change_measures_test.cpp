@@ -88,7 +88,7 @@ TEST(ForceChange, OvershootAndSettlingTimeAreThoseOfADampedOscillator) {
   constexpr double kPi = 3.14159265358979323846, kFrequency = 60;  // rad/s, undamped
   for (const double zeta : {0.2, 0.3, 0.5}) {
     const double damped = std::sqrt(1 - zeta * zeta);
-    const auto part_at = [&](double t) {  // of the final value, missing
+    const auto part_at = [&](double t) {  // part of the final value that is missing
       return std::exp(-zeta * kFrequency * t) *
              (std::cos(damped * kFrequency * t) + zeta / damped * std::sin(damped * kFrequency * t));
     };

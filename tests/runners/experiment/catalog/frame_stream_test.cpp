@@ -174,7 +174,7 @@ TEST(FrameStream, LossAndJitterAreDrawnApart) {
 // The renderer can tell only by further frames that a surface which moved has come to rest.
 TEST(FrameStream, ACameraKeepsItsRateWhenTheSceneStops) {
   for (const double latency_s : {0.0, 0.0325}) {
-    const auto frames = received(Walk(3), 0.2 + latency_s, {latency_s});
+    const auto frames = received(Walk(3), 0.201 + latency_s, {latency_s});
     ASSERT_EQ(frames.size(), 21u);
     for (int j = 0; j < 21; ++j) {
       const Frame& frame = frames[static_cast<std::size_t>(j)];

@@ -233,10 +233,11 @@ TEST(WallWatch, APositionBehindTheMiddleOfAWallHasNoSide) {
       const double y = 0.01 - step_m * (i <= down ? i : 2 * down - i), time_s = 0.001 * i;
       const double distance_m = walls.signed_distance({0, y, 0}, 0),
                    side_m = watch.side_m({0, y, 0}, distance_m, time_s);
-      if (y > -0.0023)
+      if (y > -0.0023) {
         EXPECT_EQ(side_m, distance_m) << step_m << " " << y << " " << i;
-      else if (y < -0.0027)
+      } else if (y < -0.0027) {
         EXPECT_TRUE(std::isnan(side_m)) << step_m << " " << y << " " << i;
+      }
     }
     ASSERT_EQ(watch.notes().size(), 1u);
     EXPECT_EQ(watch.notes().front().kind, "thin object");
