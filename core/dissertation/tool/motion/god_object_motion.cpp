@@ -8,9 +8,8 @@ namespace remote_touch {
 
 namespace {
 
-// A contact is a row of J if its distance exceeds the gap by no more than this. That is more than the error
-// of second order of a step, so that a contact that stopped a step is a row after it.
-constexpr double kTouching_m = ContinuousContacts::kGap_m;
+// A contact counts as touched if its distance exceeds the gap by no more than this.
+constexpr double kTouching_m = 1e-6;
 // A contact at which more than this distance is missing was put there by a frame.
 constexpr double kTolerance_m = 2 * ContinuousContacts::kGap_m;
 // A tick ends after this number of successive steps without progress, or of steps that contacts stop at once.
@@ -59,7 +58,7 @@ void GodObjectMotion::gather_touched(const NearContacts& near) {
   touched_.clear();
   for (ToolContact contact : near.contacts) {
     if (contact.depth_m < -kTouching_m) continue;
-    if (settling_ || contact.depth_m > kTolerance_m) contact.depth_m = std::min(contact.depth_m, 0.0);
+    if (settling_ || contact.depth_m > kTolerance_m) contact.depth_m = 0;
     touched_.push_back(contact);
   }
 }
@@ -71,7 +70,7 @@ Vector6 GodObjectMotion::constrained(const Vector6& a_gu, const ToolPose& pose, 
   const Vector6 desired_T = rotated(pose.q_WT.conjugate(), a_gu);
   ConstrainedMotion motion = program_.solve(desired_T, touched_);
   if (motion.is_relaxed) {  // two walls leave no room for the gap; J a >= 0 is always feasible, with a = 0
-    for (ToolContact& contact : touched_) contact.depth_m = std::min(contact.depth_m, 0.0);
+    for (ToolContact& contact : touched_) contact.depth_m = 0;
     motion = program_.solve(desired_T, touched_);
   }
   has_failed_ = motion.failed;
@@ -100,6 +99,7 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
   const Vec3 start_W = pose.p_W;
   MotionProgress progress(p_.rest_threshold_m, kGodObjectPatience);
   int stopped = 0;
+  bool is_stopped = false;  // a new contact ended the last step
   near_.begin(contacts);
   settling_ |= updated;
   while (true) {
@@ -109,7 +109,10 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
     if (near.contacts.empty()) side_ = 1;  // the tool has left the surface that held it
     gather_touched(near);
     const Vector6 a_gu = displacement(pose, device);
-    const Vector6 a_c = constrained(a_gu, pose, report);
+    // An error of second order can end the touch of the contact that ended the last step. It holds the tool
+    // all the same, so the report stays.
+    const bool is_off = is_stopped && touched_.empty();
+    const Vector6 a_c = is_off ? a_gu : constrained(a_gu, pose, report);
     report.allowed_W = a_c;
     progress.update(max_point_displacement_m(a_gu, reach_m_));
     const bool stops = max_point_displacement_m(a_c, reach_m_) <= p_.rest_threshold_m ||
@@ -118,6 +121,7 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
     if (stops || report.steps >= p_.steps_per_tick) break;
     const Vector6 step = capped(a_c, reach_m_, max_step_m_);
     const double free = free_fraction(step, pose, near);
+    is_stopped = free < 1;
     stopped = free * max_point_displacement_m(step, reach_m_) <= p_.rest_threshold_m ? stopped + 1 : 0;
     pose = free == 1 && step == a_gu ? device : moved(pose, free * step);
     ++report.steps;

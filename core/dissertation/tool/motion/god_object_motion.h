@@ -10,7 +10,9 @@
 // velocity). The tool moves along a_c until continuous collision detection finds the first new contact, which
 // is a row of J in the next step. Steps are made until the tool is at rest, or until the budget is used up.
 // Force and torque on the hand are those of the constraints at the last pose, k M (a_c - a_u). They are zero
-// for the part of the motion that no contact hinders, even if the tool has not reached the device yet.
+// for the part of the motion that no contact hinders, even if the tool has not reached the device yet. At
+// rest the contacts prevent all of it, also those that stopped the last step and are not touched any more,
+// because of an error of second order.
 //
 // The mesh of the scene. The source has two meshes at rest. Its contacts are corners against faces and edges
 // against edges. Here the faces of the scene are the small disks around its points (disk_contact.h). A
@@ -18,10 +20,9 @@
 // normal of the disk. The tool never passes a point (clear_way.h); the time of contact with a disk is that of
 // the linearised motion. Edges of a scene are not known, and there is nothing where the sensor saw nothing.
 //
-// The tool is kept ContinuousContacts::kGap_m away from its contacts. A contact is a row J a >= d, where d is
-// the distance that is missing to this gap: up to twice the gap, while no frame has put points into the tool,
-// so that errors of second order do not accumulate; and down to minus the gap, so that these errors do not
-// take a contact that stopped the tool out of J. M is that of a body of 1 kg with the gyration
+// The tool is kept ContinuousContacts::kGap_m away from its contacts. While no frame has put points into the
+// tool, a contact at which up to twice this distance is missing is a row J a >= d, where d is the missing
+// distance, so that errors of second order do not accumulate. M is that of a body of 1 kg with the gyration
 // radius of the coupling about every axis, and not that of the tool, so that the spring is the same as with
 // the other methods.
 //

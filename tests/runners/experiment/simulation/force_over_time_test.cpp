@@ -122,6 +122,26 @@ TEST(ForceOverTime, SlowStreamsHaveARightVelocityAndAnEvenForce) {
   }
 }
 
+// A rule of 900 N/m fades in over 1.5 s, in 45 frames, over a renderer of 300 N/m. The force on a HIP at rest
+// rises in steps as even as those of the schedule.
+TEST(ForceOverTime, AStiffnessFadesInLinearly) {
+  for (const char* renderer : {"proxy", "penalty", "implicit-surface", "surfels", "god-object"}) {
+    const std::string of = renderer;
+    const Trace trace = simulate(Experiment::from_json(
+        R"({"scenario": {"name": "flat-grid"}, "duration_s": 2, "renderer": {"name": ")" + of +
+            R"(", "stiffness_N_per_m": 300}, "trajectory": {"name": "waypoints",
+             "waypoints": [[0, 0.02, 0, 0], [0, )" +
+            (of == "penalty" ? "0.002" : "-0.01") + R"(, 0, 0.2]]}, "fixtures": [{"name": "everywhere",
+             "radius_m": 0, "stiffness_N_per_m": 900, "schedule": [[0.3, 0], [1.8, 1]]}]})",
+        "test"));
+    const double soft_N = trace.force_N[299].norm(), stiff_N = trace.force_N[trace.length() - 1].norm();
+    EXPECT_NEAR(stiff_N, 3 * soft_N, 1e-3) << of;
+    for (std::size_t i = 300; i < trace.length(); ++i)
+      ASSERT_LT(trace.force_N[i].norm() - trace.force_N[i - 1].norm(), 1.1 * (stiff_N - soft_N) / 45)
+          << of << " at tick " << i;
+  }
+}
+
 TEST(ForceOverTime, LatencyDelaysTheFrames) {
   const Trace trace = simulate(Experiment::load("fig4.11", {"frame_latency_s=0.05", "duration_s=0.1"}));
   for (std::size_t i = 0; i < trace.length(); ++i) EXPECT_EQ(trace.frame_index[i], i < 50 ? -1 : 0) << i;
