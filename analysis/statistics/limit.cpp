@@ -13,28 +13,24 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kTail = 0.025;
+constexpr double kLimitTail = 0.025;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Events of a rising curve: those of the absence if the event's own curve falls.
 RunsAtValue rising(RunsAtValue value, bool rises) {
   if (!rises) std::swap(value.counts.events, value.counts.without);
-  if (value.is_fixed && value.counts.runs() > 0) {  // one run
-    EventCounts& c = value.counts;
-    c = c.unknown > 0 ? EventCounts{0, 0, 1} : c.events > 0 ? EventCounts{1, 0, 0} : EventCounts{0, 1, 0};
-  }
   return value;
 }
 
-// Which end of a rising curve a walk begins at, and what it shows there.
+// The end of a rising curve at which a walk begins.
 enum class End { low, high };
 
 // True if the probability of the event is clearly below (End::low) or above (End::high) the level.
 bool is_clear(const EventCounts& c, double level, End end) {
   const auto n = static_cast<double>(c.runs());
   if (end == End::low)
-    return probability_of_at_most(static_cast<double>(c.events + c.unknown), n, level) <= kTail;
-  return probability_of_at_least(static_cast<double>(c.events), n, level) <= kTail;
+    return probability_of_at_most(static_cast<double>(c.events + c.unknown), n, level) <= kLimitTail;
+  return probability_of_at_least(static_cast<double>(c.events), n, level) <= kLimitTail;
 }
 
 // A walk over values in the order from one end.
@@ -108,7 +104,16 @@ void set_crossing(const std::vector<RunsAtValue>& values, double level, Limit& l
 }  // namespace
 
 std::int64_t runs_for_level(double level) {
-  return static_cast<std::int64_t>(std::ceil(std::log(kTail) / std::log1p(-level) - 1e-12));
+  return static_cast<std::int64_t>(std::ceil(std::log(kLimitTail) / std::log1p(-level) - 1e-12));
+}
+
+RunsAtValue RunsAtValue::of_one_run_if_fixed() const {
+  if (!is_fixed || counts.runs() == 0) return *this;
+  return {x,
+          counts.unknown > 0  ? EventCounts{0, 0, 1}
+          : counts.events > 0 ? EventCounts{1}
+                              : EventCounts{0, 1},
+          true};
 }
 
 Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& rule) {
@@ -118,7 +123,7 @@ Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& r
   Estimate& e = limit.estimate;
   for (const RunsAtValue& value : values) {
     if (value.counts.runs() == 0) continue;
-    used.push_back(rising(value, rule.rises));
+    used.push_back(rising(value.of_one_run_if_fixed(), rule.rises));
     e.clusters += used.back().counts.runs(), e.unknown += used.back().counts.unknown;
   }
   if (used.empty()) return limit;
@@ -141,7 +146,7 @@ RunsAtValue OutcomesAtValue::runs() const {
     value.counts.without += outcome == EventOutcome::without ? 1 : 0;
     value.counts.unknown += outcome == EventOutcome::unknown ? 1 : 0;
   }
-  return rising(value, true);
+  return value.of_one_run_if_fixed();
 }
 
 namespace {

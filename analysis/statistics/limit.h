@@ -24,6 +24,9 @@ struct RunsAtValue {
   double x = 0;
   EventCounts counts;
   bool is_fixed = false;
+
+  // Returns the same value with one run if it is fixed; unknown if one of the runs is.
+  RunsAtValue of_one_run_if_fixed() const;
 };
 
 // The fewest runs of which none, or all, has the event at a probability of 0.025 if the event has that
