@@ -154,8 +154,9 @@ namespace {
 constexpr int kDraws = 1999;
 constexpr std::size_t kEnd = 50;  // rank of the ends among the draws: 0.025 (kDraws + 1)
 
-// How often each replicate is in a draw. The streams of simulations encode their purpose in the upper bits of
-// the first word of the counter. Here all of its bits are set, which no stream of a simulation has.
+// Returns the number of times that each replicate is in a draw. The streams of simulations encode their
+// purpose in the upper bits of the first word of the counter. Here all of its bits are set, which no stream
+// of a simulation has.
 std::vector<double> drawn_weights(std::size_t replicates, int draw) {
   const NoiseStream stream{{0x6c696d69u, 0x74u}, {0xFFFFFFFFu, static_cast<std::uint32_t>(draw), 0}};
   std::vector<double> weights(replicates, 0);
@@ -178,7 +179,7 @@ Bracket bracket_of(const std::vector<OutcomesAtValue>& curve, const std::vector<
                    const LimitRule& rule, double least) {
   constexpr double kEqual = 1e-12;
   const double level = rule.rises ? rule.level : 1 - rule.level;
-  // Of the two ends each takes the unknown outcomes in its less favourable way.
+  // Each end takes the unknown outcomes in its less favourable way.
   std::vector<double> x, most, fewest, weights;
   for (const OutcomesAtValue& value : curve) {
     double runs = 0, events = 0, unknown = 0;

@@ -25,7 +25,7 @@ struct LimitQuestion {
 
 struct EventLimits {
   Table table;
-  std::optional<bool> rises;  // as in the question, or as shown by the runs; empty: not shown
+  std::optional<bool> rises;  // the stated direction, or the one that the runs show; empty: none
 };
 
 // The table has a row for each combination of the other axes: their values, the columns of add_estimates()
@@ -43,7 +43,7 @@ EventLimits event_limits(const SweepResult& result, const LimitQuestion& questio
 
 // The counts of each cell, for a sweep that does not keep its runs.
 struct CellCounts {
-  std::function<EventCounts(std::size_t cell)> events;       // of the finished runs
+  std::function<EventCounts(std::size_t cell)> events;       // counts the finished runs
   std::function<std::int64_t(std::size_t cell)> noted = {};  // finished runs with a note; empty: not known
 };
 // The same with these counts. Only the axes of the outline are used.

@@ -30,12 +30,12 @@ Table sweep_means(const SweepResult& result, const std::string& measure, const s
 Table sweep_differences(const SweepResult& result, const std::string& measure, std::size_t between,
                         const std::vector<std::size_t>& by, const CellStreams& streams);
 
-// What the columns of a table of estimates mean.
+// The meaning of the columns of a table of estimates.
 struct EstimateTexts {
   std::string unit;
   std::string value;       // long name of the values
   std::string runs;        // long name of the counts
-  bool has_tests = false;  // with the columns p and adjusted_p
+  bool has_tests = false;  // true: there are the columns p and adjusted_p
 };
 // Adds the columns value, low, high, runs (clusters), unknown, noted_runs if `noted` is not empty, method,
 // p and adjusted_p if there are tests, and note. A column whose name an axis has is called NAME_of_answer.

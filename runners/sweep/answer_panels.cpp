@@ -172,7 +172,7 @@ void add_answer_panel(Figure& figure, const Table& of_answer, std::size_t axes) 
 
 namespace {
 
-// Which end of the axis a limit is beyond, as the rows' places say.
+// The end of the axis that a limit is beyond, as the rows' places say.
 enum class Beyond { first, last };
 
 std::vector<std::size_t> rows_beyond(const Table& table, const std::vector<std::size_t>& rows, Beyond end) {

@@ -1,4 +1,4 @@
-// How often intervals of estimates hold the truth, by simulation with fixed seeds. The page of
+// Coverage: the fraction of intervals that hold the truth, by simulation with fixed seeds. The page of
 // runners/sweep has these numbers, with more repeats: COVERAGE_REPEATS in the source.
 #include <gtest/gtest.h>
 
