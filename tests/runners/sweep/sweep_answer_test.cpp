@@ -199,8 +199,10 @@ TEST(SweepAnswers, DrawLimitsThatAreBeyondTheAxis) {
   ASSERT_EQ(curves.size(), 4u);
   EXPECT_EQ(curves[3].label, "method = new: above the last value");
   EXPECT_EQ(curves[2].style, CurveStyle::intervals);
-  for (const Table& table : answer.tables)
-    if (table.name == curves[3].table) EXPECT_EQ(numbers(table, "value"), (std::vector<double>{3, 3}));
+  for (const Table& table : answer.tables) {
+    if (table.name != curves[3].table) continue;
+    EXPECT_EQ(numbers(table, "value"), (std::vector<double>{3, 3}));
+  }
 }
 
 TEST(SweepAnswers, CurvesOfLikeLookingValuesAreTwo) {
