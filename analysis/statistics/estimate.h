@@ -13,11 +13,11 @@ struct Estimate {
   double value = std::numeric_limits<double>::quiet_NaN();
   double low = std::numeric_limits<double>::quiet_NaN();
   double high = std::numeric_limits<double>::quiet_NaN();
-  double p = std::numeric_limits<double>::quiet_NaN();  // of the null hypothesis that the value is 0
+  double p = std::numeric_limits<double>::quiet_NaN();  // null hypothesis: the value is 0
   // The number of independent runs or pairs: runs that share random numbers count as one, a cluster.
   std::int64_t clusters = 0;
   std::int64_t unknown = 0;  // number of runs or pairs whose outcome is unknown (NaN)
-  std::string method = {};   // how the interval was computed; empty: there is none
+  std::string method = {};   // name of the interval; empty: there is none
   std::string note = {};     // why something is missing, and what the reader must know; "; " between reasons
   // True if p <= 0.05, but few large differences decide (estimated_difference()): such
   // an estimate shows neither "better" nor "worse".

@@ -19,14 +19,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Events of a rising curve: those of the absence if the event's own curve falls.
 RunsAtValue rising(RunsAtValue value, bool rises) {
   if (!rises) std::swap(value.counts.events, value.counts.without);
-  if (value.is_fixed && value.counts.runs() > 0) {  // one run
-    EventCounts& c = value.counts;
-    c = c.unknown > 0 ? EventCounts{0, 0, 1} : c.events > 0 ? EventCounts{1, 0, 0} : EventCounts{0, 1, 0};
-  }
   return value;
 }
 
-// Which end of a rising curve a walk begins at, and what it shows there.
+// The end of a rising curve at which a walk begins.
 enum class End { low, high };
 
 // True if the probability of the event is clearly below (End::low) or above (End::high) the level.
@@ -111,6 +107,15 @@ std::int64_t runs_for_level(double level) {
   return static_cast<std::int64_t>(std::ceil(std::log(kLimitTail) / std::log1p(-level) - 1e-12));
 }
 
+RunsAtValue RunsAtValue::of_one_run_if_fixed() const {
+  if (!is_fixed || counts.runs() == 0) return *this;
+  return {x,
+          counts.unknown > 0  ? EventCounts{0, 0, 1}
+          : counts.events > 0 ? EventCounts{1}
+                              : EventCounts{0, 1},
+          true};
+}
+
 Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& rule) {
   const double level = rule.rises ? rule.level : 1 - rule.level;
   std::vector<RunsAtValue> used;
@@ -118,7 +123,7 @@ Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& r
   Estimate& e = limit.estimate;
   for (const RunsAtValue& value : values) {
     if (value.counts.runs() == 0) continue;
-    used.push_back(rising(value, rule.rises));
+    used.push_back(rising(value.of_one_run_if_fixed(), rule.rises));
     e.clusters += used.back().counts.runs(), e.unknown += used.back().counts.unknown;
   }
   if (used.empty()) return limit;
@@ -141,7 +146,7 @@ RunsAtValue OutcomesAtValue::runs() const {
     value.counts.without += outcome == EventOutcome::without ? 1 : 0;
     value.counts.unknown += outcome == EventOutcome::unknown ? 1 : 0;
   }
-  return rising(value, true);
+  return value.of_one_run_if_fixed();
 }
 
 namespace {
@@ -149,8 +154,9 @@ namespace {
 constexpr int kDraws = 1999;
 constexpr std::size_t kEnd = 50;  // rank of the ends among the draws: 0.025 (kDraws + 1)
 
-// How often each replicate is in a draw. The streams of simulations encode their purpose in the upper bits of
-// the first word of the counter. Here all of its bits are set, which no stream of a simulation has.
+// Returns the number of times that each replicate is in a draw. The streams of simulations encode their
+// purpose in the upper bits of the first word of the counter. Here all of its bits are set, which no stream
+// of a simulation has.
 std::vector<double> drawn_weights(std::size_t replicates, int draw) {
   const NoiseStream stream{{0x6c696d69u, 0x74u}, {0xFFFFFFFFu, static_cast<std::uint32_t>(draw), 0}};
   std::vector<double> weights(replicates, 0);
@@ -173,7 +179,7 @@ Bracket bracket_of(const std::vector<OutcomesAtValue>& curve, const std::vector<
                    const LimitRule& rule, double least) {
   constexpr double kEqual = 1e-12;
   const double level = rule.rises ? rule.level : 1 - rule.level;
-  // Of the two ends each takes the unknown outcomes in its less favourable way.
+  // Each end takes the unknown outcomes in its less favourable way.
   std::vector<double> x, most, fewest, weights;
   for (const OutcomesAtValue& value : curve) {
     double runs = 0, events = 0, unknown = 0;

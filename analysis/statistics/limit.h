@@ -24,6 +24,9 @@ struct RunsAtValue {
   double x = 0;
   EventCounts counts;
   bool is_fixed = false;
+
+  // Returns the same value with one run if it is fixed; unknown if one of the runs is.
+  RunsAtValue of_one_run_if_fixed() const;
 };
 
 // The fewest runs of which none, or all, has the event at a probability of 0.025 if the event has that
@@ -36,7 +39,7 @@ struct Limit {
   // value: the limit; NaN if the curve of the known runs does not cross the level. low, high: values of the
   // axis; an end without evidence is open (NaN), and the note has the reason. clusters: number of runs.
   Estimate estimate;
-  LimitPlace place = LimitPlace::no_runs;  // where the known runs put the limit, relative to the values
+  LimitPlace place = LimitPlace::no_runs;  // place of the limit by the known runs
 };
 
 // Returns the limit. Its value is where the monotone curve that is nearest to the shares of the known runs
@@ -59,7 +62,7 @@ struct OutcomesAtValue {
   std::vector<EventOutcome> outcomes;
   bool is_fixed = false;
 
-  RunsAtValue runs() const;  // of fixed runs one
+  RunsAtValue runs() const;  // one run if they are fixed
 };
 
 enum class LimitComparison { difference, ratio };

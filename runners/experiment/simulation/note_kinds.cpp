@@ -45,7 +45,8 @@ const std::vector<NoteKind>& note_kinds() {
       {"hand jumped", "the pixel that image-press follows suddenly showed another place"},
       {"nothing selected", "a fixture rule selects no point, so that it has no effect"},
       {"outcome unknown",
-       "popped_through has no value, beside an object for example; fractions of runs take it as 0"},
+       "popped_through has no value, beside an object for example; fractions of runs leave it out, and their intervals "
+       "allow for both outcomes"},
       {"few frames", "fewer than three frames show the motion of the scene"},
       {"columns unused", "a measured contact has columns that are not used"},
       {"slave without surface", "the true surface, or its normal, is not known where the slave was"},

@@ -19,6 +19,7 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
@@ -236,6 +237,8 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
   }
   print_attributes(file, content.attributes);
   print_datasets(content);
+  if (is_schema_of(attribute(content.attributes, "schema"), "sweep"))
+    print_equal_runs(read_stored_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
   return kDone;
 }
 

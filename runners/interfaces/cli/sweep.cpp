@@ -18,6 +18,7 @@
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/sweep_notes.h"
 #include "runners/sweep/sweep_session.h"
+#include "runners/sweep/tally_outline.h"
 #include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
@@ -161,19 +162,21 @@ bool run_session(const CommandLine& line, const SweepRequest& request, const std
 }
 
 int make_runs(const CommandLine& line, const SweepRequest& request, const std::string& file,
-              SweepSession session) {
+              const std::string& config, SweepSession session) {
   if (!run_session(line, request, file, session))
     return print_interrupted(file, session.result().runs_in(RunState::done).size());
   const int code = print_summary(file, session.result());
+  print_equal_runs(session.result(), config);
   if (request.strict) refuse_notes(session.result());
   return code;
 }
 
 int make_tally(const CommandLine& line, const SweepRequest& request, const std::string& file,
-               TallySession session) {
+               const std::string& config, TallySession session) {
   if (!run_session(line, request, file, session))
     return print_interrupted(file, session.tally().held.count());
   const int code = print_summary(file, session.tally(), session.digest());
+  print_equal_runs(outline_of(session.tally()), config);
   if (request.strict) refuse_notes(session.tally());
   return code;
 }
@@ -194,10 +197,11 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     return request.dry_run
                ? dry_run_of_tally(sweep, shard, tally_plan_in_file(sweep, shard, attributes, file), line,
                                   request)
-               : make_tally(line, request, file, TallySession(sweep, shard, attributes, file));
+               : make_tally(line, request, file, sweep.to_json(),
+                            TallySession(sweep, shard, attributes, file));
   if (request.dry_run)
     return dry_run_of_runs(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
-  return make_runs(line, request, file, SweepSession(sweep, shard, attributes, file));
+  return make_runs(line, request, file, sweep.to_json(), SweepSession(sweep, shard, attributes, file));
 }
 
 }  // namespace remote_touch

@@ -153,7 +153,7 @@ TEST(EstimatedDifference, PIsThatOfAllSignFlips) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 40; ++trial) {
     std::vector<double> d(6 + random() % 6);
-    for (double& x : d) x = static_cast<double>(random() % 200) - 80;  // without ties of sums, nearly always
+    for (double& x : d) x = static_cast<double>(random() % 200) - 80;  // nearly always no ties of sums
     const auto sum_of = [&](unsigned signs) {
       double sum = 0;
       for (std::size_t i = 0; i < d.size(); ++i) sum += (signs >> i & 1u) != 0 ? -d[i] : d[i];

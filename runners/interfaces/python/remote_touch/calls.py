@@ -89,13 +89,16 @@ def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None)
     return dataset.of_trace(_warned(result, file))
 
 
-def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=(), difference=(), between=None):
-    """Answers questions about a sweep; returns tables as a dict of Datasets: limits, mean_MEASURE, difference_MEASURE.
+def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=(), difference=(), between=None,
+            direction=None):
+    """Answers questions about a sweep; returns tables as a dict of Datasets: limits, mean_MEASURE, difference_MEASURE, and
+    limit_difference and limit_ratio.
 
     sweep: a file, or what sweep() returned. limit: the measure of an event, which happens above the value `above`: where
     along the axis `along` does it become more probable than `level`? mean: measures whose means are wanted, by the axes
     `by` (all if empty). difference: measures whose differences between the first and each other value of the axis
-    `between` are wanted. Without a question: the limit of popped_through, with a tool of tool_popped_through, and
+    `between` are wanted; with `limit` and `between`, also the differences and ratios of the limits. direction: "rises" if
+    the event becomes more probable along the axis, "falls" if less; None: as the runs show it. Without a question: the limit of popped_through, with a tool of tool_popped_through, and
     all means. The intervals are of 95 %.
     """
     from remote_touch import dataset
@@ -105,7 +108,7 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
     else:
         parts, config = dataset.parts_of_sweep(sweep), str(sweep.attrs.get("config", "{}"))
     result = _core.analyse(file, parts, config, _name(limit), _name(along), _number("above", above), _number("level", level),
-                           _names(mean), _names(by), _names(difference), _name(between))
+                           _names(mean), _names(by), _names(difference), _name(between), _name(direction))
     return dataset.of_figure(_warned(result, file))
 
 

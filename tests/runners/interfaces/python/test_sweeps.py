@@ -168,9 +168,9 @@ def test_an_analysis_of_a_file_and_of_a_data_set_are_the_same(tmp_path):
     for name, table in stored.items():
         assert table.drop_attrs().identical(given[name].drop_attrs()) if hasattr(table, "drop_attrs") else table.equals(given[name])
     means = sweep.max_force.mean(["variant", "replicate"])
-    assert np.allclose(stored["mean_max_force"]["mean"], means, rtol=1e-12)
+    assert np.allclose(stored["mean_max_force"]["value"], means, rtol=1e-12)
     differences = (sweep.max_force.sel(variant="slow") - sweep.max_force.sel(variant="printed")).mean("replicate")
-    assert np.allclose(stored["difference_max_force"]["mean"], differences, rtol=1e-12)
+    assert np.allclose(stored["difference_max_force"]["value"], differences, rtol=1e-12)
 
 
 @pytest.mark.parametrize("question, problem", [
@@ -198,7 +198,7 @@ def test_a_tally_has_the_counts_and_means_of_the_runs(tmp_path, command_line):
     assert tally.max_force_mean.attrs["units"] == "N" and tally.equals(rt.open(tmp_path / "tally.h5"))
     of_tally, of_runs = (rt.analyse(of, mean="max_force", by="noise_sigma_m")["mean_max_force"]
                          for of in (tmp_path / "tally.h5", runs))
-    np.testing.assert_allclose(of_tally["mean"], of_runs["mean"], rtol=1e-14)
+    np.testing.assert_allclose(of_tally["value"], of_runs["value"], rtol=1e-14)
     command_line("sweep", file, "-o", tmp_path / "command.h5")
     assert_same_file(tmp_path / "tally.h5", tmp_path / "command.h5")
 
@@ -211,7 +211,7 @@ def test_no_axis_of_a_tally_has_the_name_of_a_variable(tmp_path):
     tally = rt.sweep(plan("depth"), output=tmp_path / "tally.h5")
     assert len(tally.data_vars) == 7
     for name in tally.data_vars:
-        with pytest.raises(rt.InputError, match=f"a part of the tally has the name {name}: expected|a column of analyse has"):
+        with pytest.raises(rt.InputError, match=f"a part of the tally has the name {name}: expected"):
             rt.sweep(plan(name), output=tmp_path / "refused.h5")
 
 
