@@ -165,7 +165,7 @@ TEST(CompareTraces, AMissingColumnIsAProblemAndAnAddedOneIsNot) {
   const TraceComparison added = compare(less, lift());
   EXPECT_TRUE(added.is_same());
   EXPECT_EQ(added.added, Texts{"time"});
-  // Of another experiment: no later program has added the column.
+  // The column is of another experiment, not of a later program.
   const TraceComparison other = compare(less, lift(), {}, {"seed 1 against 2"});
   EXPECT_FALSE(other.is_same() || compare(lift(), less, {}, {"seed 1 against 2"}).is_same());
   EXPECT_TRUE(other.added.empty());
