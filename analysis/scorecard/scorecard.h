@@ -72,8 +72,8 @@ struct SceneRules {
   std::vector<Bound> success;
   std::vector<std::pair<std::string, Better>> measures;
   std::vector<Bound> old_success = {};  // the previous rule; empty without one
-  // For each method whether its runs draw random numbers that are the same at all levels of a replicate;
-  // empty: none does. See SharedRuns::by_replicate.
+  // True for a method whose runs draw random numbers that are the same at all levels of a replicate, see
+  // SharedRuns::by_replicate. Empty: no method does.
   std::vector<bool> by_replicate = {};
 };
 

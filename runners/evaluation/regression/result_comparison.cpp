@@ -100,6 +100,7 @@ void judge_columns(ResultComparison& result) {
             std::to_string(first.candidate_rows) +
             (result.columns->divergence ? "" : ", and the common rows are the same");
   if (!result.no_measures.empty()) text += "; no measures: " + result.no_measures;
+  if (!result.not_judged.empty()) text += "; " + result.not_judged;
   conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
 }
 
@@ -177,7 +178,10 @@ ResultComparison compare_by_kind(const Hdf5Reader& first_file, const Hdf5Reader&
                        "hashes are equal or not: expected with traces, sweeps and figures");
     return compare_hashes(hashes_of(first_file, ours), hashes_of(second_file, theirs));
   }
-  if (ours == "figure") return compare_figure(StoredFigure(first_file), StoredFigure(second_file), rules);
+  if (ours == "figure")
+    return compare_figure(
+        StoredFigure(first_file), StoredFigure(second_file), rules,
+        attribute(first_file.attributes(), "config") == attribute(second_file.attributes(), "config"));
   if (ours == "trace") {
     const StoredTrace first(first_file), second(second_file);
     return compare_trace(first, first.attributes(), second, second.attributes(), rules);
@@ -224,11 +228,12 @@ std::string kind_of(const Hdf5Reader& result) {
 }
 
 ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
-                                const ComparisonRules& rules) {
+                                const ComparisonRules& rules, bool one_origin) {
   check_names(rules.tolerances, baseline.column_names());
   // A figure's configuration is a list of all that it ran, which is too long for a list of its differences.
   ResultComparison result = begin("figure", {}, {});
-  result.columns = compare_by_name(baseline, candidate, rules.tolerances);
+  const std::vector<std::string> differences(one_origin ? 0 : 1, "the configurations differ");
+  result.columns = compare_by_name(baseline, candidate, rules.tolerances, differences);
   judge_columns(result);
   return result;
 }
@@ -262,11 +267,12 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
   result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
   if (!result.columns->is_same()) {
     result.no_measures = tick_difference(baseline, candidate);
-    auto measures = result.no_measures.empty() ? compare_measures(baseline, baseline_attributes, candidate,
-                                                                  candidate_attributes, rules.tolerances)
-                                               : std::nullopt;
+    auto measures = result.no_measures.empty()
+                        ? compare_measures(baseline, baseline_attributes, candidate, candidate_attributes,
+                                           rules.tolerances, result.configuration)
+                        : std::nullopt;
     if (measures)
-      result.measures = std::move(*measures), result.not_judged = outcome_difference(result.measures);
+      result.measures = std::move(measures->all), result.not_judged = std::move(measures->not_judged);
     else if (result.no_measures.empty())
       result.no_measures = "a column is missing, or the runs are not of one length";
   }
@@ -286,6 +292,10 @@ ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes
     if (difference.starts_with("experiment.duration_s "))
       result.sweep->problems.push_back(difference + ": measures of another duration cannot be compared");
   }
+  const std::vector<std::string> known = names_of(baseline.measures);
+  for (const Column& measure : candidate.measures)
+    if (!result.configuration.empty() && std::find(known.begin(), known.end(), measure.name) == known.end())
+      result.sweep->problems.push_back("measure " + measure.name + ": the baseline has none");
   if (!result.sweep->problems.empty())
     conclude(result, Outcome::not_comparable, result.sweep->problems.front());
   else

@@ -143,7 +143,8 @@ class Repro {
             }
         },
         [&](const FigureProgress& made) { progress.update(progress_text(runs, made)); });
-    return compare_figure(StoredFigure(Hdf5Reader(result_.file())), ColumnsInMemory(std::move(columns)), {});
+    return compare_figure(StoredFigure(Hdf5Reader(result_.file())), ColumnsInMemory(std::move(columns)), {},
+                          true);
   }
 
   const CommandLine& line_;

@@ -139,7 +139,7 @@ RunRanges runs_in(const std::string& file) {
   } else {
     there = read_sweep_outline(hdf5).result;
     if (hdf5.has("/sweep/run")) there.part = hdf5.values<std::uint64_t>("/sweep/run");
-    there.state = states_of(hdf5.values<std::int32_t>("/sweep/state"));
+    there.state = states_of(std::get<std::vector<std::int32_t>>(hdf5.column("/sweep/state").values));
   }
   RunRanges done;
   add_done(there, there.state, 0, done);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/statistics/paired_bootstrap.h"
 #include "core/numeric/noise.h"
 
 namespace remote_touch::student_test {
@@ -137,14 +136,6 @@ TEST(MeanTest, BearsSkewedDifferences) {
                                       [](const auto& d) { return is_apart_from_0(student_mean({d})); });
     EXPECT_GE(t_alone, rate + 0.02) << pairs;
   }
-}
-
-// The percentile bootstrap is not used to decide, because it finds a false difference at least twice as often
-// as intended.
-TEST(MeanTest, TheBootstrapOfAFewPairsHasTwiceTheFalseRate) {
-  const auto drawn_again = [](const auto& d) { return is_apart_from_0(bootstrap_mean({d}, 1, 200)); };
-  EXPECT_GE(false_rate(Shape::normal, 6, 1000, drawn_again), 0.1);
-  EXPECT_GE(false_rate(Shape::exponential, 6, 1000, drawn_again), 0.14);
 }
 
 }  // namespace

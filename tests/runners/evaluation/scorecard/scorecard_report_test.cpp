@@ -105,12 +105,18 @@ TEST(Score, MeasuresAreJudgedWhereBothSucceeded) {
   EXPECT_FALSE(score(rules, {held, lost}, false).measures[0].ranking.has_best);  // eleven pairs are left
 }
 
-TEST(Score, EqualRunsAreOneOnlyWithoutNoise) {
+// Nine equal runs at three levels: the noise changes nothing, so they are one. If it changes one of them, the
+// equal ones are draws of the noise, too.
+TEST(Score, EqualRunsAreOneWithoutNoiseOrIfNoiseHasNoEffect) {
   const SweepResult same = sweep_of(std::vector<double>(9, 1), {0, 0.001, 0.005});
-  const SceneScore scene = score(kRules, {same, same}, false);
-  EXPECT_EQ(scene.success[0].at_level[0].runs, 1);
-  EXPECT_EQ(scene.success[0].at_level[1].runs, 3);
-  EXPECT_EQ(scene.success[0].noisy.runs, 6);
+  SweepResult one_lost = same;
+  std::get<std::vector<double>>(one_lost.measures[0].values)[8] = -1;
+  const SceneScore scene = score(kRules, {same, one_lost}, false);
+  for (const Proportion& level : scene.success[0].at_level) EXPECT_EQ(level.runs, 1);
+  EXPECT_EQ(scene.success[0].noisy.runs, 1);
+  EXPECT_EQ(scene.success[1].at_level[0].runs, 1);
+  EXPECT_EQ(scene.success[1].at_level[1].runs, 3);
+  EXPECT_EQ(scene.success[1].noisy.runs, 6);
   EXPECT_EQ(scene.measures[0].at_level[0][0].clusters, 1);
   const SweepResult own = sweep_of(std::vector<double>(9, 1), {1});
   EXPECT_EQ(score(kRules, {own}, true).success[0].noisy.runs, 1);
@@ -210,7 +216,7 @@ TEST(ScorecardReport, HasMeasuresWithUnitsAndIntervals) {
   EXPECT_EQ(one["overall"]["mean"], card.scenes[0].measures[0].ranking.mean[0].value);
   EXPECT_EQ(one["overall"]["runs"], 19);
   EXPECT_EQ(one["levels"][1]["mean"], card.scenes[0].measures[0].at_level[0][1].value);
-  EXPECT_EQ(one["levels"][1]["low"], nullptr);                     // 19 equal values have no scatter
+  EXPECT_EQ(one["levels"][1]["low"], card.scenes[0].measures[0].at_level[0][1].low);
   EXPECT_EQ(one["levels"][0]["low"], nullptr);                     // one run has no interval
   EXPECT_EQ(measure["methods"][1]["levels"][1]["mean"], nullptr);  // a method that never succeeds has no mean
   EXPECT_EQ(measure["methods"][1]["overall"]["runs"], 0);

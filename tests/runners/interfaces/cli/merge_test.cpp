@@ -82,7 +82,7 @@ TEST_F(Merge, KeepsAPlugInAShardAndASweepWithMoreRuns) {
   EXPECT_EQ(read_sweep(longer_).result.runs_in(RunState::done).size(), 6u);
 }
 
-// What holds runs that nothing else holds is kept, of whatever kind it and the merged shards are.
+// A file with runs that nothing else holds is kept, of whatever kind it and the merged shards are.
 TEST_F(Merge, KeepsRunsThatTheShardsLack) {
   line_.force = true;
   const std::string sweep = (folder_ / "quick.json").string();
