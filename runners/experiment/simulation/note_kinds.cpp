@@ -53,6 +53,12 @@ const std::vector<NoteKind>& note_kinds() {
       {"slave loop gains energy",
        "the device gave much energy to the hand: hand, links and slave may oscillate"},
       {"setting without effect", "settings of the experiment that cannot act together"},
+      {"unusual poses",
+       "a file of poses, or of a contact, is improbably fast, far or slow, or states a convention that is not read"},
+      {"poses do not fit", "the frames of a recording fit each other worse with the poses of the camera"},
+      {"truth elsewhere", "a true object of a recording is nowhere near what the camera measured"},
+      {"not in view", "an object of a scene of meshes is at no time in the image of the camera"},
+      {"camera assumed", "the intrinsics of a recording are assumed, because no file states them"},
   };
   return kinds;
 }
