@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "scenarios/text_files/refuse.h"
+
 namespace remote_touch {
 
 namespace {
@@ -56,6 +58,33 @@ void sort_by_name(std::vector<std::filesystem::path>& files) {
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
     return is_before(a.filename().string(), b.filename().string());
   });
+}
+
+std::vector<std::string> numbers_in_name(const std::string& name) {
+  std::vector<std::string> numbers;
+  for (std::string_view rest = name; !rest.empty();) {
+    const std::string_view digits = digits_of(rest);
+    if (!digits.empty()) {
+      const std::string_view number = without_zeros(digits);
+      numbers.emplace_back(number.empty() ? "0" : number);
+    }
+    rest.remove_prefix(std::max<std::size_t>(digits.size(), 1));
+  }
+  return numbers;
+}
+
+std::map<std::vector<std::string>, std::size_t> frames_by_numbers(const std::filesystem::path& subject,
+                                                                  const std::vector<std::string>& names) {
+  std::map<std::vector<std::string>, std::size_t> index;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::vector<std::string> numbers = numbers_in_name(std::filesystem::path(names[i]).stem().string());
+    if (numbers.empty()) numbers = {std::to_string(i)};
+    const auto [found, is_new] = index.emplace(std::move(numbers), i);
+    if (!is_new)
+      refuse(subject, "it is not clear which of its files belong to ", names[found->second], " and which to ",
+             names[i], ": expected frames with different numbers in their names");
+  }
+  return index;
 }
 
 }  // namespace remote_touch

@@ -12,7 +12,6 @@
 #include "core/mesh/mesh_repair.h"
 #include "runners/experiment/mesh_files/named_mesh.h"
 #include "scenarios/meshes/checked_object.h"
-#include "scenarios/meshes/pose_file.h"
 #include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
@@ -94,12 +93,6 @@ Vec3 to_bottom(const TriangleMesh& mesh, const RigidTransform& X_WO) {
 
 constexpr std::size_t kMotionColumns = 7;
 
-// Returns the poses of the path; the identity without one.
-std::vector<StampedPose> poses_in(const PlacedMesh& s) {
-  if (s.path.empty()) return {StampedPose{}};
-  return read_stamped_poses(find_recording(s.path)).poses();
-}
-
 // Returns the displacements and turns of the motion; the identity without one.
 std::vector<StampedPose> motion_of(const PlacedMesh& s) {
   if (s.motion.empty()) return {StampedPose{}};
@@ -116,9 +109,9 @@ std::vector<StampedPose> motion_of(const PlacedMesh& s) {
 // Returns the path of the object in the world frame. With a motion the mesh is moved to a frame whose origin
 // is at position_m, because a pose path moves the origin of its body on straight lines. At most one of
 // `motion` and `path` has several poses.
-PosePath placed_path(const PlacedMesh& s, TriangleMesh& mesh) {
+PosePath placed_path(const PlacedMesh& s, const std::vector<StampedPose>& path, TriangleMesh& mesh) {
   const RigidTransform rotated(rotation(kRadiansPerDegree * s.rotation_deg));
-  const std::vector<StampedPose> path = poses_in(s), motion = motion_of(s);
+  const std::vector<StampedPose> motion = motion_of(s);
   Vec3 shift = Vec3::Zero();
   if (s.origin == PlacedMesh::Origin::bottom) shift = to_bottom(mesh, rotated * path.front().X);
   const RigidTransform outer(Eigen::Translation3d(s.position_m));
@@ -163,8 +156,8 @@ Parameters parameters(PlacedMesh& s, const std::string& prefix) {
        "motion: times, displacements and rotation vectors, world frame, about the position; between "
        "rows straight, by the smaller angle, and at constant rate"},
       {prefix + "mesh_path", &s.path, 0, 0,
-       "file of poses over time instead, `t tx ty tz qx qy qz qw`, of the object in the frame that position "
-       "and rotation place; empty: none"},
+       "file of poses over time instead, `t tx ty tz qx qy qz qw` or as its first line names them, of the object "
+       "in the frame that position and rotation place; empty: none"},
       {prefix + "mesh_colour", &s.colour, 0, 0, "colour of the object, #rrggbb; empty: none"},
       {prefix + "mesh_sheet", &s.sheet, 0, 0,
        "the mesh is an open surface, whose outside is the side of its normals"},
@@ -189,9 +182,9 @@ std::vector<RecordingPart> input_files(const PlacedMesh& s) {
   return files;
 }
 
-SceneMesh load(const PlacedMesh& s, const std::string& prefix) {
+SceneMesh load(const PlacedMesh& s, const std::string& prefix, const PosePath& path_of_file) {
   TriangleMesh mesh = checked_mesh(s, prefix);
-  PosePath path = placed_path(s, mesh);
+  PosePath path = placed_path(s, path_of_file.poses(), mesh);
   const std::string setting = "scenario." + prefix;
   const std::string if_inverted = ", or " + setting + "mesh_repair=true";
   const std::string if_open =

@@ -59,6 +59,12 @@ const std::vector<NoteKind>& note_kinds() {
        "the slave starts behind the true surface, so that its largest forces may be those of its start"},
       {"force not finite", "the renderer's force is not a number in some ticks; it counts as no force there"},
       {"thin object", "the hand or the proxy passed the middle of a wall; it has no side from there on"},
+      {"unusual poses",
+       "a file of poses, or of a contact, is improbably fast, far or slow, or states a convention that is not read"},
+      {"poses do not fit", "the frames of a recording fit each other worse with the poses of the camera"},
+      {"truth elsewhere", "a true object of a recording is nowhere near what the camera measured"},
+      {"not in view", "an object of a scene of meshes is at no time in the image of the camera"},
+      {"camera assumed", "the intrinsics of a recording are assumed, because no file states them"},
   };
   return kinds;
 }

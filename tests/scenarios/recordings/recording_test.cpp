@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenarios/recordings/tum_layout.h"
+#include "tests/support/note_kinds.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::recording_test {
@@ -70,8 +71,9 @@ TEST_F(Recording, IndexesAndReadsAFolder) {
   ASSERT_EQ(index.frames.size(), 2u);
   EXPECT_EQ(index.frames[0].captured_s, 0);
   EXPECT_EQ(index.frames[1].captured_s, 1 / 20.0);
-  EXPECT_EQ(description(index, "5 Hz"),
-            folder_.path().filename().string() + ": 2 frame(s) from depth PNG at 5 Hz, 3 x 2 pixels");
+  EXPECT_EQ(description(index, "5 Hz"), folder_.path().filename().string() +
+                                            ": 2 frame(s) from depth PNG at 5 Hz, 3 x 2 pixels, "
+                                            "f = 10, 20.5, c = 1, 0.5 (camera.json)");
   EXPECT_EQ(frame_name(index, 1), (folder_ / "depth/0001.png").string());
 
   const PointCloud cloud = read_frame(index, 1, 2.0045);
@@ -94,7 +96,27 @@ TEST_F(Recording, ReadsColourOnlyWhereItIsRegistered) {
   EXPECT_EQ(index.frames[1].colour, folder_ / "rgb/0001.png");
   std::string json = kCamera;
   folder_.write("camera.json", json.replace(json.find("true"), 4, "false"));
-  EXPECT_TRUE(index_recording(folder_.path()).frames[1].colour.empty());
+  const RecordingIndex unregistered = index_recording(folder_.path());
+  EXPECT_TRUE(unregistered.frames[1].colour.empty());
+  EXPECT_EQ(kinds_of(unregistered.notes), Kinds{"colours missing"});
+  fs::remove_all(folder_ / "rgb");
+  EXPECT_TRUE(index_recording(folder_.path()).notes.empty());
+}
+
+// The cameras that the benchmark publishes.
+TEST_F(Recording, TheCameraOfTumIsThatOfItsSequence) {
+  folder_.write_depth("rgbd_dataset_freiburg3_desk/depth/a.png", 1000);
+  folder_.write_depth("x/depth/a.png", 1000);
+  const auto camera = [&](const std::string& folder, const std::string& comment) {
+    folder_.write(folder + "/depth.txt", comment + "1 depth/a.png\n");
+    return index_recording(folder_ / folder);
+  };
+  EXPECT_EQ(camera("rgbd_dataset_freiburg3_desk", "").camera.fx, 535.4);
+  EXPECT_EQ(camera("x", "# file: 'rgbd_dataset_freiburg1_xyz.bag'\n").camera.fx, 517.3);
+  EXPECT_EQ(camera("x", "# file: 'rgbd_dataset_freiburg2_xyz.bag'\n").camera.cy, 249.7);
+  EXPECT_HAS(description(camera("x", "# freiburg2\n"), "5 Hz"), "c = 325.1, 249.7 (freiburg2 of TUM");
+  EXPECT_TRUE(camera("x", "# freiburg2\n").notes.empty());
+  EXPECT_EQ(kinds_of(camera("x", "").notes), Kinds{"camera assumed"});
 }
 
 TEST_F(Recording, IsInTheOrderOfTheNumbersInNames) {
@@ -145,7 +167,8 @@ TEST_F(Recording, RefusesIncompleteFolders) {
   EXPECT_HAS(error(folder_ / "missing"), "missing: does not exist: expected");
   EXPECT_HAS(error(folder_.write("notes.txt", "")), "notes.txt: is of another kind");
   const std::string allowed =
-      "expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or metadata.yaml with a ROS 2 bag";
+      "expected a folder that holds depth.txt (TUM), depth/*.png, *.depth.png (7-Scenes), *.pcd or metadata.yaml "
+      "with a ROS 2 bag";
   const std::string no_recording = folder_.path().string() + ": is not a recording: " + allowed;
   EXPECT_EQ(error(folder_.path()), no_recording);
   folder_.write("camera.json", kCamera);

@@ -103,7 +103,7 @@ class TrueObjects : public testing::Test {
       return TriangleMesh{{{-0.2, -0.2, 0}, {0.2, -0.2, 0}, {0.2, 0.2, 0}, {-0.2, 0.2, 0}},
                           {{0, 2, 1}, {0, 3, 2}}};
     };
-    return RecordedTruth(truth, 2, 0.03, reader, kCamera);
+    return RecordedTruth(truth, std::vector<std::string>(2), 0.03, reader, kCamera);
   }
   const TestFolder folder_{"simulated_sensor_test"};
 };
