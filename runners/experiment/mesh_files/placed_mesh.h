@@ -37,8 +37,7 @@ std::vector<RecordingPart> input_files(const PlacedMesh& s);
 
 // Reads the mesh and the path. A mesh that is not closed or not outwards everywhere is repaired if `repair`
 // is set. Throws MissingRecording if a file is not there, and InputError as read_mesh(), read_stamped_poses()
-// and checked_object() do, and if a part of the mesh is inside out and is no hollow of another part. Pre:
-// mesh is not empty, validate() finds no problem.
+// and checked_object() do. Pre: mesh is not empty, validate() finds no problem.
 SceneMesh load(const PlacedMesh& s, const std::string& prefix);
 
 }  // namespace remote_touch
