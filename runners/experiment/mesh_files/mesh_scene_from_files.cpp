@@ -35,7 +35,7 @@ BoundingBox box_of(const SceneMesh& mesh) {
 double nearest_depth_m(const DepthSensorSettings& sensor) {
   if (sensor.sensor == DepthSensorKind::simple) return 0;
   const Triangulation t = triangulation(sensor);
-  return t.max_disparity_px > 0 ? sensor.camera.focal_px * t.baseline_m / t.max_disparity_px : 0;
+  return t.max_disparity_px > 0 ? t.focal_px * t.baseline_m / t.max_disparity_px : 0;
 }
 
 // Places the camera where a ball around the box fills the smaller side of the image, or farther away, where
@@ -57,7 +57,8 @@ std::string text_of(const SceneMesh& mesh) {
   char sides[96];
   std::snprintf(sides, sizeof sides, ": %zu triangles, %.3f x %.3f x %.3f m",
                 mesh.object.shape->triangles().size(), sides_m.x(), sides_m.y(), sides_m.z());
-  return mesh.object.name + sides;
+  return mesh.object.name + sides +
+         (mesh.object.shape->crosses_itself() ? ", its faces cross each other" : "");
 }
 
 std::string text_of(const Vec3& camera_W) {

@@ -1,15 +1,19 @@
 #include "runners/experiment/mesh_files/placed_mesh.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/geometry/bounding_box.h"
 #include "core/geometry/rotation.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_repair.h"
+#include "core/mesh/mesh_sides.h"
+#include "core/mesh/welded_mesh.h"
 #include "runners/experiment/mesh_files/named_mesh.h"
 #include "scenarios/meshes/checked_object.h"
 #include "scenarios/text_files/refuse.h"
@@ -46,32 +50,12 @@ void scale_to(double size_m, const std::string& subject, TriangleMesh& mesh) {
   for (Vec3& vertex : mesh.vertices) vertex *= size_m / longest;
 }
 
-// Returns true if a part of the mesh has a negative volume and is not in the box of a solid part. Such a part
-// is no hollow.
-bool has_inverted_part(const TriangleMesh& mesh) {
-  int count = 0;
-  const std::vector<int> part_of = parts_of(mesh, edges_by_vertices(mesh), count);
-  std::vector<double> volumes(static_cast<std::size_t>(count), 0);  // six times the volumes
-  std::vector<BoundingBox> boxes(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto part = static_cast<std::size_t>(part_of[i]);
-    const auto& [a, b, c] = mesh.triangles[i];
-    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-    volumes[part] += p.dot(q.cross(r));
-    boxes[part].extend(p), boxes[part].extend(q), boxes[part].extend(r);
-  }
-  const auto least = [&](std::size_t i) {  // a part with less volume is a sheet with two sides
-    const double diagonal = boxes[i].diagonal().norm();
-    return 1e-6 * diagonal * diagonal * diagonal;
-  };
-  const auto is_in_solid = [&](const BoundingBox& box) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      if (volumes[i] > least(i) && boxes[i].contains(box)) return true;
-    return false;
-  };
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (volumes[i] < -least(i) && !is_in_solid(boxes[i])) return true;
-  return false;
+// Returns true if the mesh is closed and its solid lies behind all of its faces, or on both sides.
+bool is_outward_solid(const TriangleMesh& mesh) {
+  const TriangleMesh welded = welded_mesh(mesh);
+  if (welded.triangles.empty() || !is_closed_surface(welded)) return false;
+  const std::vector<FaceSide> sides = face_sides(welded);
+  return std::find(sides.begin(), sides.end(), FaceSide::inverted) == sides.end();
 }
 
 TriangleMesh checked_mesh(const PlacedMesh& s, const std::string& prefix) {
@@ -79,7 +63,7 @@ TriangleMesh checked_mesh(const PlacedMesh& s, const std::string& prefix) {
   const MeshCheck check = check_mesh(mesh);
   if (!check.readable()) refuse(subject_of(s, prefix), text(check), ": expected a mesh of triangles");
   MeshRepair repaired;
-  if (s.repair && (!check.closed() || has_inverted_part(mesh))) mesh = repair_mesh(mesh, repaired);
+  if (s.repair && !is_outward_solid(mesh)) mesh = repair_mesh(mesh, repaired);
   if (s.size_m > 0) scale_to(s.size_m, subject_of(s, prefix), mesh);
   return mesh;
 }
@@ -193,9 +177,6 @@ SceneMesh load(const PlacedMesh& s, const std::string& prefix, const PosePath& p
   MeshObject object = checked_object(
       std::filesystem::path(s.mesh).stem().string(), mesh, !s.sheet,
       {subject_of(s, prefix), if_open, if_inverted, "; " + setting + "mesh_size_m scales the mesh"});
-  if (!s.sheet && has_inverted_part(mesh))
-    refuse(subject_of(s, prefix), "a part of the mesh is inside out: expected all faces to point outwards",
-           if_inverted);
   return {std::move(object), std::move(path), colour_in(s.colour)};
 }
 

@@ -83,6 +83,7 @@ TEST_F(ScenesOfFiles, TheCameraFitsObjectsOfAllSizes) {
       Settings s = box_alone();
       s.objects[0].size_m = size_m, s.objects[0].position_m = {1, -1, 0.5};
       s.scene.sensor.sensor = kind, s.scene.sensor.max_disparity_px = 15;
+      s.scene.sensor.disparity_focal_px = 0;
       const PointCloud cloud = made(s).cloud(0);
       ASSERT_EQ(cloud.size(), 96u * 72u);
       int measured = 0;
