@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// What is measured, and the whole mesh for its winding number if faces cross.
+// The faces that are measured, and the whole mesh for its winding number if faces cross.
 struct MeshDistance::Surface {
   TriangleMesh mesh;
   bool is_closed = false, has_inverted_part = false;
@@ -123,7 +123,7 @@ NearestOnMesh MeshDistance::with_normal(const OnFace& nearest, const Vec3& p) co
   bool is_inside = (p - nearest.point).dot(result.normal) < 0;
   if (winding_ && is_doubtful_[nearest.face] != 0) {
     const double turns = winding_->winding_number(p);
-    // On a face the number is about 1/2 and says nothing.
+    // The number is about 1/2 on a face, which says nothing.
     if (std::abs(turns - 0.5) > 0.1 && (turns > 0.5) != is_inside) {
       is_inside = !is_inside;
       result.normal = -result.normal;

@@ -9,7 +9,7 @@ namespace remote_touch {
 std::vector<SampledPoint> surface_samples(const MeshDistance& shape, std::size_t count) {
   constexpr double kAlong = 0.7548776662466927, kAcross = 0.5698402909980532;
   const std::vector<Vec3>& vertices = shape.vertices();
-  std::vector<double> area_up_to;  // of the triangles up to each, times two
+  std::vector<double> area_up_to;  // sum up to each triangle, times two
   double area = 0;
   for (const auto& [a, b, c] : shape.triangles())
     area_up_to.push_back(area += (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]).norm());

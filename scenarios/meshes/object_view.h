@@ -1,4 +1,4 @@
-// Where the surfaces of objects are in the image of a camera.
+// The places of the surfaces of objects in the image of a camera.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How well the frames of a recording agree with the poses in its files: frames with each other, by the poses
+// The agreement of the frames of a recording with the poses in its files: frames with each other, by the poses
 // of the camera, and measured points with the true objects.
 #pragma once
 

@@ -135,7 +135,7 @@ class ScenePaths {
   // i: index of an object, or kCamera.
   static constexpr std::size_t kCamera = 3;
   const std::optional<PosePath>& operator[](std::size_t i) const { return paths_[i]; }
-  // What was read of each, for the user.
+  // Describes what was read of each, for the user.
   const std::string& text() const { return text_; }
 
  private:

@@ -188,7 +188,7 @@ TEST(MeshDistance, OfPartsWithinOthersIsThatOfTheOuterOnes) {
   const MeshDistance alone(outer), nested(meshes::together(ball, outer)),
       twice(meshes::together(meshes::together(core, outer), ball));
   const TriangleMesh hollow_mesh = meshes::together(meshes::together(core, outer), meshes::inside_out(ball));
-  const MeshDistance hollow(hollow_mesh);  // with a core within the hollow
+  const MeshDistance hollow(hollow_mesh);  // a core lies within the hollow
   for (const MeshDistance* surface : {&alone, &nested, &twice, &hollow}) {
     EXPECT_TRUE(surface->is_closed());
     EXPECT_FALSE(surface->has_inverted_part());

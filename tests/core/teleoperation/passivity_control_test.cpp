@@ -150,7 +150,7 @@ TEST(PassivityControl, RemovesWhatIsMissing) {
 TEST(PassivityControl, AWrongPredictionLeavesABoundedDebtThatIsRepaid) {
   ImpedancePassivityController hand({}, kTick_s);
   const Vec3 expected(1e-4, 0, 0), displacement(2e-4, 0, 0);
-  // Nothing is expected to move.
+  // The expectation is no motion.
   hand.observe(displacement, hand.force({5, 1, 0}, Vec3::Zero(), 0));
   EXPECT_NEAR(hand.energy().balance_J(), -1e-3, 1e-15);
   for (int tick = 0; tick < 2000 && hand.energy().balance_J() < -1e-9; ++tick) {

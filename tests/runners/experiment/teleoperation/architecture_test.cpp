@@ -120,7 +120,7 @@ Plant random_plant(Feedback force, unsigned seed) {
 
 struct Balance {
   double lowest_J = 0;
-  double below_bound_J = 0;  // how far the energy was below the bound at worst
+  double below_bound_J = 0;  // largest distance of the energy below the bound
   double miscounted_J = 0;   // largest difference of the counters from the sum over the signals
   bool dissipation_falls = false;
 };
