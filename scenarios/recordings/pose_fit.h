@@ -1,5 +1,5 @@
-// The agreement of the frames of a recording with the poses in its files: frames with each other, by the poses
-// of the camera, and measured points with the true objects.
+// The agreement of the frames of a recording with the poses in its files: frames with each other, by the
+// poses of the camera, and measured points with the true objects.
 #pragma once
 
 #include <cstddef>

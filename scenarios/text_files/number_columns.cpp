@@ -51,7 +51,8 @@ std::vector<std::string_view> words_of_line(std::string_view line) {
 }
 
 std::optional<double> number_of_word(std::string_view word) {
-  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // a plus is refused by from_chars()
+  const bool has_plus =
+      word.size() > 1 && word[0] == '+' && word[1] != '-';  // a plus is refused by from_chars()
   const std::string_view digits = has_plus ? word.substr(1) : word;
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
