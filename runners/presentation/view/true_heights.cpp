@@ -46,7 +46,7 @@ double error_between_nodes_m(const Scenario& scenario, const BoundingBox& box_W,
   double largest_m = 0;
   for (int k = 0; k < n; ++k)
     for (int i = 0; i < n; ++i)
-      for (const auto [x, z] : {std::pair{1, 0}, std::pair{0, 1}}) {
+      for (const auto& [x, z] : {std::pair{1, 0}, std::pair{0, 1}}) {
         if (i + x >= n || k + z >= n) continue;
         const float mean_m = 0.5f * (heights[static_cast<std::size_t>(k * n + i)] +
                                      heights[static_cast<std::size_t>((k + z) * n + i + x)]);
