@@ -1,4 +1,4 @@
-// Which runs of a sweep share random numbers, and which draw none.
+// Runs of a sweep that share random numbers, and runs that draw none.
 #pragma once
 
 #include <cstddef>
@@ -23,9 +23,9 @@ struct RandomStreams {
 
 // The streams of all cells of a sweep.
 struct CellStreams {
-  std::vector<RandomStreams> draws;     // of each cell
-  std::vector<std::size_t> noise_cell;  // of each cell the cell whose stream it has
-  std::vector<std::size_t> seed;        // of each cell a number of its seed
+  std::vector<RandomStreams> draws;     // one for each cell
+  std::vector<std::size_t> noise_cell;  // the cell whose stream each cell has
+  std::vector<std::size_t> seed;        // a number of the seed of each cell
   std::string doubt = {};  // why the streams are not known, and what is assumed then; empty: they are known
 
   bool is_fixed(std::size_t cell) const { return draws[cell].is_fixed(); }
@@ -43,7 +43,7 @@ CellStreams independent_streams(std::size_t cells);
 // Of a fixed cell there is one run, its first, in a cluster of its own.
 struct RunCluster {
   std::vector<std::size_t> runs;  // finished ones
-  std::size_t noise_cell = 0;     // of its first run; the clusters of one cell are a stratum
+  std::size_t noise_cell = 0;     // the one of its first run; the clusters of a cell are a stratum
   bool is_fixed = false;
 };
 // Returns the clusters of the finished runs of these cells, in the order of their first runs. by_replicate:
