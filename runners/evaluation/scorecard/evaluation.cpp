@@ -2,12 +2,10 @@
 
 #include <omp.h>
 
-#include <nlohmann/json.hpp>
-
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/passivity.h"
+#include "runners/experiment/catalog/random_streams.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
 
@@ -19,21 +17,13 @@ std::vector<StoredSweep> read_all(const std::vector<BenchmarkSweep>& sweeps) {
   return stored;
 }
 
-// True if the sweep draws an error of the registration: its directions are those of the replicate, at every
-// level of the noise.
-bool is_by_replicate(const Sweep& sweep) {
-  const Json run = parse_json(sweep.experiment(0, 0).to_json(), sweep.title());
-  const auto registration = run.find("registration");
-  return registration != run.end() &&
-         (registration->value("offset_m", 0.0) > 0 || registration->value("rotation_deg", 0.0) > 0);
-}
-
 SceneScore score_of(const BenchmarkScene& scene, const std::vector<BenchmarkSweep>& sweeps,
                     const std::vector<StoredSweep>& stored) {
   SceneRules rules{scene.name, scene.title, scene.meaning, scene.success, {}, scene.old_success};
   for (const BenchmarkScene::Judged& judged : scene.measures)
     rules.measures.emplace_back(judged.measure, judged.better);
-  for (const BenchmarkSweep& one : sweeps) rules.by_replicate.push_back(is_by_replicate(one.sweep));
+  for (const BenchmarkSweep& one : sweeps)
+    rules.by_replicate.push_back(random_streams(one.sweep.experiment(0, 0)).of_replicate);
   std::vector<SweepResult> results;
   for (const StoredSweep& one : stored) results.push_back(one.result);
   return score(rules, results, scene.noise.empty());
