@@ -11,7 +11,7 @@
 
 namespace remote_touch {
 
-// The faces that are measured, and the whole mesh for its winding number if faces cross.
+// The surface that is measured, and the whole mesh for its winding number if faces cross.
 struct MeshDistance::Surface {
   TriangleMesh mesh;
   bool is_closed = false, has_inverted_part = false;
@@ -28,11 +28,11 @@ MeshDistance::Surface MeshDistance::surface_of(const TriangleMesh& mesh) {
   if (!surface.is_closed) return surface;
   const std::vector<FaceSide> sides = face_sides(welded);
   const auto have = [&](FaceSide side) { return std::find(sides.begin(), sides.end(), side) != sides.end(); };
-  surface.has_inverted_part = have(FaceSide::inverted);
+  surface.has_inverted_part = has_inverted_part_in(welded, sides);
   std::vector<char> at_crossed(welded.vertices.size(), 0);
   if (have(FaceSide::crossed)) surface.winding = std::make_shared<const TriangleTree>(welded);
   for (std::size_t f = 0; f < sides.size(); ++f)
-    if (sides[f] == FaceSide::crossed)
+    if (sides[f] == FaceSide::crossed || sides[f] == FaceSide::inverted)
       for (const int corner : welded.triangles[f]) at_crossed[corner] = 1;
   std::vector<std::array<int, 3>> kept;
   for (std::size_t f = 0; f < sides.size(); ++f) {
@@ -123,7 +123,7 @@ NearestOnMesh MeshDistance::with_normal(const OnFace& nearest, const Vec3& p) co
   bool is_inside = (p - nearest.point).dot(result.normal) < 0;
   if (winding_ && is_doubtful_[nearest.face] != 0) {
     const double turns = winding_->winding_number(p);
-    // The number is about 1/2 on a face, which says nothing.
+    // The number is about 1/2 on a face, and says nothing there.
     if (std::abs(turns - 0.5) > 0.1 && (turns > 0.5) != is_inside) {
       is_inside = !is_inside;
       result.normal = -result.normal;

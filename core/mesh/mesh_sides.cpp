@@ -195,4 +195,13 @@ std::vector<FaceSide> face_sides(const TriangleMesh& mesh) {
   return sides;
 }
 
+bool has_inverted_part_in(const TriangleMesh& mesh, const std::vector<FaceSide>& sides) {
+  int count = 0;
+  const std::vector<int> part_of = parts_of(mesh, edges_by_vertices(mesh), count);
+  std::vector<char> is_inverted(static_cast<std::size_t>(count), 1);
+  for (std::size_t f = 0; f < sides.size(); ++f)
+    if (sides[f] != FaceSide::inverted) is_inverted[part_of[f]] = 0;
+  return std::find(is_inverted.begin(), is_inverted.end(), 1) != is_inverted.end();
+}
+
 }  // namespace remote_touch

@@ -24,6 +24,10 @@ bool is_closed_surface(const TriangleMesh& mesh);
 // pre: mesh is the result of welded_mesh(), has a triangle, and is_closed_surface(mesh).
 std::vector<FaceSide> face_sides(const TriangleMesh& mesh);
 
+// True if all faces of a part are inverted, of those that edges connect. A surface that crosses itself may
+// have some inverted faces: a pocket that it winds around backwards is outside. pre: sides of face_sides().
+bool has_inverted_part_in(const TriangleMesh& mesh, const std::vector<FaceSide>& sides);
+
 // Returns for each face whether another one crosses it, or lies on a part of it. Faces that only touch, in a
 // corner or along a line, do not cross. pre: indices in range, vertices finite, no triangle without area.
 std::vector<char> crossed_faces(const TriangleMesh& mesh);

@@ -1,6 +1,5 @@
 #include "runners/experiment/mesh_files/placed_mesh.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
@@ -54,8 +53,7 @@ void scale_to(double size_m, const std::string& subject, TriangleMesh& mesh) {
 bool is_outward_solid(const TriangleMesh& mesh) {
   const TriangleMesh welded = welded_mesh(mesh);
   if (welded.triangles.empty() || !is_closed_surface(welded)) return false;
-  const std::vector<FaceSide> sides = face_sides(welded);
-  return std::find(sides.begin(), sides.end(), FaceSide::inverted) == sides.end();
+  return !has_inverted_part_in(welded, face_sides(welded));
 }
 
 TriangleMesh checked_mesh(const PlacedMesh& s, const std::string& prefix) {

@@ -124,7 +124,7 @@ bool Ros1Bag::walk() {
         refuse(name_, "is encrypted: expected a plain bag");
     }
     if (opcode == Ros1Record::chunk && record.data_size == 0 && !is_closed_) {
-      open_at_ = at;  // the content of this chunk follows
+      open_at_ = at;  // its content follows
       return false;
     }
     if (opcode == Ros1Record::chunk) chunk_at = at, listed_.push_back({at, 0});

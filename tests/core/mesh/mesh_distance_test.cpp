@@ -188,7 +188,7 @@ TEST(MeshDistance, OfPartsWithinOthersIsThatOfTheOuterOnes) {
   const MeshDistance alone(outer), nested(meshes::together(ball, outer)),
       twice(meshes::together(meshes::together(core, outer), ball));
   const TriangleMesh hollow_mesh = meshes::together(meshes::together(core, outer), meshes::inside_out(ball));
-  const MeshDistance hollow(hollow_mesh);  // a core lies within the hollow
+  const MeshDistance hollow(hollow_mesh);  // it has a core within the hollow
   for (const MeshDistance* surface : {&alone, &nested, &twice, &hollow}) {
     EXPECT_TRUE(surface->is_closed());
     EXPECT_FALSE(surface->has_inverted_part());
@@ -286,6 +286,31 @@ TEST(MeshSides, PartsThatAreInsideOutAreFoundWhereverTheyAre) {
   EXPECT_TRUE(is_inverted({0.9, 0.9, 0.9})) << "beside a corner, with boxes that overlap";
   EXPECT_TRUE(MeshDistance(meshes::inside_out(torus(24, 12))).has_inverted_part());
   EXPECT_FALSE(MeshDistance(torus(24, 12)).has_inverted_part());
+}
+
+// A pyramid over a bent, concave base crosses itself: a pocket of it, around which it winds backwards, is
+// outside.
+TEST(MeshSides, APocketOfASurfaceThatCrossesItselfIsOutside) {
+  const TriangleMesh mesh{{{-0.01111, 0.00839, 0.0038},
+                           {-0.00215, 0.09246, -0.07542},
+                           {-0.01006, 0.02453, -0.01233},
+                           {-0.07108, 0.05207, 0.05727},
+                           {-0.08102, 0.00691, -0.0479}},
+                          {{0, 1, 2}, {0, 2, 3}, {1, 0, 4}, {2, 1, 4}, {3, 2, 4}, {0, 3, 4}}};
+  const MeshDistance surface(mesh);
+  EXPECT_TRUE(surface.crosses_itself());
+  EXPECT_FALSE(surface.has_inverted_part());
+  RandomVectors random(24);
+  int pocket = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 p = random.in_box(bounding_box(mesh.vertices));
+    const double turns = meshes::winding(mesh, p);
+    const auto nearest = surface.nearest(p, kInfinity);
+    if (std::abs(nearest->distance_m) < 1e-7) continue;
+    ASSERT_EQ(nearest->distance_m<0, turns> 0.5) << p.transpose();
+    pocket += turns < -0.5;
+  }
+  EXPECT_GT(pocket, 0);
 }
 
 // Four faces meet at the edge, so check_mesh() does not count the surface as closed. Nevertheless it bounds a

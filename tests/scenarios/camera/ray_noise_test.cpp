@@ -75,7 +75,7 @@ TEST(RayNoise, IsCorrelatedAcrossTheViewAsItsLatticeSays) {
   }
 }
 
-// Over many rays, from the first frame on and over many frames: the correlation of two frames is m^lag.
+// The correlation of two frames is m^lag over many rays, from the first frame on.
 TEST(RayNoise, TheCorrelationOfFramesIsThePowerOfTheMemory) {
   PointCloud places;
   for (int i = 0; i < 20000; ++i) places.append({0, 0, 0});
