@@ -127,7 +127,7 @@ std::vector<Note> PoseFit::motion_notes(const CameraPath& path) const {
       (std::isfinite(gap_m) ? "with these poses the frames differ by " + length(gap_m)
                             : std::string("with these poses the frames show different places")) +
       " (median of the depth), without poses by " + length(still_m);
-  if (best.meaning && best.gap_m < kMuchLess * std::min(gap_m, std::max(still_m, kSmallGap_m)))
+  if (best.meaning && best.gap_m < kMuchLess * gap_m && best.gap_m <= still_m)
     text += std::string(", with ") + best.meaning->text + " by " + length(best.gap_m) +
             (best.meaning == other_meanings().data() ? ": scenario.pose_direction may be the other one"
                                                      : ": this may be what the file has");
