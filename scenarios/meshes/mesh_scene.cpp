@@ -74,25 +74,27 @@ std::vector<Note> MeshScene::input_notes() const {
   for (const SceneMesh& mesh : meshes_) {
     if (!mesh.object.is_closed) continue;
     const std::vector<SampledPoint> samples = surface_samples(*mesh.object.shape, kSamples);
-    const auto is_seen = [&](const auto& meant) {
+    const auto samples_seen = [&](const auto& meant) {
+      std::size_t count = 0;
       for (int i = 0; i < moments; ++i) {
         const double time_s = motion_ends_s_ * i / std::max(1, moments - 1);
         const RigidTransform X_CW = RigidTransform(meant(camera_.path().at(time_s))).inverse();
-        if (count_in_image(samples, X_CW * mesh.path.at(time_s), camera_.intrinsics()) > 0) return true;
+        count += count_in_image(samples, X_CW * mesh.path.at(time_s), camera_.intrinsics());
       }
-      return false;
+      return count;
     };
-    if (is_seen([](const RigidTransform& X) { return X; })) continue;
+    if (samples_seen([](const RigidTransform& X) { return X; }) > 0) continue;
     const Vec3 p_C = camera_.path().at(0).inverse() * (mesh.path.at(0) * samples.front().point);
     char place[96];
     std::snprintf(place, sizeof place, "at x %.3g, y %.3g, z %.3g m in the frame of the camera", p_C.x(),
                   p_C.y(), p_C.z());
     std::string text = mesh.object.name + " is at no time in the image: at the start it is " + place;
+    std::string others;
+    std::size_t most = 0;
     for (const OtherMeaning& meaning : other_meanings())
-      if (camera_has_path_ && is_seen(meaning.of)) {
-        text += std::string("; with ") + meaning.text + " of the camera it is in the image";
-        break;
-      }
+      if (const std::size_t count = camera_has_path_ ? samples_seen(meaning.of) : 0; count > most)
+        most = count, others = std::string("; with ") + meaning.text + " of the camera it is in the image";
+    text += others;
     notes.push_back({"not in view", text});
   }
   return notes;

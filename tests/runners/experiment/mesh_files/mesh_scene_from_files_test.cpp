@@ -183,6 +183,10 @@ TEST_F(ScenesOfFiles, ThatTheirCameraDoesNotShowAreReported) {
              "not in view: box is at no time in the image");
   EXPECT_HAS(notes(down.inverse(), PoseDirection::camera_to_world),
              "; with the inverse poses of the camera it is");
+  const RigidTransform aside = look_at({0.9, 0.6, -0.4}, {0.2, 0.06, 0.1});
+  EXPECT_EQ(notes(aside, PoseDirection::camera_to_world), "");
+  EXPECT_HAS(notes(aside, PoseDirection::camera_to_world, true),
+             "with quaternions with qw first of the camera");
 }
 
 TEST_F(ScenesOfFiles, ObjectsHaveTheirColours) {
