@@ -79,6 +79,8 @@ def main():
     arguments = parser.parse_args()
     build = arguments.build.resolve()
     tests, record = names_of_tests(build), Record(build)
+    if not tests:
+        parser.error(f"no test with the label evidence in {build}")
     unknown = [name for name in arguments.names if name not in tests]
     if unknown:
         parser.error(f"no test with the label evidence: {', '.join(unknown)}; there are: {', '.join(tests)}")

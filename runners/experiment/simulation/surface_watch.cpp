@@ -21,8 +21,8 @@ double shown_depth(const PointCloud& cloud, const RigidTransform& X_CW, const Ve
   const int u = static_cast<int>(column), v = static_cast<int>(row);
   const int reach = static_cast<int>(std::clamp(camera.fx * reach_m / p_C.z(), 1.0, kMaxReach_px));
   std::vector<double> depths;
-  for (int y = std::max(0, v - reach); y <= std::min(camera.height - 1, v + reach); ++y)
-    for (int x = std::max(0, u - reach); x <= std::min(camera.width - 1, u + reach); ++x) {
+  for (int y = std::max(0, v - reach); y <= std::min<int>(camera.height - 1, v + reach); ++y)
+    for (int x = std::max(0, u - reach); x <= std::min<int>(camera.width - 1, u + reach); ++x) {
       if ((x - u) * (x - u) + (y - v) * (y - v) > reach * reach) continue;
       const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
       if (cloud.is_measured(i)) depths.push_back((X_CW * cloud.point(i)).z());

@@ -86,7 +86,8 @@ double Teleoperation::ticks_since_last(double time_s) const {
 // ticks: since the last tick. All but the last of them were missed.
 void Teleoperation::move_slave_until(double time_s, double ticks) {
   double peak_N = 0;
-  for (int left = static_cast<int>(std::min(ticks - 1, 1.0 * kMaxMissedTicks)); left > 0; --left) {
+  const double missed = std::min(ticks - 1, 1.0 * kMaxMissedTicks);  // no NaN: ticks are counted
+  for (int left = static_cast<int>(missed); left > 0; --left) {
     const double at_s = time_s - left * tick_s_;
     move_slave(at_s);
     peak_N = max_or_nan(peak_N, state_.peak_force_N);

@@ -33,7 +33,7 @@ Servo::Servo(const ServoLinks& links, const DevicePlacement& placement, const Sa
 std::int64_t Servo::next_number(std::int64_t now_ns) {
   const auto since_ns = static_cast<double>(now_ns - start_ns_);
   const auto by_clock = static_cast<std::int64_t>(std::ceil(since_ns * rate_hz_ / 1e9));
-  return last_number_ = std::max(last_number_ + 1, by_clock);
+  return last_number_ = std::max<std::int64_t>(last_number_ + 1, by_clock);
 }
 
 // A frame belongs to the first tick at or after its time, as in a simulated run.

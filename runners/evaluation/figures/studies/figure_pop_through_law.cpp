@@ -110,7 +110,7 @@ void add_map(Figure& figure, const Study& study, std::size_t spacing) {
   figure.tables.push_back(table_of(name, "share of lifts that pop through, " + title,
                                    {{"noise", "r_c", "standard deviation of the noise"},
                                     {"acceleration", "r_c f_c^2", "acceleration of the lift"},
-                                    {"popped_through", "fraction", "share of lifts that pop through"}},
+                                    {"popped_through", "1", "share of lifts that pop through"}},
                                    rows));
   figure.panels.push_back(plot(
       "Share that pops through, " + title, "noise (r_c)", "acceleration (r_c f_c^2)",
