@@ -188,6 +188,8 @@ double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) 
 void append_frames(const std::vector<fs::path>& files, RecordingIndex& index) {
   for (std::size_t j = 0; j < files.size(); ++j)
     index.frames.push_back({static_cast<double>(j) / index.frame_rate_hz, files[j], {}});
+  const std::string equal = equal_numbers(files);
+  if (!equal.empty()) index.notes.push_back({"equal numbers", equal});
 }
 
 DepthImage read_depth_image(const fs::path& file, double metres_per_unit) {

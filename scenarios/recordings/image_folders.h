@@ -35,7 +35,8 @@ std::optional<RecordingIndex> index_image_folder(const std::filesystem::path& fo
 // Throws InputError about the file if it is above kMaxFrameRate_hz.
 double mean_rate_hz(const std::string& file, std::size_t frames, double last_s);
 
-// Appends frames at the steady rate of the index: frame j is captured at j / rate.
+// Appends frames at the steady rate of the index: frame j is captured at j / rate. Names with equal numbers
+// are a note. Pre: the files are in the order of sort_by_name().
 void append_frames(const std::vector<std::filesystem::path>& files, RecordingIndex& index);
 
 // Reads a depth image, a NumPy file or a PNG. Missing pixels are NaN; they have the value 0 or, in an image

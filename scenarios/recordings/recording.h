@@ -54,7 +54,8 @@ struct RecordingIndex {
   // Files that were read in addition to the frames: camera.json, depth.txt, rgb.txt and the like.
   std::vector<std::filesystem::path> texts;
   std::shared_ptr<const BagFrames> bag;  // set if kind is bag
-  std::vector<Note> notes;               // on an assumed camera, and on colours that are not used
+  // Notes on an assumed camera, on colours that are not used, and on names with equal numbers.
+  std::vector<Note> notes;
 };
 
 // Lists the frames of a recording. Its layout is the first of these that fits path:

@@ -330,6 +330,17 @@ TEST_F(Recording, DepthsAreFloatsAndDistancesIfCameraJsonSaysSo) {
   expect_error("depth", "holds .png and .npy files: expected one kind");
 }
 
+TEST_F(Recording, NamesWithEqualNumbersAreANote) {
+  write_pcd("frame_2.pcd", "2"), write_pcd("frame_1.pcd", "1");
+  EXPECT_TRUE(index_recording(folder_.path()).notes.empty());
+  write_pcd("frame_01.pcd", "1");
+  const RecordingIndex index = index_recording(folder_.path());
+  EXPECT_EQ(index.frames.size(), 3u);
+  ASSERT_EQ(index.notes.size(), 1u);
+  EXPECT_EQ(index.notes[0].kind, "equal numbers");
+  EXPECT_EQ(index.notes[0].text, "frame_01.pcd and frame_1.pcd have equal numbers: all are frames");
+}
+
 TEST_F(Recording, StreamsPcdFiles) {
   write_pcd("frame_2.pcd", "2"), write_pcd("frame_1.pcd", "1");
   RecordingIndex index = index_recording(folder_.path());
