@@ -15,8 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 Json parse_camera_file(const fs::path& file) {
-  static const Json kKeys = {"width",         "height",           "fx", "fy", "cx", "cy", "depth_scale_m",
-                             "frame_rate_hz", "colour_registered"};
+  static const Json kKeys = {
+      "width",      "height", "fx", "fy", "cx", "cy", "depth_scale_m", "frame_rate_hz", "colour_registered",
+      "depth_along"};
   Json json = parse_json(read_input_text(file, "expected an object of plain values"), file.string());
   if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
   for (const auto& item : json.items()) {
@@ -68,6 +69,11 @@ ImageCamera read_camera_file(const fs::path& file) {
   if (const auto found = json.find("colour_registered"); found != json.end()) {
     if (!found->is_boolean()) refuse(file, "colour_registered = ", shown(*found), ": expected true, false");
     result.colour_registered = found->get<bool>();
+  }
+  if (const auto found = json.find("depth_along"); found != json.end()) {
+    if (*found != "axis" && *found != "ray")
+      refuse(file, "depth_along = ", shown(*found), ": expected \"axis\", \"ray\"");
+    result.depth_along_ray = *found == "ray";
   }
   return result;
 }

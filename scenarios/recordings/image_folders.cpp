@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "scenarios/recordings/camera_file.h"
 #include "scenarios/recordings/folder_files.h"
+#include "scenarios/recordings/images_and_clouds/depth_npy.h"
 #include "scenarios/recordings/images_and_clouds/depth_png.h"
 #include "scenarios/recordings/tum_layout.h"
 #include "scenarios/text_files/file_ending.h"
@@ -27,6 +29,7 @@ constexpr double kMillimetre_m = 1e-3;
 
 void set_camera(const ImageCamera& camera, const fs::path& file, RecordingIndex& index) {
   index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
+  index.depth_along_ray = camera.depth_along_ray;
   index.camera_source = camera.source;
   index.frame_rate_hz = camera.frame_rate_hz > 0 ? camera.frame_rate_hz : kNominalRate_hz;
   if (!file.empty()) index.texts.push_back(file);
@@ -97,7 +100,7 @@ RecordingIndex index_tum(const fs::path& folder) {
 ImageCamera camera_of_images(const std::vector<fs::path>& depth, const CameraIntrinsics& intrinsics,
                              double metres_per_unit, const std::string& source) {
   ImageCamera result{intrinsics, metres_per_unit, false, source};
-  const DepthImage first = read_depth_png(depth.front(), metres_per_unit, 1);
+  const DepthImage first = read_depth_image(depth.front(), metres_per_unit);
   result.camera.width = first.width, result.camera.height = first.height;
   return result;
 }
@@ -185,6 +188,18 @@ double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) 
 void append_frames(const std::vector<fs::path>& files, RecordingIndex& index) {
   for (std::size_t j = 0; j < files.size(); ++j)
     index.frames.push_back({static_cast<double>(j) / index.frame_rate_hz, files[j], {}});
+  const std::string equal = equal_numbers(files);
+  if (!equal.empty()) index.notes.push_back({"equal numbers", equal});
+}
+
+DepthImage read_depth_image(const fs::path& file, double metres_per_unit) {
+  constexpr double kNoLimit_m = std::numeric_limits<double>::infinity();
+  if (has_ending(file, ".npy")) return read_depth_npy(file, metres_per_unit, kNoLimit_m);
+  DepthImage depth = read_depth_png(file, metres_per_unit, kNoLimit_m);
+  // The largest value is no measurement: 7-Scenes marks missing pixels with it.
+  std::replace(depth.z_m.begin(), depth.z_m.end(), 65535 * metres_per_unit,
+               std::numeric_limits<double>::quiet_NaN());
+  return depth;
 }
 
 std::optional<RecordingIndex> index_image_folder(const fs::path& folder) {
@@ -201,7 +216,11 @@ std::optional<RecordingIndex> index_image_folder(const fs::path& folder) {
       note_unused_colours("*.color.png", "the images of 7-Scenes are not registered", index);
     return index;
   }
-  const std::vector<fs::path> depth = files_in_order(folder / "depth", ".png");
+  std::vector<fs::path> depth = files_in_order(folder / "depth", ".png");
+  const std::vector<fs::path> arrays = files_in_order(folder / "depth", ".npy");
+  if (!depth.empty() && !arrays.empty())
+    refuse(folder / "depth", "holds .png and .npy files: expected one kind");
+  if (depth.empty()) depth = arrays;
   fs::path of_scannet = folder / "intrinsic" / "intrinsic_depth.txt";
   if (!fs::exists(of_scannet)) of_scannet = folder / "intrinsics_depth.txt";
   const bool is_bop = fs::exists(of_bop), is_scannet = fs::exists(of_scannet);
@@ -209,7 +228,7 @@ std::optional<RecordingIndex> index_image_folder(const fs::path& folder) {
     refuse(own,
            "is missing: depth images need {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}, or "
            "scene_camera.json (BOP) or intrinsic/intrinsic_depth.txt (ScanNet)");
-  if (depth.empty()) refuse(folder / "depth", "holds no .png file");
+  if (depth.empty()) refuse(folder / "depth", "holds no .png and no .npy file");
   const fs::path colours = folder / (is_scannet && !is_bop ? "color" : "rgb");
   if (fs::exists(own)) {
     const ImageCamera camera = read_camera_file(own);

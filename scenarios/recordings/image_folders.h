@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/camera.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
@@ -20,9 +21,11 @@ namespace remote_touch {
 // - BOP: depth/*.png and scene_camera.json; depth_scale is millimetres per unit; colours in rgb/.
 // - ScanNet: depth/*.png and intrinsic/intrinsic_depth.txt, or intrinsics_depth.txt; millimetres.
 // - 7-Scenes: *.depth.png; millimetres, f = 585, c = (320, 240).
-// A camera.json replaces the camera and the unit of every layout, and states whether colours are registered
-// and, except for TUM, the rate, which is otherwise 30 Hz. Colours that are there but not used are a note.
-// Images are in the order of sort_by_name(); colours are paired as in folder_files.h.
+// Depth images may be NumPy files (depth/*.npy, depth_npy.h) in every layout but that of 7-Scenes.
+// A camera.json replaces the camera and the unit of every layout, and states whether colours are registered,
+// whether depths are along the axis or the rays and, except for TUM, the rate, which is otherwise 30 Hz.
+// Colours that are there but not used are a note. Images are in the order of sort_by_name(); colours are
+// paired as in folder_files.h.
 //
 // Returns nothing for a folder of another kind. Throws InputError about the file if a part is missing or
 // wrong, and about scene_camera.json if the images of a scene have several cameras.
@@ -32,7 +35,12 @@ std::optional<RecordingIndex> index_image_folder(const std::filesystem::path& fo
 // Throws InputError about the file if it is above kMaxFrameRate_hz.
 double mean_rate_hz(const std::string& file, std::size_t frames, double last_s);
 
-// Appends frames at the steady rate of the index: frame j is captured at j / rate.
+// Appends frames at the steady rate of the index: frame j is captured at j / rate. Names with equal numbers
+// are a note. Pre: the files are in the order of sort_by_name().
 void append_frames(const std::vector<std::filesystem::path>& files, RecordingIndex& index);
+
+// Reads a depth image, a NumPy file or a PNG. Missing pixels are NaN; they have the value 0 or, in an image
+// of 16-bit integers, 65535. Throws InputError as read_depth_npy() and read_depth_png().
+DepthImage read_depth_image(const std::filesystem::path& file, double metres_per_unit);
 
 }  // namespace remote_touch

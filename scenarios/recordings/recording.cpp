@@ -1,6 +1,5 @@
 #include "scenarios/recordings/recording.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cstdio>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "scenarios/recordings/folder_files.h"
 #include "scenarios/recordings/frame_layout.h"
 #include "scenarios/recordings/image_folders.h"
+#include "scenarios/recordings/images_and_clouds/depth_npy.h"
 #include "scenarios/recordings/images_and_clouds/depth_png.h"
 #include "scenarios/recordings/images_and_clouds/pcd_file.h"
 #include "scenarios/text_files/file_ending.h"
@@ -75,10 +75,9 @@ RecordingIndex index_any(const fs::path& path, const BagChoice& choice) {
   if (std::optional<RecordingIndex> images = index_image_folder(path)) return *std::move(images);
   const std::vector<fs::path> clouds = files_in_order(path, ".pcd");
   if (!clouds.empty()) return index_pcd(clouds, path / "camera.json");
-  refuse(
-      path,
-      "is not a recording: expected a folder that holds depth.txt (TUM), depth/*.png, *.depth.png (7-Scenes), "
-      "*.pcd or metadata.yaml with a ROS 2 bag");
+  refuse(path,
+         "is not a recording: expected a folder that holds depth.txt (TUM), depth/*.png or depth/*.npy, "
+         "*.depth.png (7-Scenes), *.pcd or metadata.yaml with a ROS 2 bag");
 }
 
 // Throws InputError unless the image has the camera's size: pixel (u, v) must be point v * width + u in
@@ -102,9 +101,10 @@ RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
 }
 
 std::string description(const RecordingIndex& index, const std::string& rate) {
-  const std::string kind = index.bag                                 ? index.bag->kind()
-                           : index.kind == RecordingIndex::Kind::pcd ? "PCD"
-                                                                     : "depth PNG";
+  const std::string kind = index.bag                                        ? index.bag->kind()
+                           : index.kind == RecordingIndex::Kind::pcd        ? "PCD"
+                           : has_ending(index.frames.front().depth, ".npy") ? "depth NumPy"
+                                                                            : "depth PNG";
   std::string text =
       index.name + ": " + std::to_string(index.frames.size()) + " frame(s) from " + kind + " at " + rate;
   const CameraIntrinsics& camera = index.camera;
@@ -139,11 +139,11 @@ PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max
     drop_beyond(max_depth_m, file.cloud);
     return std::move(file.cloud);
   }
-  DepthImage depth = read_depth_png(source.depth, index.metres_per_unit, max_depth_m);
-  // The largest value is no measurement: 7-Scenes marks missing pixels with it.
-  std::replace(depth.z_m.begin(), depth.z_m.end(), 65535 * index.metres_per_unit,
-               std::numeric_limits<double>::quiet_NaN());
+  DepthImage depth = read_depth_image(source.depth, index.metres_per_unit);
   check_size(source.depth, depth.width, depth.height, index.camera);
+  if (index.depth_along_ray) distances_to_depths(index.camera, depth);
+  for (double& z_m : depth.z_m)
+    if (!(z_m <= max_depth_m)) z_m = std::numeric_limits<double>::quiet_NaN();
   PointCloud cloud = cloud_from_depth(depth, index.camera, RigidTransform::Identity());
   if (!source.colour.empty()) {
     int width = 0, height = 0;

@@ -23,7 +23,7 @@ inline constexpr double kNominalRate_hz = 30;
 
 struct RecordedFrame {
   double captured_s = 0;         // since the first frame
-  std::filesystem::path depth;   // a depth PNG or a PCD file; empty for a bag
+  std::filesystem::path depth;   // a depth image or a PCD file; empty for a bag
   std::filesystem::path colour;  // colour image registered to the depth image; empty: none
 };
 
@@ -36,12 +36,13 @@ struct FrameCamera {
 };
 
 struct RecordingIndex {
-  enum class Kind { depth_png, pcd, bag };
-  Kind kind = Kind::depth_png;
+  enum class Kind { depth_image, pcd, bag };
+  Kind kind = Kind::depth_image;
   // All 0 for pcd and for clouds of a bag, because read_frame() fits a camera to each frame.
   CameraIntrinsics camera;
-  std::string camera_source;   // where the camera is from, for the user: "camera.json"
-  double metres_per_unit = 0;  // size of one unit of a depth PNG; 1 for other kinds
+  std::string camera_source;     // origin of the camera, for the user: "camera.json"
+  double metres_per_unit = 0;    // size of one unit of a depth image; 1 for other kinds
+  bool depth_along_ray = false;  // depth images hold distances from the camera's centre
   double frame_rate_hz = 0;
   // True if captured_s are stamps; frame_rate_hz is then their mean rate. Otherwise frame j is captured at
   // j / frame_rate_hz.
@@ -53,7 +54,8 @@ struct RecordingIndex {
   // Files that were read in addition to the frames: camera.json, depth.txt, rgb.txt and the like.
   std::vector<std::filesystem::path> texts;
   std::shared_ptr<const BagFrames> bag;  // set if kind is bag
-  std::vector<Note> notes;               // on an assumed camera, and on colours that are not used
+  // Notes on an assumed camera, on colours that are not used, and on names with equal numbers.
+  std::vector<Note> notes;
 };
 
 // Lists the frames of a recording. Its layout is the first of these that fits path:

@@ -22,4 +22,9 @@ std::vector<std::string> numbers_in_name(const std::string& name);
 std::map<std::vector<std::string>, std::size_t> frames_by_numbers(const std::filesystem::path& subject,
                                                                   const std::vector<std::string>& names);
 
+// Returns one line about files whose names differ in nothing but leading zeros and the ending, such as
+// frame_1.pcd and frame_01.pcd: probably one of them is a copy. Empty if there are none. Pre: the files are
+// in the order of sort_by_name().
+std::string equal_numbers(const std::vector<std::filesystem::path>& files);
+
 }  // namespace remote_touch

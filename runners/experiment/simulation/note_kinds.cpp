@@ -65,6 +65,8 @@ const std::vector<NoteKind>& note_kinds() {
       {"truth elsewhere", "a true object of a recording is nowhere near what the camera measured"},
       {"not in view", "an object of a scene of meshes is at no time in the image of the camera"},
       {"camera assumed", "the intrinsics of a recording are assumed, because no file states them"},
+      {"equal numbers",
+       "frames of a recording have names that differ in leading zeros only; one may be a copy"},
   };
   return kinds;
 }
