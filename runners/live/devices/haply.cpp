@@ -62,7 +62,7 @@ class ForceCheck {
 
 DeviceFault convert(const HaplyMessage& message, bool has_handle, DeviceReading& reading) {
   if (!message.device || !message.device->has_position) return kDeviceGone;
-  // Damping and the limit of the speed need it: a velocity of zero would switch both off.
+  // The limit of the speed needs it: a velocity of zero would always pass.
   if (!message.device->has_velocity) return kNoVelocity;
   reading = {};
   reading.position_m = from_service(message.device->position_m);
