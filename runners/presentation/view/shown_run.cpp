@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kRoom_m = 0.03, kStatedError_m = 5e-4;
 constexpr const char* kSheetIsOff =
-    "The sheet of the true surface is drawn from heights at some places and times. Between them it is off by up to ";
+    "The sheet of the true surface is drawn from heights at some places and times. Between them it is off by at least ";
 constexpr const char* kOtherFrames =
     "These are not the frames of the run: from its configuration this program makes other frames than the program that ran it.";
 constexpr const char* kOtherRadii =

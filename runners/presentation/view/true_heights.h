@@ -18,7 +18,8 @@ struct TrueHeights {
   std::vector<double> time_s;   // one, where the surface does not move
   std::vector<float> height_m;  // y; x runs fastest, then z, then time; NaN: not known
   // The largest difference between the drawn sheet and the surface that was found: half-way between the times
-  // (if the surface moves evenly between them), and half-way between the nodes at three of the times. m
+  // (if the surface moves evenly between them), and half-way between the nodes at three of the times. m.
+  // It is no bound: elsewhere the sheet may be off by more.
   double error_m = 0;
   bool empty() const { return height_m.empty(); }
 };

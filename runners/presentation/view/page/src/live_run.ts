@@ -1,5 +1,5 @@
 // A live run: the last seconds of its ticks and its newest frame, as they come.
-import { Column, digits, type Frame, Run, type StoredLive, type Vector } from "./data";
+import { Column, digits, type Frame, Run, type StoredLive, ticksOf, type Vector } from "./data";
 
 const keptS = 20;
 
@@ -27,18 +27,20 @@ export function limitOf(run: Run, tick: number): Limit | null {
   return { kind: "limited", text: `The device receives ${newtons(sent)} of ${newtons(commanded)}: ${why}.` };
 }
 
-// Counts the ticks of the newest seconds. missed: ticks that the haptic loop left out, because it was too late for them.
+// Counts the ticks of the newest seconds that arrived. missed: ticks that the haptic loop left out, because it was too late for
+// them. Ticks before the page was opened, and those that were lost on the way to it, are in neither count.
 export function missedDeadlines(run: Run, tick: number, seconds: number): { missed: number; ticks: number; longestS: number } {
-  const interval = run.column("tick_interval"), rate = run.stored.haptic_rate_hz;
+  const interval = run.column("tick_interval"), time = run.column("time"), rate = run.stored.haptic_rate_hz;
   const first = Math.max(0, tick + 1 - Math.round(seconds * rate));
-  let missed = 0, longestS = 0;
+  let missed = 0, ticks = 0, longestS = 0;
   for (let i = first; i <= tick; ++i) {
+    if (Number.isFinite(time.value(i))) ++ticks;
     const s = interval.value(i);
     if (!(s > 0)) continue;
     missed += Math.max(Math.round(s * rate) - 1, 0);
     longestS = Math.max(longestS, s);
   }
-  return { missed, ticks: tick + 1 - first, longestS };
+  return { missed, ticks, longestS };
 }
 
 // Its ticks are numbered by their time, so ticks that did not arrive leave a gap: before the page was opened, or while
@@ -121,18 +123,14 @@ export class LiveRun extends Run {
       }
     if (count > 0) this.count = ticks[count - 1] + 1;
   }
-  // The numbers of ticks that arrive, increasing, from their times.
+  // The numbers of ticks that arrive.
   private numbersOf(all: Float64Array, count: number): number[] {
-    let at = 0, last = this.count - 1;
+    let at = 0;
     for (const [column] of this.rows) {
       if (column.name === "time") break;
       at += count * column.width;
     }
-    return Array.from(all.subarray(at, at + count), (timeS) => {
-      const tick = Math.round(timeS * this.stored.haptic_rate_hz);
-      last = tick > last ? tick : last + 1;
-      return last;
-    });
+    return ticksOf(all.subarray(at, at + count), this.stored.haptic_rate_hz, this.count - 1);
   }
   // Sets the ticks from first to last to unknown.
   private forget(first: number, last: number): void {
