@@ -89,8 +89,8 @@ RegionComparison paired_tests(const Pairs& pairs, const Runs& runs) {
   result.difference = paired_difference_interval(result.up, result.down, result.pairs);
   result.sign_p = sign_test(result.up, result.down);
   if (pairs.event) {
-    result.baseline_fraction = wilson_interval(result.baseline_events, static_cast<int>(result.pairs));
-    result.candidate_fraction = wilson_interval(result.candidate_events, static_cast<int>(result.pairs));
+    result.baseline_fraction = exact_interval(result.baseline_events, static_cast<double>(result.pairs));
+    result.candidate_fraction = exact_interval(result.candidate_events, static_cast<double>(result.pairs));
   } else {
     result.mean = mean_difference(all);
     result.baseline_spread = standard_deviation(before);

@@ -63,7 +63,7 @@ struct RegionComparison {
   std::int64_t got_better = 0, got_worse = 0;      // pairs that got better or worse; 0 without a direction
   std::pair<double, double> difference = {-1, 1};  // interval of (up - down) / pairs
 
-  // Events only: counts in both sweeps, with Wilson's intervals of the fractions of pairs.
+  // Events only: counts in both sweeps, with exact intervals of the fractions of pairs.
   int baseline_events = 0, candidate_events = 0;
   std::pair<double, double> baseline_fraction = {0, 1}, candidate_fraction = {0, 1};
   // Other measures only: the mean difference of all pairs and the baseline's standard deviation, in the

@@ -270,8 +270,8 @@ TEST(RegionComparison, CountsEventsByHand) {
   EXPECT_EQ(first.up, 7);
   EXPECT_EQ(first.down, 3);
   EXPECT_EQ(first.difference, paired_difference_interval(7, 3, 49));
-  EXPECT_EQ(first.baseline_fraction, wilson_interval(20, 49));
-  EXPECT_EQ(first.candidate_fraction, wilson_interval(24, 49));
+  EXPECT_EQ(first.baseline_fraction, exact_interval(20, 49));
+  EXPECT_EQ(first.candidate_fraction, exact_interval(24, 49));
   EXPECT_NEAR(first.sign_p, 0.34375, 1e-15);  // (1 + 10 + 45 + 120) / 512
   EXPECT_EQ(first.symmetry_p, 1);
   EXPECT_EQ(c.at(0, 0).up, 8);
