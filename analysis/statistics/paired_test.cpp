@@ -45,38 +45,6 @@ double sign_test(std::int64_t plus, std::int64_t minus) {
   return std::min(1.0, tail / half);
 }
 
-double symmetry_test(const std::vector<double>& differences) {
-  const double max = max_magnitude(differences);
-  if (max == 0) return 1;
-  double sum = 0, squares = 0;  // scaled by the largest, so that no square overflows or vanishes
-  for (const double d : differences) sum += d / max, squares += (d / max) * (d / max);
-  return std::min(1.0, 2 * std::exp(-sum * sum / (2 * squares)));
-}
-
-std::pair<double, double> paired_difference_interval(std::int64_t plus, std::int64_t minus,
-                                                     std::int64_t pairs, double z) {
-  if (pairs <= 0) return {-1, 1};
-  const double n = static_cast<double>(pairs) + 2, difference = static_cast<double>(plus - minus);
-  const double discordant = static_cast<double>(plus + minus) + 1;
-  const double half = z * std::sqrt(discordant - difference * difference / n) / n;
-  return {std::max(-1.0, difference / n - half), std::min(1.0, difference / n + half)};
-}
-
-MeanDifference mean_of_sum(double sum, std::int64_t pairs, double half_width) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const double mean = pairs > 0 ? sum / static_cast<double>(pairs) : kNone;
-  if (std::isnan(half_width)) return {pairs, mean, kNone, kNone};
-  return {pairs, mean, mean - half_width, mean + half_width};
-}
-
-MeanDifference mean_difference(const std::vector<double>& differences) {
-  const Moments m = moments_of(differences);
-  const auto pairs = static_cast<std::int64_t>(m.count);
-  if (pairs < 2) return mean_of_sum(m.mean, pairs);
-  const double half = kTwoSided95 * std::sqrt(m.variance / m.count);
-  return {pairs, m.mean, m.mean - half, m.mean + half};
-}
-
 namespace {
 
 constexpr double kSignificance = 0.05;

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <utility>
 #include <vector>
 
 #include "analysis/statistics/estimate.h"
@@ -20,33 +18,6 @@ double root_mean_square(const std::vector<double>& values);
 // relative error is below 1e-10 for counts up to 1e7 each; a result below about 1e-300 is returned as 0. It
 // uses only +, -, * and /, so every machine computes the same bits. pre: plus, minus >= 0.
 double sign_test(std::int64_t plus, std::int64_t minus);
-
-// A test of the same null hypothesis, that a difference is as likely as its opposite, by the sum of the
-// differences: it detects a few large differences one way among many small ones both ways, which the sign
-// test does not detect. Returns Hoeffding's upper bound of p, min(1, 2 exp(-(sum d)^2 / (2 sum d^2))), not
-// the exact p. The bound holds for any number of pairs and any distribution (W. Hoeffding, J. Am. Stat.
-// Assoc. 58 (1963), theorem 2). Returns 1 if all differences are 0. pre: all finite.
-double symmetry_test(const std::vector<double>& differences);
-
-// Interval of a difference of two proportions counted on the same pairs, (plus - minus) / pairs: Wald's
-// interval after adding 1/2 to each of the four cells, clamped to [-1, 1] (A. Agresti, Y. Min, Statistics in
-// Medicine 24 (2005), 729-740, "Wald+2"). [-1, 1] if there are no pairs. z: two-sided quantile of the
-// confidence.
-// pre: plus, minus >= 0, plus + minus <= pairs.
-std::pair<double, double> paired_difference_interval(std::int64_t plus, std::int64_t minus,
-                                                     std::int64_t pairs, double z = kTwoSided95);
-
-// Mean of the differences and its 95 % interval as if the mean were normal, in the unit of the differences.
-// The mean is NaN without pairs; the interval is NaN with fewer than two pairs.
-struct MeanDifference {
-  std::int64_t pairs = 0;
-  double mean = 0, low = 0, high = 0;
-};
-// Uses the sum of the differences and half the width of the interval; NaN: there is no interval.
-MeanDifference mean_of_sum(double sum, std::int64_t pairs,
-                           double half_width = std::numeric_limits<double>::quiet_NaN());
-// NaN differences are skipped and not counted as pairs.
-MeanDifference mean_difference(const std::vector<double>& differences);
 
 // Mean of paired differences of clusters, with a test that it is 0. NaNs are skipped and count as unknown.
 // - Fewer than 6 differences: the interval of estimated_mean(), and no p.

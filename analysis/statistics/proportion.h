@@ -12,10 +12,6 @@ namespace remote_touch {
 // Two-sided 95 % point of the standard normal distribution.
 inline constexpr double kTwoSided95 = 1.959963984540054;
 
-// Wilson's score interval [low, high] of the proportion events / runs; [0, 1] if there are no runs. z:
-// two-sided quantile of the confidence.
-std::pair<double, double> wilson_interval(std::int64_t events, std::int64_t runs, double z = kTwoSided95);
-
 // The two tails of a binomial distribution: the probability of at most, or of at least, `events` events in
 // `runs` runs that each have one with this probability.
 double probability_of_at_most(double events, double runs, double probability);

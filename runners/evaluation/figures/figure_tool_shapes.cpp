@@ -222,9 +222,8 @@ void claim_bounded(const Claims& claims, const std::vector<Table>& tables, Carri
   claims.at_most(claim + ": number of settings in which this is false", apart, 0, "1", paper);
 }
 
-// A row counts if all four runs are carried above the derived speed (the Wilson interval of 4 of 4 begins at
-// 0.51), or if all four are lost below it. By chance that happens in at most 1 of 8 rows, so 3 or more of 12
-// rows count at most once in five figures.
+// A row counts if all four runs are carried above the derived speed, or if all four are lost below it. By
+// chance that happens in at most 1 of 8 rows, so 3 or more of 12 rows count at most once in five figures.
 void claim_bounded_noise(const Claims& claims, const std::vector<Table>& tables, Carrier rule,
                          const std::string& label) {
   const std::string column = column_of(rule);

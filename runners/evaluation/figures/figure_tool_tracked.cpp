@@ -248,7 +248,7 @@ void add_claims(Figure& figure, const Survived& ours, const Survived& printed,
   map_claims.at_least("tracked sheets hold the plate in nearly all runs of the whole map: fraction" + beside,
                       ours.share(), 0.99, "fraction");
   map_claims.at_least(
-      "tracked sheets hold the plate in nearly all runs of the whole map: lower end of the 95 % Wilson "
+      "tracked sheets hold the plate in nearly all runs of the whole map: lower end of the exact 95 % "
       "interval of the fraction",
       exact_interval(ours.held, ours.runs).first, 0.97, "fraction");
   for (const Table& table : jumps)

@@ -18,6 +18,7 @@
 #include "runners/experiment/settings/renamed_names.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_streams.h"
 
 namespace remote_touch {
 
@@ -280,12 +281,32 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
   return result;
 }
 
+namespace {
+
+// Returns the streams of runs that draw where one of the two sweeps draws.
+CellStreams streams_of_both(const SweepResult& baseline, const TextAttributes& baseline_attributes,
+                            const SweepResult& candidate, const TextAttributes& candidate_attributes) {
+  CellStreams both = streams_of(baseline, attribute(baseline_attributes, "config"));
+  const CellStreams other = streams_of(candidate, attribute(candidate_attributes, "config"));
+  if (other.draws.size() != both.draws.size()) return both;  // they are not comparable
+  const bool is_same = both.noise_cell == other.noise_cell && both.seed == other.seed;
+  for (std::size_t cell = 0; cell < both.draws.size(); ++cell) {
+    both.draws[cell].of_cell |= other.draws[cell].of_cell;
+    both.draws[cell].of_replicate |= other.draws[cell].of_replicate || (!is_same && both.draws[cell].of_cell);
+  }
+  return both;
+}
+
+}  // namespace
+
 ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes& baseline_attributes,
                                const SweepResult& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules) {
   ResultComparison result = begin("sweep", baseline_attributes, candidate_attributes);
   result.paired = rules.paired;
-  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule, directions());
+  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule, directions(),
+                         {streams_of_both(baseline, baseline_attributes, candidate, candidate_attributes),
+                          !result.configuration.empty()});
   for (const std::string& difference : result.configuration) {
     if (difference.starts_with("experiment.seed "))
       result.sweep->problems.push_back(difference + ": the runs had different noise and cannot be paired");

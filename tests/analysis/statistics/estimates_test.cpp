@@ -67,24 +67,6 @@ TEST(EstimatedFraction, IsSymmetric) {
   }
 }
 
-// The exact interval covers the probability in at least 95 % of the experiments at every probability.
-TEST(ExactInterval, CoversAtEveryProbability) {
-  double least = 1;
-  for (const int runs : {5, 12, 20, 40, 200}) {
-    std::vector<std::pair<double, double>> intervals;
-    for (int events = 0; events <= runs; ++events) intervals.push_back(exact_interval(events, runs));
-    for (double p = 0.0005; p < 1; p += 0.001) {
-      double covered = 0;
-      for (int events = 0; events <= runs; ++events)
-        if (intervals[events].first <= p && p <= intervals[events].second)
-          covered += probability_of_at_most(events, runs, p) -
-                     (events > 0 ? probability_of_at_most(events - 1, runs, p) : 0);
-      least = std::min(least, covered);
-    }
-  }
-  EXPECT_GE(least, 0.95);
-}
-
 TEST(EstimatedMean, EqualsTheExamples) {
   const Estimate e = estimated_mean({0.2, 0.3, 0.3, 0.5, 0.6, 0.9, 1.4, 5});
   expect_interval(e, 1.15, -0.191, 6.28);
@@ -411,27 +393,6 @@ TEST(HolmsFamily, EqualsTheExample) {
   EXPECT_EQ(tests_among({0.001, kNan, 0.2}), 2);
   EXPECT_EQ(pairs_for_family(1), 6);
   EXPECT_EQ(pairs_for_family(20), 10);  // 20 * 2^-9 = 0.039
-}
-
-TEST(EstimatedQuantile, CoversAsOftenAsItSays) {
-  std::mt19937 random(2);
-  for (const double q : {0.5, 0.95}) {
-    int covered = 0;
-    for (int trial = 0; trial < 2000; ++trial) {
-      std::vector<double> values(90);
-      for (double& v : values) v = std::generate_canonical<double, 53>(random);
-      const Estimate e = estimated_quantile(values, q);
-      covered += !(e.low > q) && !(e.high < q) ? 1 : 0;
-    }
-    EXPECT_GE(covered, 0.94 * 2000) << q;
-  }
-  const Estimate few = estimated_quantile({3, 1, kNan, 2, 5, 4}, 0.5);
-  EXPECT_EQ(few.value, 3);
-  EXPECT_TRUE(std::isnan(few.low) && std::isnan(few.high));
-  EXPECT_EQ(few.unknown, 1);
-  const Estimate six = estimated_quantile({3, 1, 2, 5, 4, 6}, 0.5);
-  EXPECT_EQ(six.low, 1);
-  EXPECT_EQ(six.high, 6);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. The interval of a
-// few runs excludes 0.5 from 0 of 4, or 4 of 4, on (see the table in proportion_test).
+// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. Wilson's
+// interval of a few runs excludes 0.5 from 0 of 4, or 4 of 4, on.
 #include "analysis/sweeps/refinement.h"
 
 #include <gtest/gtest.h>
