@@ -11,6 +11,7 @@
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/scorecard_runs.h"
 
