@@ -38,7 +38,7 @@ Parameters parameters(MeshScene::Settings& s) {
 }
 
 MeshScene::MeshScene(const Settings& settings, std::vector<SceneMesh> meshes,
-                     std::optional<PosePath> camera_path, const NoiseKey& key, const Kernels& kernels)
+                     const std::optional<PosePath>& camera_path, const NoiseKey& key, const Kernels& kernels)
     : settings_(settings),
       meshes_(std::move(meshes)),
       camera_(settings.sensor, camera_path, key, kernels),

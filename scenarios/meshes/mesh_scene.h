@@ -27,8 +27,8 @@ class MeshScene : public Scenario {
 
   // camera_path: camera to world frame; empty: the camera rests where the settings place it. Keeps a
   // reference to the kernels. Pre: validate(settings) is empty.
-  MeshScene(const Settings& settings, std::vector<SceneMesh> meshes, std::optional<PosePath> camera_path,
-            const NoiseKey& key, const Kernels& kernels);
+  MeshScene(const Settings& settings, std::vector<SceneMesh> meshes,
+            const std::optional<PosePath>& camera_path, const NoiseKey& key, const Kernels& kernels);
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   // Number of frames up to and including the first one in which all motion has ended; the largest int if the

@@ -181,7 +181,7 @@ MeshSceneFromFiles::MeshSceneFromFiles(const Settings& settings, const NoiseKey&
     : MeshSceneFromFiles(read(settings), key, kernels) {}
 
 MeshSceneFromFiles::MeshSceneFromFiles(Parts parts, const NoiseKey& key, const Kernels& kernels)
-    : MeshScene(parts.scene, std::move(parts.meshes), std::move(parts.camera_path), key, kernels),
+    : MeshScene(parts.scene, std::move(parts.meshes), parts.camera_path, key, kernels),
       input_(std::move(parts.input)),
       notes_(std::move(parts.notes)) {}
 
