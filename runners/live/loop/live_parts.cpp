@@ -77,6 +77,8 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
     if (options_.on_frame) options_.on_frame(frame);
   };
   const std::int64_t start_ns = clock_.now_ns();
+  source->start_at(start_ns);
+  device_->start_at(start_ns);
   ends_ns_ = end_ns(start_ns, options.duration_s);
   camera_ = std::make_unique<CameraFeed>(std::move(source), std::move(processing), *renderer_, registration,
                                          clock_, start_ns, frames_, sink, on_frame,
