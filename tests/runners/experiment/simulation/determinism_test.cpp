@@ -4,11 +4,16 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <random>
 
 #include "analysis/storage/digest.h"
 #include "analysis/trace/trace.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/random_streams.h"
+#include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
@@ -121,6 +126,54 @@ TEST(Determinism, TheHistoryOfTheNeighbourListChangesNoBits) {
   const RenderOutput a = settle(Vec3(0.002, 0.03, 0)), b = settle(Vec3(0.031, 0.028, -0.02));
   EXPECT_EQ(a.proxy_W, b.proxy_W);
   EXPECT_EQ(a.force_N, b.force_N);
+}
+
+// Returns an experiment of 0.1 s in which one parameter of a section has a value of its own. Returns none if
+// it is refused, for example because the part needs a file.
+std::optional<Experiment> with_setting(const ExperimentSection& section, const SectionEntry& entry,
+                                       const Parameter& parameter, const Json& value, int seed) {
+  Json json =
+      Json::parse(R"({"scenario": {"name": "moving-lift", "noise_sigma_m": 0}, "renderer": {"name": "proxy"},
+      "trajectory": {"name": "waypoints", "waypoints": [[0, 0.002, 0, 0], [0, -0.002, 0, 0.1]]},
+      "slave": {"natural_frequency_hz": 5}})");
+  Json& part = section.is_top_level ? json : json[section.key];
+  if (!entry.name.empty()) part = {{"name", entry.name}};
+  part[parameter.name] = value;
+  json["seed"] = seed;
+  json["duration_s"] = 0.1;
+  try {
+    return Experiment::from_json(json);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+// Runs that differ would count as equal if random_streams() left out a parameter.
+TEST(Determinism, RunsThatDrawNothingIgnoreTheSeed) {
+  const auto digest_with = [](const Experiment& experiment) {
+    SimulationOptions options;
+    options.hash_frames = true;
+    return digest(simulate(experiment, options).columns());
+  };
+  int compared = 0, random = 0;
+  for (const ExperimentSection& section : experiment_sections())
+    for (const SectionEntry& entry : section.entries())
+      for (const Parameter& parameter : entry.make()->settings()) {
+        if (!std::holds_alternative<double*>(parameter.value) || parameter.name == "duration_s") continue;
+        const double value = std::clamp(0.4, parameter.low, parameter.high);
+        const auto first = with_setting(section, entry, parameter, value, 1);
+        const auto second = with_setting(section, entry, parameter, value, 2);
+        if (!first || !second) continue;
+        if (!random_streams(*first).is_fixed()) {
+          ++random;
+          continue;
+        }
+        ++compared;
+        EXPECT_EQ(digest_with(*first), digest_with(*second))
+            << section.key << " " << entry.name << " " << parameter.name << " = " << value;
+      }
+  EXPECT_GT(compared, 100);
+  EXPECT_GT(random, 20);
 }
 
 }  // namespace
