@@ -55,8 +55,8 @@ struct Row {
 // rising surface pushes harder than one that lets it pass.
 constexpr Row kMeasures[] = {
     {"popped_through", "1",
-     "1 when the proxy passed through the true surface and ended behind it; in a run with a measured surface "
-     "beside the true one, through the measured one",
+     "1 when the proxy passed through the true surface (or the measured one, if that is known) and ended "
+     "behind it",
      proxy, smaller, popped_through},
     {"max_penetration", "m", "maximum depth of the proxy's centre behind the true surface", proxy, smaller,
      max_penetration_m},

@@ -19,8 +19,8 @@ struct Estimate {
   std::int64_t unknown = 0;  // number of runs or pairs whose outcome is unknown (NaN)
   std::string method = {};   // name of the interval; empty: there is none
   std::string note = {};     // why something is missing, and what the reader must know; "; " between reasons
-  // True if p <= 0.05, but few large differences decide (estimated_difference()): such
-  // an estimate shows neither "better" nor "worse".
+  // True if p <= 0.05, but few large differences decide (estimated_difference()): such an estimate shows
+  // neither "better" nor "worse".
   bool is_skewed = false;
 
   // Adds a reason to the note, once.

@@ -25,12 +25,14 @@ struct RunsAtValue {
   EventCounts counts;
   bool is_fixed = false;
 
-  // Returns the same value with one run if it is fixed; unknown if one of the runs is.
+  // Returns this value of the axis; if it is fixed, with one run, whose outcome is unknown if that of any run
+  // is.
   RunsAtValue of_one_run_if_fixed() const;
 };
 
-// The fewest runs of which none, or all, has the event at a probability of 0.025 if the event has that
-// probability in each: ceil(ln 0.025 / ln(1 - level)). pre: 0 < level < 1.
+// Returns the fewest runs n with (1 - level)^n <= 0.025: ceil(ln 0.025 / ln(1 - level)). If none of so many
+// runs has the event, its probability is clearly below the level. If all runs have it, the probability is
+// clearly above a level if there are as many runs as for 1 - level. pre: 0 < level < 1.
 std::int64_t runs_for_level(double level);
 
 enum class LimitPlace : std::int32_t { inside, below_the_first, above_the_last, no_runs };
@@ -70,11 +72,11 @@ enum class LimitComparison { difference, ratio };
 // Difference b - a, or ratio b / a, of the limits of two curves over the same replicates. 1999 times,
 // replicates are drawn with replacement, the same for all values and both curves, from a fixed key. In each
 // draw a limit lies between the last value whose isotonic share is below the level and the first whose share
-// is above it. low: the 50th smallest of the least differences; high: the 50th largest of the greatest ones.
-// Neither end belongs to the interval. p is of no difference, and NaN for a ratio: it is that of the
-// difference. There is neither interval nor p, with a note, with fewer than 6 replicates, if the interval of
-// a limit is open, or if all runs are fixed. pre: both have the same number of replicates; for a ratio all x
-// are above 0.
+// is above it, so a draw has a least and a greatest difference. low: the 50th smallest of the least
+// differences; high: the 50th largest of the greatest ones. Neither end belongs to the interval. p is that of
+// no difference; it is NaN for a ratio, whose p is that of the difference. There is neither interval nor p,
+// but a note, with fewer than 6 replicates, if the interval of a limit is open, or if all runs are fixed.
+// pre: both have the same number of replicates; for a ratio all x are above 0.
 Estimate estimated_limit_comparison(const std::vector<OutcomesAtValue>& a,
                                     const std::vector<OutcomesAtValue>& b, const LimitRule& rule,
                                     LimitComparison comparison);

@@ -22,12 +22,12 @@ double sign_test(std::int64_t plus, std::int64_t minus);
 // Mean of paired differences of clusters, with a test that it is 0. NaNs are skipped and count as unknown.
 // - Fewer than 6 differences: the interval of estimated_mean(), and no p.
 // - 6 to 16: the exact test by sign flips (R. Fisher, The Design of Experiments, 1935), which assumes that a
-//   difference is as likely as its opposite; the interval has the means of subsets (J. Hartigan, J. Am. Stat.
-//   Assoc. 64 (1969), 1303-1317).
+//   difference is as likely as its opposite; the ends of the interval are means of subsets of the differences
+//   (J. Hartigan, J. Am. Stat. Assoc. 64 (1969), 1303-1317).
 // - More: Student's t; p is at least 2^(1 - n), which an exact test of n pairs can reach.
-// All differences 0: p is 1; all equal: there is no interval, with a note. Numbers that differ by less than
-// 1e-9 of the sum of all magnitudes count as equal. is_skewed, with a note, if p <= 0.05 but the interval of
-// estimated_mean() holds 0.
+// If all differences are 0, p is 1. If all are equal, there is no interval, but a note. Numbers that differ
+// by less than 1e-9 of the sum of all magnitudes count as equal. is_skewed is true, with a note, if p <= 0.05
+// but the interval of estimated_mean() holds 0.
 Estimate estimated_difference(const std::vector<double>& differences);
 
 // The outcomes of an event in the two runs of a pair: 1, 0, or NaN if unknown.
@@ -47,7 +47,7 @@ Estimate estimated_event_difference(const std::vector<std::vector<OutcomePair>>&
 // order; none is below its own p. NaN: there was no test; it does not count, and stays NaN. pre: the others
 // are within [0, 1].
 std::vector<double> holm_adjusted(const std::vector<double>& p);
-// The number of tests among them.
+// Returns the number of tests among them: of the p values that are not NaN.
 std::int64_t tests_among(const std::vector<double>& p);
 // The fewest pairs whose exact test can reach an adjusted p of 0.05 in a family of this many tests: with n
 // pairs, the least p is 2^(1 - n).

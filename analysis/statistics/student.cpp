@@ -81,7 +81,7 @@ Estimate estimated_mean(const std::vector<StratumMoments>& strata, bool has_thir
   e.value = all.sum / all.count;
   if (are_fixed) e.method = kExactMethod;
   if (are_fixed) return e;
-  if (!(all.scatter > 0)) e.add_note("no scatter");
+  if (!(all.scatter > 0)) e.add_note(all.count > 1 ? "no scatter" : "one run");
   if (!(all.scatter > 0)) return e;
   const double se = std::sqrt(all.scatter) / all.count, d = all.degrees(), t = student_quantile(0.05, d);
   e.low = e.value - t * se, e.high = e.value + t * se, e.method = "Student's t";
