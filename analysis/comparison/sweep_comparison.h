@@ -63,19 +63,19 @@ struct RegionComparison {
   std::int64_t unpaired = 0;  // runs outside: not finite in one or both, or an event neither 0 nor 1
   std::int64_t up = 0, down = 0;
   std::int64_t got_better = 0, got_worse = 0;  // pairs that got better or worse; 0 without a direction
-  // Number of clusters with a pair that draw random numbers. The tests compare these: the runs of a cluster
-  // share random numbers, see CellStreams.
+  // Number of clusters that have a pair and draw random numbers. The tests compare these clusters, because
+  // the runs of a cluster share random numbers, see CellStreams.
   std::int64_t tested = 0;
   std::int64_t fixed_not_better = 0;  // runs without random numbers that differ and got no better
-  // (up - down) / pairs, as the mean over clusters, with the test of estimated_event_difference(). Its
-  // interval holds the runs without random numbers as well, which are exact; p is of the others.
+  // (up - down) / pairs, as the mean over clusters, with the test of estimated_event_difference(). The
+  // interval also includes the runs without random numbers, which are exact; p is that of the other runs.
   Estimate difference = {};
 
   // Events only: counts in both sweeps, with exact intervals of the fractions of pairs.
   int baseline_events = 0, candidate_events = 0;
   std::pair<double, double> baseline_fraction = {0, 1}, candidate_fraction = {0, 1};
   // Other measures only: the mean difference in the same way, with the test of estimated_difference(), in
-  // which pairs within the tolerance count as equal; and the baseline's standard deviation. Both in the
+  // which pairs within the tolerance count as equal; and the baseline's standard deviation. Both are in the
   // measure's unit.
   Estimate mean = {};
   double baseline_spread = 0;
@@ -154,7 +154,7 @@ struct SweepComparison {
   }
 };
 
-// What is known about the random numbers of two sweeps.
+// Knowledge about the random numbers of two sweeps.
 struct SweepPairing {
   std::optional<CellStreams> streams = {};  // of both sweeps together; none: every run draws its own
   // The experiments differ. Then a few noisy runs that all went one way are chance: only the paired tests

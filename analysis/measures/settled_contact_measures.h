@@ -31,8 +31,7 @@ double rms_contact_error_m(const Trace& trace);
 double rms_renderer_error_m(const Trace& trace);
 double rms_camera_error_m(const Trace& trace);
 double mean_camera_error_m(const Trace& trace);
-// Fraction of the settled ticks with a force of contact, which guidance is no part of; NaN if no tick
-// settled.
+// Fraction of the settled ticks with a force of contact, which excludes guidance; NaN if no tick settled.
 double contact_force_fraction(const Trace& trace);
 // Fraction of the settled ticks in which the truth is known; NaN if no tick settled.
 double contact_known_fraction(const Trace& trace);

@@ -26,8 +26,8 @@ struct SharedRuns {
   bool by_replicate = false;
 };
 PairedValues distinct(const PairedValues& values, const SharedRuns& shared);
-// Returns the values that are a number as independent clusters, each of one value unless they are shared by
-// replicate.
+// Returns the values that are not NaN as independent clusters. A cluster has one value, or all values of a
+// replicate if shared.by_replicate.
 std::vector<std::vector<double>> clusters_of(const PairedValues& values, const SharedRuns& shared);
 // Fraction of the values that are 1.
 Estimate fraction_of(const std::vector<std::vector<double>>& clusters);

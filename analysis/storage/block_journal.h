@@ -27,8 +27,8 @@ bool is_journal(const std::filesystem::path& file);
 // the command that makes a recording of the journal.
 void require_no_journal(const std::filesystem::path& file);
 
-// Throws InputError if the journal of the target exists, because only the user may remove it. A journal that
-// nothing can use is no reason: it has no whole block after its first one, and its writer has ended.
+// Throws InputError if the journal of the target exists, because only the user may remove it. Does not throw
+// for a journal that nothing can use: one without a whole block after its first one, whose writer has ended.
 void require_no_journal_beside(const std::filesystem::path& target);
 
 struct JournalBlock {

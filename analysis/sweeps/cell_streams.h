@@ -24,8 +24,8 @@ struct RandomStreams {
 // The streams of all cells of a sweep.
 struct CellStreams {
   std::vector<RandomStreams> draws;     // one for each cell
-  std::vector<std::size_t> noise_cell;  // the cell whose stream each cell has
-  std::vector<std::size_t> seed;        // a number of the seed of each cell
+  std::vector<std::size_t> noise_cell;  // the cell whose stream each cell uses
+  std::vector<std::size_t> seed;        // a number for the seed of each cell: equal for equal seeds
   std::string doubt = {};  // why the streams are not known, and what is assumed then; empty: they are known
 
   bool is_fixed(std::size_t cell) const { return draws[cell].is_fixed(); }
@@ -39,8 +39,8 @@ struct CellStreams {
 // Returns streams in which every cell draws from its own, as without axes of common noise.
 CellStreams independent_streams(std::size_t cells);
 
-// The runs of some cells, as clusters: the runs of a cluster share random numbers, and clusters share none.
-// Of a fixed cell there is one run, its first, in a cluster of its own.
+// The runs of some cells, as clusters: the runs of a cluster share random numbers, and clusters share none. A
+// fixed cell has one run here, its first, in a cluster of its own.
 struct RunCluster {
   std::vector<std::size_t> runs;  // finished ones
   std::size_t noise_cell = 0;     // the one of its first run; the clusters of a cell are a stratum

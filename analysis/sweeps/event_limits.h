@@ -35,9 +35,9 @@ struct EventLimits {
 // All rows have one direction. If the question does not state it, the runs must show it: the slope of the
 // event over the index on the axis, summed over the rows, differs from 0 by Student's t at 5 %, with the less
 // favourable assignment of unknown outcomes. Rows that share random numbers count as if they were one. Fixed
-// cells show a slope without a test. Without a direction there is no limit; `place` then says whether all or
-// none of the runs of the row had the event. A row that clearly changes the other way has no limit, and
-// `place` says so. Values without a finished run are left out.
+// cells show a slope without a test. Without a direction there is no limit; `place` then says that all or
+// none of the runs of the row had the event, or else that there is no direction. A row that clearly changes
+// the other way has no limit, and `place` says so. Values without a finished run are left out.
 EventLimits event_limits(const SweepResult& result, const LimitQuestion& question,
                          const CellStreams& streams);
 

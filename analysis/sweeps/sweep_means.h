@@ -49,7 +49,8 @@ std::vector<std::int64_t> noted_runs(const SweepResult& result, const std::vecto
 // of tests, and how many pairs are needed if that many can never reach 0.05. Empty without a test.
 std::string adjust_together(std::vector<Table>& tables);
 
-// Adds to the notes of an estimate: unknown runs above 5 % of `runs`, or that a mean leaves them out.
+// Adds a note on unknown runs to an estimate: for an event if they are more than 5 % of `runs`, for a mean
+// always, because it leaves them out.
 void note_unknown(Estimate& estimate, std::int64_t runs, bool is_event);
 
 }  // namespace remote_touch

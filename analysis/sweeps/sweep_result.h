@@ -38,7 +38,7 @@ struct SweepResult {
   std::vector<std::string> note_kinds;
   std::vector<std::uint64_t> notes;
 
-  // Returns whether a number of `notes` has bits of the first `kinds` kinds only.
+  // True if a number of `notes` has bits of the first `kinds` kinds only.
   static bool are_known_notes(std::uint64_t bits, std::size_t kinds) {
     return kinds >= 64 || bits >> kinds == 0;
   }

@@ -69,7 +69,7 @@ class MeshDistance {
   Pseudonormals normals_;
   FaceTree tree_;
   bool is_closed_, has_inverted_part_;
-  std::vector<char> is_doubtful_;  // faces that are crossed, and their neighbours: their normals lie
+  std::vector<char> is_doubtful_;  // faces whose normals may give the wrong sign: crossed ones, neighbours
   std::shared_ptr<const TriangleTree> winding_;  // null: no face is crossed
 };
 

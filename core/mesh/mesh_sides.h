@@ -14,7 +14,7 @@ enum class FaceSide : std::uint8_t {
   boundary,  // the solid is behind the face and not in front of it
   inner,     // the solid is on both sides, as of a part within another one: no part of the surface
   inverted,  // the solid is on neither side: the face runs clockwise seen from outside
-  crossed    // another face crosses this face, or lies on a part of it: not the same everywhere
+  crossed    // another face crosses this face, or lies on a part of it: its side is not the same everywhere
 };
 
 // True if as many triangles run along every edge in one direction as in the other.
@@ -24,8 +24,9 @@ bool is_closed_surface(const TriangleMesh& mesh);
 // pre: mesh is the result of welded_mesh(), has a triangle, and is_closed_surface(mesh).
 std::vector<FaceSide> face_sides(const TriangleMesh& mesh);
 
-// True if all faces of a part are inverted, of those that edges connect. A surface that crosses itself may
-// have some inverted faces: a pocket that it winds around backwards is outside. pre: sides of face_sides().
+// True if all faces of a part are inverted; edges connect the faces of a part. A surface that crosses itself
+// may have some inverted faces: a pocket that it winds around backwards is outside. pre: sides is the result
+// of face_sides().
 bool has_inverted_part_in(const TriangleMesh& mesh, const std::vector<FaceSide>& sides);
 
 // Returns for each face whether another one crosses it, or lies on a part of it. Faces that only touch, in a

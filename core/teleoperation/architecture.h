@@ -78,7 +78,7 @@ struct Wave {
 // The waves that an end uses. They never have more energy than those that were sent, whatever the delay, its
 // jitter and the losses, and their integral follows the one that was sent as far as this energy suffices.
 // Without jitter and losses they are those that were sent. Jitter and losses make them later, as a buffer
-// does: by as long as no packet came. A wave that is missing is 0.
+// does: by the time in which no packet came. A wave that is missing is 0.
 class WaveReceiver {
  public:
   // Returns the wave for the coming tick.

@@ -29,7 +29,7 @@ std::string validate(const DeadBandSettings& s);
 // is no limit.
 std::optional<double> longest_silence_s(const DeadBandSettings& s);
 
-// What remains of a signal whose packets no longer arrive, such as a force that would otherwise act for ever.
+// The rest of a signal whose packets no longer arrive, such as a force that would otherwise act for ever.
 struct HoldSettings {
   double hold_s = 0.05;
   double fade_s = 0.02;
@@ -37,8 +37,9 @@ struct HoldSettings {
 
 Parameters parameters(HoldSettings& s);
 
-// Returns the share of the value shown last that remains, overdue_s after the next packet was due: 1 for
-// hold_s, then less, linearly, and 0 from fade_s later on. Returns 1 if hold_s is 0, which is no limit.
+// Returns the share of the value shown last that remains, overdue_s after the next packet was due. It is 1 up
+// to hold_s, falls linearly to 0 within the next fade_s, and is then 0. Returns 1 if hold_s is 0, which means
+// no limit.
 double held_share(const HoldSettings& s, double overdue_s);
 
 // The content of a packet. The receiver needs no other packet to show it, so a lost packet does not change

@@ -55,8 +55,9 @@ class FrameDeadBand {
   // - the radius of a region, the stiffness of a point or a guidance target differs from that frame. Points
   //   with the same index are compared, if both were measured. If the frames have different sizes, they
   //   differ unless all points of both have the same values.
-  // If there is a band, a frame is never sent if it was captured before another one that came earlier,
-  // whether that one was sent or not, or not after the last one that was sent: renderers drop it.
+  // If least_motion_m is above 0, a frame is never sent in two cases, because renderers drop it: if a frame
+  // that was captured later has already come, sent or not; or if it was not captured after the last one that
+  // was sent.
   bool sends(const Frame& frame, const std::optional<Vec3>& slave_W, const Kernels& kernels);
   // Returns the number of frames that had to be sent.
   int sent() const { return sent_; }

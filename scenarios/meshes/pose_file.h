@@ -29,8 +29,8 @@ enum class PoseDirection { camera_to_world, world_to_camera };
 enum class PoseLines { of_frames, stamped, either };
 
 // Reads UTF-8 with or without a byte order mark, and lines that end in LF or CR LF. Blanks and tabs separate
-// the numbers. Lines that begin with # are comments. A pose is that of a body in its parent frame, metres, x
-// y z of its origin and a rotation.
+// the numbers. Lines that begin with # are comments. A pose is that of a body in its parent frame: x, y and z
+// of its origin in metres, and a rotation.
 //
 // If a comment before the first pose, or the first line, names columns, they are read by these names: `tx ty
 // tz` (or x, px), with `qx qy qz qw` or the rows `r00 r01 r02 r10 ... r22` of R, and `t` (or time, timestamp,

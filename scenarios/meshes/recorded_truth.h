@@ -30,8 +30,8 @@ class RecordedTruth {
   // images; its size is 0 if they are no images.
   //
   // Reads all meshes and poses. Throws InputError about a file in these cases: there is not one pose for each
-  // frame; no object has a pose; no object is in the image in any frame, the poses being those of another
-  // unit or direction; a mesh has no triangle with an area, or a bounding box with a diagonal above 10 m; an
+  // frame; no object has a pose; no object is in the image in any frame, as if the poses had another unit or
+  // direction; a mesh has no triangle with an area, or a bounding box with a diagonal above 10 m; an
   // object that is stated to be closed is not; or the triangles of a closed object run clockwise seen from
   // outside. An object of which nothing is stated is closed if MeshDistance::is_closed(). For masks see
   // TruthMasks. Pre: reach_m > 0.

@@ -31,7 +31,7 @@ struct TruthFolder {
       std::numeric_limits<double>::quiet_NaN();  // uncertainty of the poses; NaN: not stated
   std::filesystem::path masks;                   // folder of masks; empty: none
   std::filesystem::path description;             // truth.json; empty: none
-  std::string name = "truth/";                   // what the user knows it as
+  std::string name = "truth/";                   // the name that messages use
 };
 
 // Lists the truth of a recording. Returns nothing if `recording` has no folder truth/. No mesh, pose or mask

@@ -12,11 +12,10 @@
 namespace remote_touch {
 
 // Lists the frames of a folder. The layout is the first of these whose files it has:
-// - TUM RGB-D: depth.txt, and rgb.txt for colours, see tum_layout.h; 5000 units per metre, at the mean rate
-// of
-//   the stamps (30 Hz for a single frame). The camera is that of freiburg1, 2 or 3, if the folder's name or a
-//   comment in depth.txt names it, else the benchmark's default (f = 525), with a note. Colours are
-//   registered.
+// - TUM RGB-D: depth.txt, and rgb.txt for colours, see tum_layout.h; 5000 units per metre. The rate is the
+//   mean rate of the stamps (30 Hz for a single frame). The camera is that of freiburg1, 2 or 3, if the
+//   folder's name or a comment in depth.txt names it, else the benchmark's default (f = 525), with a note.
+//   Colours are registered.
 // - this program: depth/*.png and camera.json; colours in rgb/.
 // - BOP: depth/*.png and scene_camera.json; depth_scale is millimetres per unit; colours in rgb/.
 // - ScanNet: depth/*.png and intrinsic/intrinsic_depth.txt, or intrinsics_depth.txt; millimetres.

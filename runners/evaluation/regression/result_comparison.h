@@ -68,7 +68,7 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules);
 
-// Tables of figures, columns named table/column. one_origin: both are of one configuration.
+// Tables of figures, columns named table/column. one_origin: true if both have the same configuration.
 ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
                                 const ComparisonRules& rules, bool one_origin);
 

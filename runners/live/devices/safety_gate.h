@@ -17,9 +17,9 @@ enum class GateState { waiting, ramping, engaged, latched };
 // Independent rules:
 // - A fault of the device, a reading or a command that is not finite, or a hand that is faster than the
 //   limits sets the force to zero until rearm().
-// - If no tick came for max_command_age_s, or the command is older than that, or its newest frame is older
-// than
-//   max_frame_age_s, the force falls to zero at the slew rate. It must then start again as described next.
+// - The force falls to zero at the slew rate if no tick came for max_command_age_s, if the command is older
+//   than that, or if its newest frame is older than max_frame_age_s. It must then start again as described
+//   next.
 // - The force starts only while the command is below engage_force_N, and its torque is below the same
 //   fraction of its limit. It then rises linearly over ramp_s, so that it does not jump when the hand is
 //   inside something.

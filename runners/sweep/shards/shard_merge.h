@@ -37,8 +37,8 @@ std::string or_unchanged(const Write& write) {
   }
 }
 
-// Throws KeptFile, not only without --force, if the output is a sweep or a tally with runs that the shards do
-// not hold, because it was refined or continued. Throws InputError, unless --force is given, for an output
+// Throws KeptFile, with --force too, if the output is a sweep or a tally with runs that the shards do not
+// hold, because it was refined or continued. Throws InputError, unless --force is given, for an output
 // that cannot be read. merged: returns the runs that the shards hold; only called if the output has runs.
 void require_nothing_more(const MergeRequest& request, const std::function<RunRanges()>& merged);
 
