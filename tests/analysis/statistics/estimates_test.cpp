@@ -94,7 +94,7 @@ TEST(EstimatedMean, IsExactForFixedStrata) {
   const Estimate equal = estimated_mean({3, 3, 3});
   EXPECT_EQ(equal.note, "no scatter");
   EXPECT_TRUE(std::isnan(equal.low));
-  EXPECT_EQ(estimated_mean({3}).note, "one run");
+  EXPECT_EQ(estimated_mean(std::vector<double>{3}).note, "one run");
 }
 
 const std::vector<double> kSkewed = {-.4233, -.4994, -.4994, -.4994, -.4233, -.4994,

@@ -14,6 +14,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/random_streams.h"
 #include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
