@@ -41,7 +41,8 @@ struct LiveLog {
   // Returns the time without a new frame after which the cloud is stale: 0.2 s, or 2.5 periods of a camera
   // slower than 12.5 Hz.
   static double stale_after_s(double frame_rate_hz) {
-    return frame_rate_hz > 0 ? std::max(kStaleFrame_s, kStaleFrames / frame_rate_hz) : kStaleFrame_s;
+    return frame_rate_hz > 0 ? std::max(kStaleFrame_s, kStaleFrames / frame_rate_hz)  // no NaN: above 0
+                             : kStaleFrame_s;
   }
   double stale_s = kStaleFrame_s;
 
