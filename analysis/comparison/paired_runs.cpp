@@ -2,10 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "analysis/statistics/paired_test.h"
+#include "analysis/statistics/proportion.h"
 
 namespace remote_touch {
 
 namespace {
+
+constexpr double kNoOutcome = std::numeric_limits<double>::quiet_NaN();
 
 double standard_deviation(const std::vector<double>& values) {
   if (values.empty()) return 0;
@@ -32,10 +40,12 @@ Judgement direction_of_change(const RegionComparison& c, double alpha) {
   return is_better ? Judgement::better : Judgement::changed;
 }
 
-// How a pair of finite values changed: 1, 0 or -1, and by how much. All are 0 within the tolerance.
+// How a pair of finite values changed: 1, 0 or -1, and by how much. All are 0 within the tolerance. unknown:
+// the outcomes of an event of which at least one is not known.
 struct PairChange {
   int shift = 0, worse = 0;
   double difference = 0, worse_by = 0;
+  std::optional<OutcomePair> unknown = {};
 };
 
 PairChange change_of(const Pairs& pairs, std::size_t run) {
@@ -51,34 +61,69 @@ PairChange change_of(const Pairs& pairs, std::size_t run) {
   return change;
 }
 
+// Returns the change of a pair of outcomes of which at least one is not known.
+PairChange unknown_change(const Pairs& pairs, std::size_t run) {
+  const auto outcome = [](double value) { return value == 0 || value == 1 ? value : kNoOutcome; };
+  PairChange change;
+  change.unknown = {outcome(pairs.baseline[run]), outcome(pairs.candidate[run])};
+  return change;
+}
+
+// Returns the pair of outcomes in which 1 is worse. Without a direction nothing is worse.
+OutcomePair worse_outcomes(const OutcomePair& pair, Better better) {
+  if (better == Better::smaller) return pair;
+  return better == Better::larger ? OutcomePair{pair.second, pair.first} : OutcomePair{};
+}
+
 // The changes of the pairs of each cluster.
 struct ClusterChanges {
   std::vector<std::vector<OutcomePair>> shifts, worse;
   std::vector<double> differences, worse_by;  // means over the pairs of a cluster
 
-  void add(const std::vector<PairChange>& cluster) {
+  void add(const std::vector<PairChange>& cluster, Better better) {
     const auto outcome = [](int change) {
       return OutcomePair{change < 0 ? 1.0 : 0.0, change > 0 ? 1.0 : 0.0};
     };
     shifts.emplace_back(), worse.emplace_back(), differences.push_back(0), worse_by.push_back(0);
     for (const PairChange& change : cluster) {
-      shifts.back().push_back(outcome(change.shift)), worse.back().push_back(outcome(change.worse));
+      shifts.back().push_back(change.unknown.value_or(outcome(change.shift)));
+      worse.back().push_back(change.unknown ? worse_outcomes(*change.unknown, better)
+                                            : outcome(change.worse));
       differences.back() += change.difference / static_cast<double>(cluster.size());
       worse_by.back() += change.worse_by / static_cast<double>(cluster.size());
     }
   }
 };
 
-// Extends the interval of clusters that draw random numbers to all, by the exact values of the others, of
-// which the sum is given. Equal differences have no interval; if they are enough for a test, they count as
-// exact.
-Estimate with_fixed(Estimate e, std::int64_t fixed, double sum) {
-  if (e.clusters + fixed == 0) return e;
-  if (e.clusters == 0) e.value = e.low = e.high = 0;
+// The pairs that draw no random numbers.
+struct FixedPairs {
+  std::int64_t known = 0, unknown = 0;
+  double sum = 0;              // of the known changes
+  double least = 0, most = 0;  // sums of the least and the greatest possible changes of the unknown
+
+  void add(const PairChange& change, double known_change) {
+    if (!change.unknown) {
+      ++known, sum += known_change;
+      return;
+    }
+    ++unknown;
+    least -= change.unknown->first == 0 || change.unknown->second == 1 ? 0 : 1;
+    most += change.unknown->first == 1 || change.unknown->second == 0 ? 0 : 1;
+  }
+};
+
+// Extends the interval of clusters that draw random numbers to all, by the exact values of the others. Equal
+// differences have no interval; if they are enough for a test, they count as exact.
+Estimate with_fixed(Estimate e, std::int64_t clusters, const FixedPairs& fixed) {
+  if (clusters + fixed.known + fixed.unknown == 0) return e;
+  if (clusters == 0) e.value = e.low = e.high = 0;
   if (std::isnan(e.low) && !std::isnan(e.p)) e.low = e.high = e.value;
-  const auto tested = static_cast<double>(e.clusters);
-  for (double* x : {&e.value, &e.low, &e.high})
-    *x = (*x * tested + sum) / (tested + static_cast<double>(fixed));
+  if (fixed.known + fixed.unknown == 0) return e;
+  const auto tested = static_cast<double>(clusters), known = static_cast<double>(fixed.known);
+  const double all = tested + known + static_cast<double>(fixed.unknown);
+  if (tested + known > 0) e.value = (e.value * tested + fixed.sum) / (tested + known);
+  e.low = (e.low * tested + fixed.sum + fixed.least) / all;
+  e.high = (e.high * tested + fixed.sum + fixed.most) / all;
   return e;
 }
 
@@ -122,14 +167,17 @@ RegionComparison paired_tests(const Pairs& pairs, const std::vector<RunCluster>&
   RegionComparison result;
   ClusterChanges tested;
   std::vector<double> before;
-  std::int64_t fixed = 0;
-  PairChange of_fixed;  // sums
+  FixedPairs fixed_shifts, fixed_differences;
   for (const RunCluster& cluster : clusters) {
     std::vector<PairChange> changes;
     for (const std::size_t run : cluster.runs) {
       const bool finite = pairs.finite(run), equal = pairs.equal(run);
       ++result.runs;
       result.outside += equal ? 0 : 1, result.unpaired += equal || finite ? 0 : 1;
+      if (!finite && pairs.event) {
+        changes.push_back(unknown_change(pairs, run));
+        if (cluster.is_fixed) fixed_shifts.add(changes.back(), 0);
+      }
       if (!finite) continue;
       changes.push_back(change_of(pairs, run)), before.push_back(pairs.baseline[run]);
       const PairChange& change = changes.back();
@@ -139,20 +187,26 @@ RegionComparison paired_tests(const Pairs& pairs, const std::vector<RunCluster>&
       result.baseline_events += pairs.baseline[run] == 1,
           result.candidate_events += pairs.candidate[run] == 1;
       if (!cluster.is_fixed) continue;
-      ++fixed, of_fixed.shift += change.shift, of_fixed.difference += change.difference;
+      fixed_shifts.add(change, change.shift), fixed_differences.add(change, change.difference);
       result.fixed_not_better += !equal && change.worse >= 0;
     }
-    if (!cluster.is_fixed && !changes.empty()) tested.add(changes);
+    if (!cluster.is_fixed && !changes.empty()) tested.add(changes, pairs.better);
   }
   result.tested = static_cast<std::int64_t>(tested.shifts.size());
-  result.difference = with_fixed(estimated_event_difference(tested.shifts), fixed, of_fixed.shift);
+  result.difference = with_fixed(estimated_event_difference(tested.shifts), result.tested, fixed_shifts);
   result.worse_share = estimated_event_difference(tested.worse);
   if (pairs.event) {
-    result.baseline_fraction = exact_interval(result.baseline_events, static_cast<double>(result.pairs));
-    result.candidate_fraction = exact_interval(result.candidate_events, static_cast<double>(result.pairs));
+    const auto interval_of = [&](double events) {
+      const auto with = static_cast<std::int64_t>(events);
+      const Estimate e =
+          estimated_fraction(EventCounts{with, result.pairs - with, result.runs - result.pairs});
+      return std::pair(e.low, e.high);
+    };
+    result.baseline_fraction = interval_of(result.baseline_events);
+    result.candidate_fraction = interval_of(result.candidate_events);
   } else {
     result.baseline_events = result.candidate_events = 0;
-    result.mean = with_fixed(estimated_difference(tested.differences), fixed, of_fixed.difference);
+    result.mean = with_fixed(estimated_difference(tested.differences), result.tested, fixed_differences);
     result.baseline_spread = standard_deviation(before);
     result.worse_by = estimated_difference(tested.worse_by);
   }

@@ -238,13 +238,16 @@ Estimate estimated_limit_comparison(const std::vector<OutcomesAtValue>& a,
   Estimate e;
   e.value = compared(of_b.value, of_a.value);
   e.unknown = of_a.unknown + of_b.unknown;
+  const char* const open = "the interval of a limit is open";
   if (are_fixed(a) && are_fixed(b)) {
     e.clusters = 1, e.method = kExactMethod;
+    e.low = compared(of_b.low, of_a.high), e.high = compared(of_b.high, of_a.low);
+    if (std::isnan(e.low + e.high)) e.add_note(open);
     return e;
   }
   e.clusters = replicates_of(a, b);
   if (e.clusters < kLeastPairs) e.add_note("needs 6 replicates");
-  if (std::isnan(of_a.low + of_a.high + of_b.low + of_b.high)) e.add_note("the interval of a limit is open");
+  if (std::isnan(of_a.low + of_a.high + of_b.low + of_b.high)) e.add_note(open);
   if (!e.note.empty()) return e;
   std::vector<double> least, greatest;
   std::size_t below = 0, above = 0;  // draws whose difference may be below, above 0

@@ -86,7 +86,9 @@ Estimate estimated_mean(const std::vector<StratumMoments>& strata, bool has_thir
   const double se = std::sqrt(all.scatter) / all.count, d = all.degrees(), t = student_quantile(0.05, d);
   e.low = e.value - t * se, e.high = e.value + t * se, e.method = "Student's t";
   if (all.count < kHallNumbers) e.add_note("assumes a normal distribution");
-  if (!has_third || all.count < kHallNumbers || d < kHallDegrees) return e;
+  if (all.count < kHallNumbers || d < kHallDegrees) return e;
+  if (!has_third) e.add_note("no correction for a skewed distribution: needs all runs");
+  if (!has_third) return e;
   const double g = all.skewness();
   e.low = std::min(e.low, e.value - se * hall(t, g));
   e.high = std::max(e.high, e.value - se * hall(-t, g));

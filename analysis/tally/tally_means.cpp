@@ -44,15 +44,20 @@ Estimate fraction_of(const SweepTally& tally, std::size_t measure, const CellGro
 Estimate mean_of(const SweepTally& tally, std::size_t measure, const CellGroup& group,
                  const CellStreams& streams) {
   std::vector<StratumMoments> strata;
+  bool are_fixed = true;
   for (const std::size_t cell : group.cells)
     if (const CellTally* const own = tally_of(tally, cell)) {
       const MeasureTally& values = own->measures[measure];
+      const bool is_fixed = streams.is_fixed(cell);
+      are_fixed &= is_fixed;
       strata.push_back({{static_cast<double>(values.values), values.values > 0 ? values.mean() : 0,
                          values.values > 1 ? values.variance() : 0, 0},
-                        streams.is_fixed(cell),
-                        values.unknown});
+                        is_fixed,
+                        is_fixed ? std::min<std::int64_t>(values.unknown, 1) : values.unknown});
     }
-  return estimated_mean(strata, false);
+  Estimate e = estimated_mean(strata, false);
+  if (are_fixed && !strata.empty()) e.clusters += e.unknown, e.method = kExactMethod;
+  return e;
 }
 
 // The note on the fixed cells of a row, as equal_runs_note().
@@ -86,8 +91,10 @@ Table tally_means(const SweepTally& tally, const SweepResult& outline, std::size
                                   : mean_of(tally, measure, group, streams);
     std::int64_t runs = 0;
     for (const std::size_t cell : group.cells)
-      if (const CellTally* const own = tally_of(tally, cell))
-        runs += own->measures[measure].values + own->measures[measure].unknown;
+      if (const CellTally* const own = tally_of(tally, cell)) {
+        const std::int64_t of_cell = own->measures[measure].values + own->measures[measure].unknown;
+        runs += streams.is_fixed(cell) ? std::min<std::int64_t>(of_cell, 1) : of_cell;
+      }
     if (const std::string equal = equal_runs(tally, group, streams); !equal.empty()) e.add_note(equal);
     note_unknown(e, runs, is_event(column));
     estimates.push_back(std::move(e));

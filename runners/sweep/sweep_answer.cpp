@@ -82,6 +82,7 @@ Axes axes_by(const SweepResult& result, const std::vector<std::string>& by) {
   return axes;
 }
 
+// rises: the direction that the runs show, or that the question states.
 std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit,
                            const std::optional<bool>& rises) {
   char text[80];
@@ -91,7 +92,8 @@ std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit
       !rises
           ? "The runs do not show whether the event becomes more or less probable along the axis, so there "
             "is no limit: state it as direction \"rises\" or \"falls\". "
-          : "Along the axis the event becomes " + std::string(*rises ? "more" : "less") + " probable. ";
+          : "Along the axis the event becomes " + std::string(*rises ? "more" : "less") + " probable" +
+                (limit.rises ? ", as stated. " : ". ");
   return "Limit: the " + result.axes[limit.along].name + " at which " + limit.measure + text + direction;
 }
 
@@ -154,9 +156,12 @@ void add_differences(Figure& figure, const Asked& asked, const SweepQuestion& qu
   indices[between] = 1, first_cells[1] = result.cell_at(indices);
   const std::vector<std::size_t>& noise = asked.streams.noise_cell;
   const bool common = noise[first_cells[0]] == noise[first_cells[1]];
+  const bool independent = asked.streams.are_independent(first_cells);
   figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) +
                     ", in pairs of runs with the same replicate" +
-                    (common ? " and the same noise. " : ", whose noise is independent. ");
+                    (common        ? " and the same noise. "
+                     : independent ? ", whose noise is independent. "
+                                   : ", which share some of their random numbers. ");
   for (const std::string& measure : question.differences) {
     number_of_column(result.measures, measure, "difference");
     const Table table = asked.differences(measure, between, by);
