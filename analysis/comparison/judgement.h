@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "analysis/measures/better.h"
+#include "analysis/measures/measures.h"
 #include "analysis/trace/tolerance.h"
 
 namespace remote_touch {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analysis/comparison/judgement.h"
-#include "analysis/measures/better.h"
+#include "analysis/measures/measures.h"
 #include "analysis/statistics/paired_test.h"
 #include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_regions.h"
