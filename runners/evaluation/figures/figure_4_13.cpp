@@ -5,7 +5,7 @@
 
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/limit.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 #include "runners/experiment/settings/second_implementation.h"
 

@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/experiment/settings/second_implementation.h"
 
 namespace remote_touch {

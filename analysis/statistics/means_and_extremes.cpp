@@ -1,7 +1,5 @@
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace remote_touch {
