@@ -18,7 +18,7 @@
 #include "runners/experiment/settings/renamed_names.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep_streams.h"
+#include "runners/sweep/sweep_answer.h"
 
 namespace remote_touch {
 

@@ -3,8 +3,8 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/sweep/sweep_notes.h"
-#include "runners/sweep/sweep_replay.h"
+#include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
 

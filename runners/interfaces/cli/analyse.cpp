@@ -10,11 +10,9 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/presentation/export/csv_files.h"
-#include "runners/sweep/answer_panels.h"
-#include "runners/sweep/answer_text.h"
+#include "runners/sweep/answer_display.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
-#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 

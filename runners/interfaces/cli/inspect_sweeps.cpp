@@ -9,7 +9,7 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/shards/shard_folder.h"
-#include "runners/sweep/tally_outline.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 

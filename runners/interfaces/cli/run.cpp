@@ -14,7 +14,7 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/presentation/view/trace_page.h"
-#include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 

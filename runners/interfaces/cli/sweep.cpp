@@ -15,11 +15,9 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
 #include "runners/sweep/sweep_session.h"
-#include "runners/sweep/tally_outline.h"
-#include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
 

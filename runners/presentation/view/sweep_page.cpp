@@ -13,10 +13,8 @@
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/view/sweep_cells.h"
-#include "runners/sweep/cell_text.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
-#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 
