@@ -9,7 +9,6 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/sweep/shards/tally_merge.h"
 
 namespace remote_touch {
 

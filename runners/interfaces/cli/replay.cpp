@@ -14,7 +14,7 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/sweep/shards/recheck.h"
+#include "runners/sweep/shards/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
 #include "runners/sweep/sweep_session.h"
