@@ -7,7 +7,7 @@
 
 #include "runners/evaluation/figures/figures.h"
 #include "runners/interfaces/cli/commands.h"
-#include "runners/sweep/threads/time_left.h"
+#include "runners/sweep/threads/work_pool.h"
 
 namespace remote_touch {
 
