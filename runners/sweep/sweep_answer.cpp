@@ -14,7 +14,6 @@
 #include "analysis/sweeps/sweep_means.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/catalog/random_streams.h"
 #include "runners/sweep/answer_display.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_parts.h"

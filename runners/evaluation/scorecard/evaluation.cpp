@@ -4,7 +4,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/passivity.h"
-#include "runners/experiment/catalog/random_streams.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"
 
 namespace remote_touch {
