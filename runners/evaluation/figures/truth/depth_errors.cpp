@@ -7,7 +7,7 @@
 #include "core/geometry/angle.h"
 #include "core/numeric/order_statistic.h"
 #include "runners/evaluation/figures/truth/recording_window.h"
-#include "runners/experiment/hand/image_frames.h"
+#include "runners/experiment/hand/image_surface.h"
 
 namespace remote_touch {
 

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "core/search/neighbour_search.h"
-#include "runners/experiment/hand/image_frames.h"
-#include "runners/experiment/hand/surface_support.h"
+#include "runners/experiment/hand/image_surface.h"
 #include "scenarios/recordings/measured_surface.h"
 
 namespace remote_touch {
