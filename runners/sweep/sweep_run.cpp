@@ -9,7 +9,6 @@
 #include "analysis/storage/digest.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "runners/sweep/stored_sweep.h"

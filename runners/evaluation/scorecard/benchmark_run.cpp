@@ -2,7 +2,6 @@
 
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/sweep/sweep_session.h"
 
