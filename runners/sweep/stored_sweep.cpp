@@ -11,7 +11,6 @@
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/settings/renamed_names.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "scenarios/text_files/json_text.h"

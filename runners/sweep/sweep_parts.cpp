@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/settings/renamed_names.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include "analysis/statistics/limit.h"
 #include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
-#include "runners/experiment/settings/second_implementation.h"
+#include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "runners/experiment/settings/second_implementation.h"
+#include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {
 

@@ -21,7 +21,7 @@
 #include "runners/evaluation/regression/program_run.h"
 #include "runners/evaluation/regression/scratch_folder.h"
 #include "runners/evaluation/regression/spread.h"
-#include "runners/experiment/settings/configuration_difference.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/sweep.h"

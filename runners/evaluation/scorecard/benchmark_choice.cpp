@@ -6,7 +6,6 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
