@@ -12,7 +12,7 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"
-#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {

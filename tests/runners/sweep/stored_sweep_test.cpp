@@ -8,7 +8,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"
