@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "scenarios/meshes/object_view.h"
+#include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/recorded_truth.h"
 
 namespace remote_touch {

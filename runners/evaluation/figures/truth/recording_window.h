@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "scenarios/meshes/depth_raster.h"
+#include "scenarios/meshes/mesh_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
 
 namespace remote_touch {
