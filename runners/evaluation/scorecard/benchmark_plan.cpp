@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "runners/evaluation/scorecard/passivity.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include "runners/interfaces/cli/figure_folder.h"
 #include "runners/interfaces/cli/figure_runs.h"
 #include "runners/interfaces/cli/progress.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

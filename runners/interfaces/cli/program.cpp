@@ -21,7 +21,7 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/command_line.h"
 #include "runners/interfaces/cli/last_resorts.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 
