@@ -8,7 +8,7 @@
 #include "runners/presentation/view/shown_sensor.h"
 #include "runners/presentation/view/shown_tool.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/presentation/view/frames_again.h"
 #include "runners/presentation/view/shown_tool.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

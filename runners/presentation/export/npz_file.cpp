@@ -7,7 +7,7 @@
 #include "runners/presentation/export/npy_array.h"
 #include "runners/presentation/export/result_tables.h"
 #include "runners/presentation/export/zip_archive.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "runners/presentation/export/little_endian.h"
 #include "runners/presentation/export/result_tables.h"
 #include "runners/presentation/export/vtk_poly_data.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

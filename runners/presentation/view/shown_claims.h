@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "analysis/storage/hdf5_file.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 
 #include "runners/presentation/view/packed_arrays.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "core/geometry/bounding_box.h"
 #include "core/kernels/kernels.h"
 #include "runners/presentation/view/packed_arrays.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

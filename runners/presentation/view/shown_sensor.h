@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/geometry/vector.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include "core/dissertation/sphere_tree/tool_spheres.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "runners/presentation/view/packed_arrays.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 
