@@ -6,7 +6,7 @@
 
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/verification/metamorphic_scene.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 
 #include "core/geometry/camera.h"
 #include "runners/evaluation/verification/scene_parts.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {
 
