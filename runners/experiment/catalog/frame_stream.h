@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/numeric/noise.h"
 #include "core/rendering/frame.h"

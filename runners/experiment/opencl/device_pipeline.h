@@ -8,7 +8,6 @@
 #include <string>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/dissertation/depth/depth_processor.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/opencl/opencl_devices.h"
 
