@@ -3,10 +3,7 @@
 #include <numbers>
 
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/dissertation/virtual_fixtures/everywhere.h"
-#include "core/dissertation/virtual_fixtures/half_space.h"
-#include "core/dissertation/virtual_fixtures/hue_range.h"
-#include "core/dissertation/virtual_fixtures/near_point.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "runners/experiment/hand/contact_replay.h"
 #include "runners/experiment/hand/image_press.h"
 #include "runners/experiment/hand/image_scan.h"

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/geometry/colour.h"
 #include "tests/support/scenes.h"
 

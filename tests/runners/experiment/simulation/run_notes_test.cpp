@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "core/dissertation/virtual_fixtures/half_space.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/geometry/camera.h"
 #include "core/search/neighbour_search.h"
 #include "runners/experiment/catalog/experiment.h"
