@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/triangle_tree.h"
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/geometry/bounding_box.h"
 #include "core/geometry/rotation.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 #include "scenarios/text_files/text_file.h"
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/image_folders.h"

@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/geometry/bounding_box.h"
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "core/geometry/rotation.h"
+#include "core/geometry/vector.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/number_columns.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/limited_length.h"
 #include "core/geometry/rotation.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 namespace {
