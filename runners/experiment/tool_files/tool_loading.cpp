@@ -4,7 +4,7 @@
 
 #include "analysis/storage/digest.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/mesh/mesh_corners.h"
+#include "core/mesh/triangle_mesh.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/provenance/cache_file.h"
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/mesh/mesh_repair.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 
