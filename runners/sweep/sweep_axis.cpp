@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
-#include "core/parameters/unit.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/sections.h"
 
 namespace remote_touch {
