@@ -11,7 +11,6 @@
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/numeric/noise.h"
 #include "core/rendering/frame.h"
-#include "core/rendering/frame_need.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/sessions/sensor_frame.h"
 #include "scenarios/interface/scenario.h"

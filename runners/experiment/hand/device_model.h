@@ -8,7 +8,7 @@
 
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,6 @@
 #include "analysis/trace/hand_and_slave_state.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
-#include "core/rendering/rendered_wrench.h"
 #include "core/rendering/renderer.h"
 #include "core/teleoperation/architecture.h"
 #include "core/teleoperation/channel.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/geometry/rotation.h"
-#include "core/rendering/rendered_wrench.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch::simulated_hand_test {
 namespace {
