@@ -1,5 +1,5 @@
 // The god-object of C. Zilles and K. Salisbury, "A constraint-based god-object method for haptic display",
-// IROS 1995, on the grid mesh of an organised frame (grid_mesh.h). Recorded depth images were rendered in
+// IROS 1995, on the grid mesh of an organised frame (GridMesh). Recorded depth images were rendered in
 // this way before point clouds were rendered directly ([82], [83] of the dissertation).
 //
 // The god-object is a point that never passes a triangle, from either side. Each round moves it straight to

@@ -1,5 +1,5 @@
 // A volumetric penalty method for comparison: a tool filled with inner spheres is pushed out of the points of
-// a frame. Force and torque are proportional to the penetration volume (sphere_penetration.h). R. Weller and
+// a frame. Force and torque are proportional to the penetration volume (SpherePenetration). R. Weller and
 // G. Zachmann, "A unified approach for physically-based simulations and haptic rendering", ACM SIGGRAPH
 // Symposium on Video Games 2009, introduced them for two bodies of inner spheres; M. Kaluschke, R. Weller, G.
 // Zachmann and others, World Haptics 2017, for one body and the point cloud of a depth camera.

@@ -53,12 +53,12 @@ WindowNoise window_noise(int width, int height, int window_px, bool also_indepen
 // (baseline, 0, 0) in the camera frame, to the right of the camera. The sensor measures the disparity
 // d = f b / z in pixels, with the focal length f and the baseline b. All errors arise there:
 //
-//   1. Pixels without a measurement: the second device does not see the surface (baseline_shadow.h); the
+//   1. Pixels without a measurement: the second device does not see the surface (see above); the
 //      disparity exceeds the range of the search, so that the surface is too near; the ray meets the surface
 //      at a grazing angle; in stereo also if the point is beyond the left border of the second image, which
 //      is a band of f b / z pixels.
 //   2. Lateral noise (structured light): at a depth edge the pixel may measure the surface on the other side.
-//   3. Noise of the disparity, d + sigma n, which is correlated over the matching window (window_noise.h).
+//   3. Noise of the disparity, d + sigma n, which is correlated over the matching window (WindowNoise).
 //   4. Rounding to a multiple of the smallest step of disparity, s.
 //
 // A published standard deviation is that of measured depths, so it contains the rounding. Here sigma is what

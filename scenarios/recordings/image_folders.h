@@ -69,7 +69,7 @@ std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& dept
                                             const std::vector<StampedFile>& colour);
 
 // Lists the frames of a folder. The layout is the first of these whose files it has:
-// - TUM RGB-D: depth.txt, and rgb.txt for colours, see tum_layout.h; 5000 units per metre. The rate is the
+// - TUM RGB-D: depth.txt, and rgb.txt for colours, see above; 5000 units per metre. The rate is the
 //   mean rate of the stamps (30 Hz for a single frame). The camera is that of freiburg1, 2 or 3, if the
 //   folder's name or a comment in depth.txt names it, else the benchmark's default (f = 525), with a note.
 //   Colours are registered.
@@ -81,7 +81,7 @@ std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& dept
 // A camera.json replaces the camera and the unit of every layout, and states whether colours are registered,
 // whether depths are along the axis or the rays and, except for TUM, the rate, which is otherwise 30 Hz.
 // Colours that are there but not used are a note. Images are in the order of sort_by_name(); colours are
-// paired as in folder_files.h.
+// paired as above.
 //
 // Returns nothing for a folder of another kind. Throws InputError about the file if a part is missing or
 // wrong, and about scene_camera.json if the images of a scene have several cameras.

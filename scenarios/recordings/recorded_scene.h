@@ -70,7 +70,7 @@ class RecordedScene : public Scenario {
   // than truth_reach_m from all of them, beyond the border of an open one, and outside the mask. Otherwise it
   // is measured_distance().
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // The distance to a plane through the points of the newest frame around p's pixel, see measured_surface.h.
+  // The distance to a plane through the points of the newest frame around p's pixel, see above.
   bool has_measured_distance() const override { return truth_ != nullptr; }
   double measured_distance(const Vec3& p_W, double time_s) const override;
   // Returns NaN if the truth is the measured surface, which is no independent truth: a normal would be judged

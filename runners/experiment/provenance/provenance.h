@@ -73,7 +73,7 @@ std::string commit_text(const TextAttributes& attributes);
 
 // command: normalised by the caller (no output path, no thread count). config: resolved JSON. isa may be
 // empty, for results that several machines made together; it is then left out. inputs: the text of
-// input_hashes.h; empty if nothing was read, and then left out.
+// input_hashes(); empty if nothing was read, and then left out.
 TextAttributes provenance(const std::string& config, const std::string& command, const std::string& isa,
                           const std::string& inputs = {});
 // The same with the recipe as fields in addition to its command.

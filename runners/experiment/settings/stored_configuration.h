@@ -63,7 +63,7 @@ std::optional<std::string> stored_value(const std::string& entry, const std::str
 // Returns the same configuration with the parameters of this version. Before version 0.3 the motion of
 // moving-lift and moving-shape was given in frames (rise_frames and others). Such a count becomes a time at
 // the configuration's frame rate, and the motion keeps its bits. Settings and values that schema /2 had under
-// other names (renamed_names.h) have their present names, also on axes. Any other text is returned as it is.
+// other names (renamed_names()) have their present names, also on axes. Any other text is returned as it is.
 std::string stored_configuration(const std::string& text);
 
 // Returns the names and text values that stored_configuration() replaces, sorted, each once, as "old to new":

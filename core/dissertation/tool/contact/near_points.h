@@ -93,7 +93,7 @@ class NearPoints {
 
 // Counts the points of a cloud that the tool touches at a pose. Every point is counted by itself.
 //
-// Groups of points are kept from one pose to the next (kept_groups.h). The voxel in which a point lies, or
+// Groups of points are kept from one pose to the next (KeptGroups). The voxel in which a point lies, or
 // its distance, classifies most points. Only for the others, the nearest position on the disk is searched.
 
 struct Touched {
