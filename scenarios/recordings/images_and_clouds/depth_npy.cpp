@@ -150,10 +150,10 @@ DepthImage read_depth_npy(const std::filesystem::path& file, double metres_per_u
 }
 
 void distances_to_depths(const CameraIntrinsics& camera, DepthImage& image) {
+  const auto width = static_cast<std::size_t>(image.width);
   for (std::size_t i = 0; i < image.z_m.size(); ++i) {
-    const double u = static_cast<double>(i % static_cast<std::size_t>(image.width));
-    const double v = static_cast<double>(i / static_cast<std::size_t>(image.width));
-    image.z_m[i] /= unproject(camera, u, v, 1).norm();
+    const std::size_t column = i % width, row = i / width;
+    image.z_m[i] /= unproject(camera, static_cast<double>(column), static_cast<double>(row), 1).norm();
   }
 }
 
