@@ -15,7 +15,8 @@ double first_contact_time_s(const Trace& trace) {
 }
 
 double first_pop_through_tick(const Trace& trace) {
-  return side_of_run(trace, judged_distance_m(trace)).first_pop_through_tick;
+  SurfaceSide side(trace.held_depth_m);
+  return first_tick(trace, [&](std::size_t i) { return side.add(trace.signed_distance_m[i]); });
 }
 
 double first_pop_through_time_s(const Trace& trace) {

@@ -1,6 +1,7 @@
 #include "analysis/measures/tool_measures.h"
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "core/geometry/rotation.h"
@@ -35,7 +36,8 @@ double torque_magnitude_Nm(const Trace& trace, std::size_t i) {
 
 double min_clearance_m(const Trace& trace) {
   if (!trace.has_tool()) return kNoValue;
-  const double found = min_of(trace.nearest_distance_m);
+  double found = std::numeric_limits<double>::infinity();
+  for (const double gap_m : trace.nearest_distance_m) found = std::min(found, gap_m);  // ignores NaN
   return std::isinf(found) ? kNoValue : found;
 }
 

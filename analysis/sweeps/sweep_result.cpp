@@ -1,7 +1,6 @@
 #include "analysis/sweeps/sweep_result.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -117,15 +116,15 @@ SweepResult without_others(SweepResult result) {
   return part;
 }
 
-EventCounts event_counts(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
-                         double above) {
-  EventCounts counts;
+Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell, double above) {
+  Tally tally;
   for (int replicate = 0; replicate < result.replicates; ++replicate) {
     const std::size_t run = result.run(cell, replicate);
     if (result.state[run] != RunState::done) continue;
-    ++(std::isnan(measure[run]) ? counts.unknown : measure[run] > above ? counts.events : counts.without);
+    ++tally.runs;
+    tally.events += measure[run] > above ? 1 : 0;
   }
-  return counts;
+  return tally;
 }
 
 }  // namespace remote_touch

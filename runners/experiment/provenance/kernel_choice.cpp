@@ -12,6 +12,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/provenance/kernel_tasks.h"
+#include "runners/experiment/provenance/provenance.h"
 
 namespace remote_touch {
 
@@ -73,7 +74,9 @@ std::string level_times_key() {
   CacheWriter pack;
   pack.value(kLevelTimesFormat);
   add_processor(pack);
-  pack.text(build_for_keys());
+  for (const auto& [name, value] : provenance("", "", ""))
+    if (name == "version" || name == "source_digest" || name == "compiler" || name == "flags")
+      pack.text(value);
   return pack.hex();
 }
 

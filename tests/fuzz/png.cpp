@@ -1,0 +1,29 @@
+// PNG files, read as a depth image and as a colour image.
+#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
+
+namespace remote_touch::fuzz::png {
+namespace {
+
+void read(std::string_view bytes) {
+  const auto file = scratch_file("image.png", bytes);
+  accepts(bytes, [&] {
+    const DepthImage depth = read_depth_png(file, 0.001, 4);
+    require(
+        depth.z_m.size() == static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height),
+        "every pixel has a depth");
+    for (const double z_m : depth.z_m) require(!(z_m <= 0 || z_m > 4), "a depth is in range or NaN");
+  });
+  accepts(bytes, [&] {
+    int width = 0, height = 0;
+    const auto colour = read_colour_png(file, width, height);
+    require(colour.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+            "every pixel has a colour");
+  });
+}
+
+const Registered registered("png", read);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::png
