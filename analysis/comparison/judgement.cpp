@@ -1,5 +1,6 @@
 #include "analysis/comparison/judgement.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace remote_touch {
@@ -11,6 +12,19 @@ bool is_change(Judgement judgement) {
 const char* name_of(Judgement judgement) {
   constexpr const char* kNames[] = {"equal", "within_margin", "better", "worse", "changed", "undecided"};
   return kNames[static_cast<int>(judgement)];
+}
+
+bool needs_contact(const std::string& measure) {
+  constexpr const char* kOthers[] = {"guidance_",
+                                     "rms_slave_",
+                                     "slave_anticipation",
+                                     "rms_force_error",
+                                     "relative_force_error",
+                                     "force_direction_error",
+                                     "false_contact_fraction",
+                                     "lost_contact_fraction"};
+  return !is_outcome(measure) && std::none_of(std::begin(kOthers), std::end(kOthers),
+                                              [&](const char* other) { return measure.starts_with(other); });
 }
 
 Judgement judge_value(double baseline, double candidate, Better better, const Tolerance& tolerance) {

@@ -23,6 +23,10 @@ const char* name_of(Judgement judgement);
 // Judges one number: equal, better, worse or changed. A number that was or became NaN is changed.
 Judgement judge_value(double baseline, double candidate, Better better, const Tolerance& tolerance);
 
+// True for a measure that says nothing about a run without any contact, such as the greatest depth in the
+// tool. False for outcomes, and for measures of guidance, of the slave's motion and of an expected force.
+bool needs_contact(const std::string& measure);
+
 // A measure of one run, in the baseline and in the candidate.
 struct ValueComparison {
   std::string name, units;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/comparison/sweep_comparison.h"
+#include "analysis/sweeps/cell_streams.h"
 
 namespace remote_touch {
 
@@ -13,8 +14,8 @@ struct Pairs {
   const std::vector<double>&baseline, &candidate;
   Tolerance tolerance;
   Better better = Better::neither;
-  bool event = false;                   // true: a candidate's value other than 0 and 1 has no partner
-  std::vector<bool> same_outcome = {};  // runs of equal outcome; only these get better or worse. Empty: all
+  bool event = false;                // true: a candidate's value other than 0 and 1 has no partner
+  std::vector<bool> is_judged = {};  // runs that may get better or worse. Empty: all
 
   bool finite(std::size_t run) const;
   bool equal(std::size_t run) const { return within(tolerance, baseline[run], candidate[run]); }
@@ -27,7 +28,8 @@ struct Pairs {
 MeasureComparison compare_values(const Pairs& pairs, const Runs& runs);
 
 // Computes the tests of a region. Their p values are not yet adjusted, and there is no judgement yet.
-RegionComparison paired_tests(const Pairs& pairs, const Runs& runs);
+// Clusters that draw no random numbers are counted, but not tested.
+RegionComparison paired_tests(const Pairs& pairs, const std::vector<RunCluster>& clusters);
 
 // pre: adjusted_p is set.
 Judgement judgement_by_pairs(const RegionComparison& region, const MeasureComparison& measure,

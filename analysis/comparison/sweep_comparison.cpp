@@ -114,6 +114,15 @@ std::vector<bool> same_outcomes(const SweepResult& a, const SweepResult& b) {
   return same;
 }
 
+// Sets the runs to false in which the sweep has the note "no contact".
+void exclude_without_contact(const SweepResult& sweep, std::vector<bool>& runs) {
+  const auto kind = std::find(sweep.note_kinds.begin(), sweep.note_kinds.end(), "no contact");
+  if (kind == sweep.note_kinds.end() || sweep.notes.size() != runs.size()) return;
+  const auto bit = kind - sweep.note_kinds.begin();
+  for (std::size_t run = 0; run < runs.size(); ++run)
+    if ((sweep.notes[run] >> bit & 1) != 0) runs[run] = false;
+}
+
 std::optional<FirstDifference> first_difference(const SweepResult& a, const SweepResult& b,
                                                 const SweepComparison& comparison) {
   std::optional<FirstDifference> first;
@@ -131,37 +140,46 @@ std::optional<FirstDifference> first_difference(const SweepResult& a, const Swee
   return first;
 }
 
-std::vector<Runs> by_region(const SweepResult& result, const Runs& runs, const std::vector<Region>& regions) {
-  std::vector<Runs> split(regions.size());
-  for (const std::size_t run : runs) {
-    const std::vector<std::size_t> indices = result.axis_indices(result.cell_of(run));
-    for (std::size_t i = 0; i < regions.size(); ++i)
-      if (regions[i].contains(indices)) split[i].push_back(run);
-  }
-  return split;
+// Returns the sweep without values, in which just these runs are done.
+SweepResult with_runs(const SweepResult& sweep, const Runs& runs) {
+  SweepResult outline;
+  outline.axes = sweep.axes, outline.replicates = sweep.replicates;
+  outline.state.assign(sweep.run_count(), RunState::not_sampled);
+  for (const std::size_t run : runs) outline.state[run] = RunState::done;
+  return outline;
+}
+
+// Returns the clusters of the finished runs in a region.
+std::vector<RunCluster> clusters_in(const Region& region, const SweepResult& sweep,
+                                    const CellStreams& streams) {
+  std::vector<std::size_t> cells;
+  for (std::size_t cell = 0; cell < sweep.cell_count(); ++cell)
+    if (region.contains(sweep.axis_indices(cell))) cells.push_back(cell);
+  return clusters_of(sweep, streams, cells, streams.share_replicates(cells));
 }
 
 // --- paired tests ---
 
 // The p values of all tests are adjusted together: one test of each event, and two of each other measure.
-void judge(const PairedRule& rule, SweepComparison& result) {
+void judge(const PairedRule& rule, bool needs_tests, SweepComparison& result) {
   std::vector<double> p;
-  for (const RegionComparison& c : result.by_region) {
-    p.push_back(c.sign_p);
-    if (!result.measures[c.measure].event) p.push_back(c.symmetry_p);
-  }
+  for (const RegionComparison& c : result.by_region) p.push_back(c.difference.p), p.push_back(c.mean.p);
   const std::vector<double> adjusted = holm_adjusted(p);
   auto next = adjusted.begin();
   for (RegionComparison& c : result.by_region) {
-    c.adjusted_p = *next++;
-    if (!result.measures[c.measure].event) c.adjusted_p = std::min(c.adjusted_p, *next++);
+    for (const Estimate* test : {&c.difference, &c.mean}) {
+      if (!test->is_skewed) c.adjusted_p = std::fmin(c.adjusted_p, *next);
+      ++next;
+    }
     c.judgement = judgement_by_pairs(c, result.measures[c.measure], rule);
   }
   for (std::size_t i = 0; i < result.measures.size(); ++i) {
+    if (result.at(0, i).tested == 0) continue;  // no test can show a direction
     Judgement& run_by_run = result.measures[i].run_by_run;
     const Judgement prevails = judgement_of(result, i, true);
-    if (run_by_run == Judgement::undecided && (prevails == Judgement::better || prevails == Judgement::worse))
-      run_by_run = prevails;
+    const auto has_direction = [](Judgement j) { return j == Judgement::better || j == Judgement::worse; };
+    if (needs_tests && has_direction(run_by_run)) run_by_run = Judgement::undecided;
+    if (run_by_run == Judgement::undecided && has_direction(prevails)) run_by_run = prevails;
   }
 }
 
@@ -187,7 +205,8 @@ PairedVerdict paired_verdict(const SweepResult& baseline, const SweepComparison&
 }  // namespace
 
 SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
-                        const Tolerances& tolerances, const PairedRule& rule, const Directions& directions) {
+                        const Tolerances& tolerances, const PairedRule& rule, const Directions& directions,
+                        const SweepPairing& pairing) {
   SweepComparison result;
   check_definitions(baseline, candidate, result);
   for (const auto& [name, tolerance] : tolerances)
@@ -200,25 +219,32 @@ SweepComparison compare(const SweepResult& baseline, const SweepResult& candidat
   Runs planned;
   for (const std::size_t run : both)
     if (is_planned(baseline, run)) planned.push_back(run);
-  const std::vector<Runs> runs = by_region(baseline, planned, result.regions);
   const std::vector<bool> same_outcome = same_outcomes(baseline, candidate);
+  std::vector<bool> with_contact = same_outcome;
+  for (const SweepResult* sweep : {&baseline, &candidate}) exclude_without_contact(*sweep, with_contact);
   std::vector<Pairs> pairs;
   for (const Column& measure : baseline.measures) {
     pairs.push_back({baseline.measure(measure.name), candidate.measure(measure.name),
                      tolerance_of(tolerances, measure.name), direction_of(directions, measure.name),
                      is_event(baseline.measure(measure.name), candidate.measure(measure.name), both),
-                     is_outcome(measure.name) ? std::vector<bool>() : same_outcome});
+                     is_outcome(measure.name)      ? std::vector<bool>()
+                     : needs_contact(measure.name) ? with_contact
+                                                   : same_outcome});
     result.measures.push_back(compare_values(pairs.back(), both));
     result.measures.back().name = measure.name, result.measures.back().units = measure.units;
   }
-  for (std::size_t region = 0; region < runs.size(); ++region)
+  const SweepResult outline = with_runs(baseline, planned);
+  const CellStreams streams = pairing.streams.value_or(independent_streams(baseline.cell_count()));
+  for (std::size_t region = 0; region < result.regions.size(); ++region) {
+    const std::vector<RunCluster> clusters = clusters_in(result.regions[region], outline, streams);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      result.by_region.push_back(paired_tests(pairs[i], runs[region]));
+      result.by_region.push_back(paired_tests(pairs[i], clusters));
       result.by_region.back().region = region, result.by_region.back().measure = i;
     }
+  }
   result.first = first_difference(baseline, candidate, result);
   result.exact = result.first ? ExactVerdict::different : ExactVerdict::equal;
-  judge(rule, result);
+  judge(rule, pairing.needs_tests, result);
   result.paired = paired_verdict(baseline, result);
   return result;
 }

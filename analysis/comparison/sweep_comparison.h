@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "analysis/comparison/judgement.h"
 #include "analysis/measures/better.h"
 #include "analysis/statistics/paired_test.h"
+#include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_regions.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/tolerance.h"
@@ -34,9 +36,9 @@ struct MeasureComparison {
   double max_deviation = 0, rms_deviation = 0;    // |candidate - baseline| where both are finite
   std::optional<std::size_t> first_outside = {};  // a run
   // The judgement run by run. Better or worse: all runs outside went that way, or the paired tests show that
-  // this way prevails. Changed: no run outside went either way. Undecided: all other cases. A run outside
-  // with another outcome (see is_outcome()) or with a NaN goes neither way. A few other runs beside many such
-  // runs therefore decide nothing.
+  // this way prevails; see also SweepPairing. Changed: no run outside went either way. Undecided: all other
+  // cases. A run outside with another outcome (see is_outcome()) or with a NaN goes neither way. A few other
+  // runs beside many such runs therefore decide nothing.
   Judgement run_by_run = Judgement::equal;
 };
 
@@ -60,21 +62,29 @@ struct RegionComparison {
   std::int64_t outside = 0;   // runs outside the tolerance
   std::int64_t unpaired = 0;  // runs outside: not finite in one or both, or an event neither 0 nor 1
   std::int64_t up = 0, down = 0;
-  std::int64_t got_better = 0, got_worse = 0;      // pairs that got better or worse; 0 without a direction
-  std::pair<double, double> difference = {-1, 1};  // interval of (up - down) / pairs
+  std::int64_t got_better = 0, got_worse = 0;  // pairs that got better or worse; 0 without a direction
+  // Number of clusters that have a pair and draw random numbers. The tests compare these clusters, because
+  // the runs of a cluster share random numbers, see CellStreams.
+  std::int64_t tested = 0;
+  std::int64_t fixed_not_better = 0;  // runs without random numbers that differ and got no better
+  // (up - down) / pairs, as the mean over clusters, with the test of estimated_event_difference(). The
+  // interval also includes the runs without random numbers, which are exact; p is that of the other runs.
+  Estimate difference = {};
 
-  // Events only: counts in both sweeps, with Wilson's intervals of the fractions of pairs.
+  // Events only: counts in both sweeps, with exact intervals of the fractions of pairs.
   int baseline_events = 0, candidate_events = 0;
   std::pair<double, double> baseline_fraction = {0, 1}, candidate_fraction = {0, 1};
-  // Other measures only: the mean difference of all pairs and the baseline's standard deviation, in the
+  // Other measures only: the mean difference in the same way, with the test of estimated_difference(), in
+  // which pairs within the tolerance count as equal; and the baseline's standard deviation. Both are in the
   // measure's unit.
-  MeanDifference mean = {};
+  Estimate mean = {};
   double baseline_spread = 0;
 
-  double sign_p = 1;
-  double symmetry_p = 1;               // over the pairs outside; 1 for an event, where it adds nothing
-  double worse_p = 1, mean_worse = 0;  // test and mean of how much worse pairs got; not for an event
-  double adjusted_p = 1;  // the smaller of sign_p and symmetry_p, adjusted for all tests of the sweep
+  // Tests of the clusters: (got_worse - got_better) / pairs; and how much worse they got, not for an event.
+  Estimate worse_share = {}, worse_by = {};
+  // The smaller p of difference and mean, adjusted for all tests of the sweep; skewed ones do not count. NaN:
+  // fewer than 6 clusters have no test.
+  double adjusted_p = std::numeric_limits<double>::quiet_NaN();
   // The result of the paired tests, see PairedVerdict.
   Judgement judgement = Judgement::undecided;
 };
@@ -97,12 +107,14 @@ enum class ExactVerdict {
 //
 // A measure in a region is changed if one direction prevails (adjusted p < alpha, whatever the margins) or a
 // number became NaN. Runs that differ in an outcome, see is_outcome(), are neither better nor worse by other
-// measures. A changed measure is worse if the sign test or the symmetry test of the runs that got better or
-// worse has p < alpha, by itself, for worse. Otherwise it is better if one of these tests has p < alpha for
-// better and no number became NaN.
+// measures. A changed measure is worse if worse_share or worse_by has p < alpha, by itself, for worse.
+// Otherwise it is better if one of them has p < alpha for better, no number became NaN, and all runs without
+// random numbers that differ got better. The tests compare clusters, see RegionComparison::tested. Where no
+// run draws random numbers there is no test: outside of the margins a measure is better or worse if all runs
+// that differ are, else changed.
 //
 // The verdict within_margin must be demonstrated: over the whole, every measure that differs anywhere must
-// have its intervals within the margins. An event at the default margin needs 190 runs with one flip, and
+// have its intervals within the margins. An event at the default margin needs 280 runs with one flip, and
 // more runs with more flips. 4 runs of which one differs are undecided; 5396 runs with 30 flips, evenly both
 // ways, determine the difference to +-0.2 %. No correction for the number of measures is needed, because all
 // of them must pass. Parts have fewer runs, so an undecided part does not prevent a pass, but a changed part
@@ -142,6 +154,14 @@ struct SweepComparison {
   }
 };
 
+// Knowledge about the random numbers of two sweeps.
+struct SweepPairing {
+  std::optional<CellStreams> streams = {};  // of both sweeps together; none: every run draws its own
+  // The experiments differ. Then a few noisy runs that all went one way are chance: only the paired tests
+  // show a direction.
+  bool needs_tests = false;
+};
+
 // Two sweeps are comparable if they have the same axes (name, parameter, unit, and values to the bit), the
 // same number of replicates, and all measures of the baseline in the same order and units (the candidate may
 // have others), and if at least one run is done in both. Values within their tolerance count as equal in
@@ -149,7 +169,7 @@ struct SweepComparison {
 // arrays are over all runs, as read_sweep returns them; tolerances, margin and alpha are not negative.
 SweepComparison compare(const SweepResult& baseline, const SweepResult& candidate,
                         const Tolerances& tolerances = {}, const PairedRule& rule = {},
-                        const Directions& directions = {});
+                        const Directions& directions = {}, const SweepPairing& pairing = {});
 
 // The judgement of a measure, run by run or by pairs. The judgement by pairs combines the regions: worse if
 // any region is worse, else changed if any is changed, else better if any is better, else that of the whole.

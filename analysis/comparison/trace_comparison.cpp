@@ -169,8 +169,12 @@ bool TraceComparison::is_same() const {
 }
 
 TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource& candidate,
-                                const Tolerances& tolerances) {
+                                const Tolerances& tolerances, const std::vector<std::string>& configuration) {
   TraceComparison result;
+  const auto add_missing = [&](const Column& column, const std::string& name, const char* where) {
+    result.columns.push_back({name, column.units, tolerance_of(tolerances, name)});
+    result.columns.back().problem = where;
+  };
   for (const std::string& name : baseline.column_names()) {
     if (name == kRunningHash) continue;
     const Column ours = baseline.column(name);
@@ -178,18 +182,22 @@ TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource
       result.columns.push_back(compare_columns(ours, candidate.column(name), tolerance_of(tolerances, name)));
       result.columns.back().name = name;  // a figure's column is named with its table
     } else {
-      result.columns.push_back({name, ours.units, tolerance_of(tolerances, name)});
-      result.columns.back().problem = "missing in the candidate";
+      add_missing(ours, name, "missing in the candidate");
     }
   }
-  for (const std::string& name : candidate.column_names())
-    if (name != kRunningHash && !baseline.has(name)) result.added.push_back(name);
+  for (const std::string& name : candidate.column_names()) {
+    if (name == kRunningHash || baseline.has(name)) continue;
+    if (configuration.empty())
+      result.added.push_back(name);
+    else
+      add_missing(candidate.column(name), name, "missing in the baseline");
+  }
   return result;
 }
 
 TraceComparison compare_traces(const ColumnSource& baseline, const ColumnSource& candidate,
                                const Tolerances& tolerances, const std::vector<std::string>& configuration) {
-  TraceComparison result = compare_by_name(baseline, candidate, tolerances);
+  TraceComparison result = compare_by_name(baseline, candidate, tolerances, configuration);
   result.divergence = find_divergence(baseline, candidate, result.columns, configuration);
   return result;
 }

@@ -38,19 +38,22 @@ struct Divergence {
 };
 
 struct TraceComparison {
-  std::vector<ColumnComparison> columns;  // columns of the baseline, in its order
-  std::vector<std::string> added;         // columns that only the candidate has: not compared
-  std::optional<Divergence> divergence;   // set if a column has a row outside
-  bool is_same() const;                   // false also if nothing was compared
+  // Columns of the baseline, in its order; if the experiments differ, also those that only the candidate has.
+  std::vector<ColumnComparison> columns;
+  std::vector<std::string> added;        // other columns that only the candidate has: not compared
+  std::optional<Divergence> divergence;  // set if a column has a row outside
+  bool is_same() const;                  // false also if nothing was compared
 };
 
-// Compares the columns of two sources by name; does not search for a divergence.
+// Compares the columns of two sources by name; does not search for a divergence. configuration: differences
+// between the experiments of both, one text each. A column that only the baseline has is a problem of that
+// column. So is one that only the candidate has, unless the experiments are the same: then a later version of
+// the program has added it.
 TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource& candidate,
-                                const Tolerances& tolerances);
+                                const Tolerances& tolerances, const std::vector<std::string>& configuration);
 
-// Compares two traces and finds their divergence. configuration: differences between the experiments of both
-// traces, one text each. The running hash is not compared, because it follows from the others. A column that
-// only the baseline has is a problem of that column. At most two columns are in memory at a time.
+// Compares two traces by name, and finds their divergence. The running hash is not compared, because it
+// follows from the others. At most two columns are in memory at a time.
 TraceComparison compare_traces(const ColumnSource& baseline, const ColumnSource& candidate,
                                const Tolerances& tolerances, const std::vector<std::string>& configuration);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "analysis/measures/contact_force.h"
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/mean.h"
 #include "analysis/trace/trace.h"
@@ -10,21 +11,18 @@ namespace remote_touch {
 
 namespace {
 
-bool has_force(const Trace& trace, std::size_t i) {
-  return !trace.force_N[i].isZero(0);
-}
-
 // Height of the rendered surface above the true one.
 double height_m(const Trace& trace, std::size_t i) {
   return trace.signed_distance_m[i] - trace.nearest_distance_m[i];
 }
 
-// Mean of value(height) over the ticks that end in contact and have a known truth.
+// Mean of value(height) over the ticks that end in contact, have a known truth and something near the proxy.
+// NaN if a distance to the nearest point is unknown.
 template <class Value>
 double mean_in_contact(const Trace& trace, Value&& value) {
   const auto qualifies = [&](std::size_t i) {
     return trace.state[i] == static_cast<std::int32_t>(ContactState::contact) &&
-           std::isfinite(height_m(trace, i));
+           std::isfinite(trace.signed_distance_m[i]) && !std::isinf(trace.nearest_distance_m[i]);
   };
   return mean_where(trace.length(), qualifies, [&](std::size_t i) { return value(height_m(trace, i)); });
 }
@@ -34,7 +32,7 @@ double mean_in_contact(const Trace& trace, Value&& value) {
 template <class Value>
 double mean_with_force(const Trace& trace, Value&& value) {
   const auto qualifies = [&](std::size_t i) {
-    return has_force(trace, i) && std::isfinite(trace.signed_distance_m[i]);
+    return has_contact_force(trace, i) && std::isfinite(trace.signed_distance_m[i]);
   };
   return mean_where(trace.length(), qualifies,
                     [&](std::size_t i) { return value(trace.signed_distance_m[i]); });
@@ -74,13 +72,13 @@ double end_distance_m(const Trace& trace) {
 
 double force_fraction(const Trace& trace) {
   double count = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) count += has_force(trace, i) ? 1 : 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) count += has_contact_force(trace, i) ? 1 : 0;
   return trace.length() == 0 ? 0 : count / static_cast<double>(trace.length());
 }
 
 double last_force_time_s(const Trace& trace) {
   for (std::size_t i = trace.length(); i > 0; --i)
-    if (has_force(trace, i - 1)) return trace.time_s[i - 1];
+    if (has_contact_force(trace, i - 1)) return trace.time_s[i - 1];
   return kNoValue;
 }
 

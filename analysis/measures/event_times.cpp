@@ -15,8 +15,7 @@ double first_contact_time_s(const Trace& trace) {
 }
 
 double first_pop_through_tick(const Trace& trace) {
-  SurfaceSide side(trace.held_depth_m);
-  return first_tick(trace, [&](std::size_t i) { return side.add(trace.signed_distance_m[i]); });
+  return side_of_run(trace, judged_distance_m(trace)).first_pop_through_tick;
 }
 
 double first_pop_through_time_s(const Trace& trace) {

@@ -8,8 +8,9 @@ struct Trace;
 // The first tick in which the proxy or tool touches a point or a region (contact_count).
 double first_contact_tick(const Trace& trace);
 double first_contact_time_s(const Trace& trace);
-// The first tick in which the proxy's centre (with a tool its centre of mass) passes through the true surface
-// to its back, see surface_side.h. It may come back later; popped_through() considers only the last tick.
+// The first tick in which the proxy's centre (with a tool its centre of mass) passes to the back of the
+// surface by which the run is judged, see surface_side.h. It may come back later; popped_through() considers
+// only the last tick.
 double first_pop_through_tick(const Trace& trace);
 double first_pop_through_time_s(const Trace& trace);
 // The time of max_force_jump_tick(), see force_change_measures.h.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/measures/contact_force.h"
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/contact_point.h"
 #include "analysis/measures/event_times.h"
@@ -19,6 +20,7 @@
 #include "analysis/measures/stiffness_measures.h"
 #include "analysis/measures/surface_side.h"
 #include "analysis/measures/tool_measures.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 
 namespace remote_touch {
@@ -31,6 +33,11 @@ double fraction(const Trace& trace, Condition&& holds) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) count += holds(i) ? 1 : 0;
   return trace.length() == 0 ? 0 : static_cast<double>(count) / static_cast<double>(trace.length());
+}
+
+// True if the renderer had a frame in tick i and the distance to the true surface is known.
+bool is_judged(const Trace& trace, std::size_t i) {
+  return trace.frame_index[i] >= 0 && !std::isnan(trace.signed_distance_m[i]);
 }
 
 using enum MeasuredRuns;
@@ -47,8 +54,10 @@ struct Row {
 // A force, its work, a count of contacts or a time is neither good nor bad by itself: a proxy that holds a
 // rising surface pushes harder than one that lets it pass.
 constexpr Row kMeasures[] = {
-    {"popped_through", "1", "1 when the proxy passed through the true surface and ended behind it", proxy,
-     smaller, popped_through},
+    {"popped_through", "1",
+     "1 when the proxy passed through the true surface (or the measured one, if that is known) and ended "
+     "behind it",
+     proxy, smaller, popped_through},
     {"max_penetration", "m", "maximum depth of the proxy's centre behind the true surface", proxy, smaller,
      max_penetration_m},
     {"min_slave_distance", "m", "minimum distance of the slave command to the true surface", all,
@@ -127,6 +136,13 @@ constexpr Row kMeasures[] = {
     {"mean_camera_error", "m",
      "mean height of the measured surface above the true one at the contact point, in settled ticks",
      measured_surface, neither, mean_camera_error_m},
+    {"popped_through_truth", "1",
+     "1 when the proxy passed through the true surface and ended behind it, by its own fault or the camera's",
+     measured_surface, neither,
+     [](const Trace& trace) {
+       return trace.has_measured_surface() ? side_of_run(trace, trace.signed_distance_m).popped_through
+                                           : kNoValue;
+     }},
     {"mean_lateral_force", "1",
      "mean ratio of the force along the true surface to the force along its normal, "
      "in contact while the force pushes out of it",
@@ -162,6 +178,12 @@ constexpr Row kMeasures[] = {
     {"apparent_friction", "1",
      "ratio of the force against the direction of sliding to the force along the normal of the true surface",
      true_normal, near_zero, apparent_friction},
+    {"force_overshoot", "1",
+     "maximum force of a contact above its final force, as a fraction of that, if the force is steady at the end",
+     all, smaller, force_overshoot},
+    {"force_settling_time", "s",
+     "time from the first force until it stays within 5 % of its final value, if it is steady at the end",
+     all, smaller, force_settling_time_s},
     {"force_ripple", "N", "rms difference of the force from its mean over 100 ms, while there is force", all,
      smaller, force_ripple_N},
     {"relative_ripple", "1",
@@ -251,6 +273,11 @@ constexpr Row kMeasures[] = {
     {"force_packet_rate", "1/s", "mean number of forces sent in a second", slave, neither,
      force_packet_rate_per_s},
     {"max_device_force", "N", "maximum force of the device on the hand", slave, neither, max_device_force_N},
+    {"min_channel_energy", "J",
+     "lowest energy of the channel between hand and slave; negative: it gave more than it received", slave,
+     neither, min_channel_energy_J},
+    {"dissipated_energy", "J", "energy that passivity control has kept from leaving this channel", slave,
+     neither, dissipated_energy_J},
     {"frame_packet_rate", "1/s", "mean number of frames that arrived in a second", slave, neither,
      frame_packet_rate_per_s},
 
@@ -329,16 +356,13 @@ double value_of(const Measure& measure, const Trace& trace) {
 }
 
 double popped_through(const Trace& trace) {
-  SurfaceSide side(trace.held_depth_m);
-  for (const double distance_m : trace.signed_distance_m) side.add(distance_m);
-  return side.popped_through();
+  return side_of_run(trace, judged_distance_m(trace)).popped_through;
 }
 
 double max_penetration_m(const Trace& trace) {
-  double deepest = kNoValue;
-  for (const double distance : trace.signed_distance_m)
-    if (!std::isnan(distance)) deepest = std::fmax(deepest, std::max(0.0, -distance));  // ignores NaN
-  return deepest;
+  return max_where(
+      trace.length(), [&](std::size_t i) { return is_judged(trace, i); },
+      [&](std::size_t i) { return std::max(0.0, -trace.signed_distance_m[i]); });  // no NaN
 }
 
 double min_slave_distance_m(const Trace& trace) {
@@ -348,16 +372,15 @@ double min_slave_distance_m(const Trace& trace) {
 }
 
 double wrong_side_fraction(const Trace& trace) {
-  const std::vector<double>& distance_m = trace.signed_distance_m;
   return mean_where(
-      distance_m.size(), [&](std::size_t i) { return !std::isnan(distance_m[i]); },
-      [&](std::size_t i) { return distance_m[i] < -trace.held_depth_m; });
+      trace.length(), [&](std::size_t i) { return is_judged(trace, i); },
+      [&](std::size_t i) { return trace.signed_distance_m[i] < -trace.held_depth_m; });
 }
 
 double no_force_fraction(const Trace& trace, double contact_radius_m) {
   return mean_where(
       trace.length(), [&](std::size_t i) { return pressing(trace, i, contact_radius_m); },
-      [&](std::size_t i) { return trace.force_N[i].isZero(0); });
+      [&](std::size_t i) { return !is_force(trace.force_N[i]); });
 }
 
 double mean_steps(const Trace& trace) {
@@ -367,7 +390,9 @@ double mean_steps(const Trace& trace) {
 }
 
 double max_steps(const Trace& trace) {
-  return trace.length() == 0 ? 0 : *std::max_element(trace.proxy_steps.begin(), trace.proxy_steps.end());
+  return trace.length() == 0
+             ? 0
+             : *std::max_element(trace.proxy_steps.begin(), trace.proxy_steps.end());  // no NaN: integers
 }
 
 double unconverged_fraction(const Trace& trace) {
@@ -387,7 +412,7 @@ double non_finite_fraction(const Trace& trace) {
 
 double max_force_N(const Trace& trace) {
   double max = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) max = std::max(max, trace.force_N[i].norm());
+  for (std::size_t i = 0; i < trace.length(); ++i) max = max_or_nan(max, trace.force_N[i].norm());
   return max;
 }
 

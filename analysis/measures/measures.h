@@ -11,20 +11,20 @@ namespace remote_touch {
 
 struct Trace;
 
-// 1 when the proxy's centre (with a tool its centre of mass) passed through the true surface and ended behind
-// it, else 0. It is behind if its distance to the surface is less than -Trace::held_depth_m, which is 0 for a
-// ball. 0 if it began behind the surface and stayed there. NaN if the truth is not known at the end, or was
-// not known while the proxy moved to the back: beside an object it may have gone round the border. See
-// surface_side.h.
+// 1 when the proxy's centre (with a tool its centre of mass) passed through the surface and ended behind it,
+// else 0. The surface is that of judged_distance_m(). The centre is behind it if its distance is less than
+// -Trace::held_depth_m, which is 0 for a ball. The result is 0 also if it was behind when the first frame
+// came and stayed there. NaN if the distance is not known at the end, or was not known while the centre moved
+// to the back: beside an object it may have gone round the border. See surface_side.h.
 double popped_through(const Trace& trace);
-// Maximum distance of the proxy's centre behind the true surface, m, over the ticks with a known truth. 0 if
-// it never was behind the surface; NaN if there is no such tick.
+// Maximum distance of the proxy's centre behind the true surface, m, over the ticks with a frame and a known
+// truth. 0 if it never was behind the surface; NaN if there is no such tick.
 double max_penetration_m(const Trace& trace);
 // Minimum distance of the slave command to the true surface, m, over the ticks with a known truth; NaN if
 // there is no such tick. A fixture of uniform radius is violated by r_f + r_c minus this distance.
 double min_slave_distance_m(const Trace& trace);
-// Fraction of the ticks with a known truth in which the proxy's centre lies behind the surface, by more than
-// Trace::held_depth_m; NaN if there is no such tick.
+// Fraction of the ticks with a frame and a known truth in which the proxy's centre lies behind the surface,
+// by more than Trace::held_depth_m; NaN if there is no such tick.
 double wrong_side_fraction(const Trace& trace);
 // Force dropouts: of the ticks in which the surface holds the proxy back (see pressing()), the fraction
 // without a force. NaN if there is no such tick.

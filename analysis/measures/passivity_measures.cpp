@@ -73,4 +73,17 @@ double max_energy_per_update_J(const Trace& trace) {
   return max_of(pieces);
 }
 
+double min_channel_energy_J(const Trace& trace) {
+  if (!trace.has_channel_energy()) return kNoValue;
+  double lowest = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    lowest = min_or_nan(lowest, trace.hand_energy_in_J[i] - trace.hand_energy_out_J[i] +
+                                    trace.slave_energy_in_J[i] - trace.slave_energy_out_J[i]);
+  return lowest;
+}
+
+double dissipated_energy_J(const Trace& trace) {
+  return trace.has_channel_energy() ? trace.dissipated_energy_J.back() : kNoValue;
+}
+
 }  // namespace remote_touch

@@ -22,4 +22,13 @@ double max_energy_injected_J(const Trace& trace);
 double mean_energy_per_update_J(const Trace& trace);
 double max_energy_per_update_J(const Trace& trace);
 
+// The lowest energy of the channel between the hand and a slave in the run, J: in - out of both ports, 0 at
+// the start. Negative if the channel has given more than it received, so it is not passive. NaN if the hand
+// is not to feel the slave.
+double min_channel_energy_J(const Trace& trace);
+
+// Energy that passivity control has kept from leaving this channel, J; 0 with other architectures. NaN as
+// above.
+double dissipated_energy_J(const Trace& trace);
+
 }  // namespace remote_touch

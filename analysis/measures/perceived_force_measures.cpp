@@ -21,7 +21,10 @@ double felt_jump_fraction(const Trace& trace, double weber) {
       [&](std::size_t i) {
         return trace.frame_update(i) && !(force_N[i - 1].isZero(0) && force_N[i].isZero(0));
       },
-      [&](std::size_t i) { return is_felt(force_N[i - 1], force_N[i], weber); });
+      [&](std::size_t i) {
+        const bool is_known = force_N[i - 1].allFinite() && force_N[i].allFinite();
+        return is_known ? is_felt(force_N[i - 1], force_N[i], weber) : kNoValue;
+      });
 }
 
 // The last tick has no successor, so its duration is assumed to be the mean of the others.

@@ -72,9 +72,7 @@ void add_contact(const Trace& trace, std::size_t begin, std::size_t end, Ripple&
 }
 
 Ripple ripple_of(const Trace& trace) {
-  const auto is_pushed = [&](std::size_t i) {
-    return trace.force_N[i].allFinite() && !trace.force_N[i].isZero(0);
-  };
+  const auto is_pushed = [&](std::size_t i) { return !trace.force_N[i].isZero(0); };  // or unknown
   Ripple ripple;
   for (std::size_t begin = 0; begin < trace.length(); ++begin) {
     if (!is_pushed(begin)) continue;

@@ -11,6 +11,7 @@ namespace remote_touch {
 
 namespace {
 
+// False for an unknown force.
 bool is_contact(const Vec3& force_N) {
   return force_N.norm() > kContactForce_N;
 }
@@ -67,7 +68,7 @@ double force_direction_error_rad(const Trace& trace) {
 double false_contact_fraction(const Trace& trace) {
   return mean_of_replay(
       trace, [](const Vec3& expected, const Vec3&) { return expected.isZero(0); },
-      [](const Vec3&, const Vec3& force) { return is_contact(force); });
+      [](const Vec3&, const Vec3& force) { return force.allFinite() ? is_contact(force) : kNoValue; });
 }
 
 double lost_contact_fraction(const Trace& trace) {

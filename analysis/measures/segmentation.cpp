@@ -31,10 +31,10 @@ double SegmentationScore::depth_fraction() const {
   return fraction(found + missed, found + missed + of_class_without_depth);
 }
 std::pair<double, double> SegmentationScore::recall_interval() const {
-  return wilson_interval(found, found + missed);
+  return exact_interval(found, found + missed);
 }
 std::pair<double, double> SegmentationScore::precision_interval() const {
-  return wilson_interval(found, selected());
+  return exact_interval(found, selected());
 }
 
 SegmentationScore score_segmentation(const std::vector<char>& selected, const std::vector<char>& of_class,

@@ -22,7 +22,7 @@ struct SegmentationScore {
   double recall() const;          // selected fraction of the pixels of the class with depth
   double precision() const;       // fraction of the selected pixels that are of the class
   double depth_fraction() const;  // fraction of all pixels of the class that have a depth
-  // Wilson's 95 % intervals of recall and precision, as if pixels were independent; [0, 1] if the denominator
+  // Exact 95 % intervals of recall and precision, as if pixels were independent; [0, 1] if the denominator
   // is 0. They reflect the number of pixels only: a hue at the edge of a range is wrong for a whole surface
   // at once, and the same pixel in several frames is not several independent pixels.
   std::pair<double, double> recall_interval() const;

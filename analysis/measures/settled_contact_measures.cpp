@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/measures/contact_force.h"
 #include "analysis/measures/no_value.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
@@ -18,7 +20,7 @@ template <class Act>
 void for_each_settled(const Trace& trace, Act&& act) {
   double below_since_s = kNoValue;
   for (std::size_t i = 0; i < trace.contact.size(); ++i) {
-    if (!(trace.contact[i].hip_distance_m < 0)) {  // or NaN: the truth is not known
+    if (trace.frame_index[i] < 0 || !(trace.contact[i].hip_distance_m < 0)) {  // or NaN: not known
       below_since_s = kNoValue;
       continue;
     }
@@ -33,7 +35,7 @@ double max_of_heights(const Trace& trace, Value&& value) {
   double max = kNoValue;
   for_each_settled(trace, [&](std::size_t i) {
     const double height = trace.contact[i].height_m;
-    if (!std::isnan(height)) max = std::fmax(max, value(height));  // ignores NaN
+    if (!std::isnan(height)) max = std::isnan(max) ? value(height) : max_or_nan(max, value(height));
   });
   return max;
 }
@@ -64,11 +66,11 @@ double max_contact_error_m(const Trace& trace) {
 }
 
 double max_sink_m(const Trace& trace) {
-  return max_of_heights(trace, [](double height) { return std::max(0.0, -height); });
+  return max_of_heights(trace, [](double height) { return std::max(0.0, -height); });  // no NaN
 }
 
 double max_float_m(const Trace& trace) {
-  return max_of_heights(trace, [](double height) { return std::max(0.0, height); });
+  return max_of_heights(trace, [](double height) { return std::max(0.0, height); });  // no NaN
 }
 
 double rms_contact_error_m(const Trace& trace) {
@@ -94,7 +96,7 @@ double mean_camera_error_m(const Trace& trace) {
 }
 
 double contact_force_fraction(const Trace& trace) {
-  return settled_fraction(trace, [&](std::size_t i) { return !trace.force_N[i].isZero(0); });
+  return settled_fraction(trace, [&](std::size_t i) { return has_contact_force(trace, i); });
 }
 
 double contact_known_fraction(const Trace& trace) {

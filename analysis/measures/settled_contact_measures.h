@@ -2,10 +2,10 @@
 // contact point above the true surface, Trace::contact (rendered_contact.h defines the contact point). Both
 // sides count, and so does every tick, not only the last.
 //
-// Only settled ticks are judged: those in which the HIP has been below the true surface for kSettling_s
-// without a break, so that every renderer must hold it back. If the hand follows a prescribed path, they are
-// the same for every renderer. The measures of a distance skip settled ticks in which the truth at the
-// contact point is not known.
+// Only settled ticks are judged: those in which the renderer has had a frame and the HIP has been below the
+// true surface for kSettling_s without a break, so that every renderer must hold it back. If the hand follows
+// a prescribed path, they are the same for every renderer. The measures of a distance skip settled ticks in
+// which the truth at the contact point is not known.
 //
 // Every measure is NaN if no tick is settled or if Trace::contact is empty. A measure of a distance is also
 // NaN if no settled tick has a known truth.
@@ -31,7 +31,7 @@ double rms_contact_error_m(const Trace& trace);
 double rms_renderer_error_m(const Trace& trace);
 double rms_camera_error_m(const Trace& trace);
 double mean_camera_error_m(const Trace& trace);
-// Fraction of the settled ticks with a force; NaN if no tick settled.
+// Fraction of the settled ticks with a force of contact, which excludes guidance; NaN if no tick settled.
 double contact_force_fraction(const Trace& trace);
 // Fraction of the settled ticks in which the truth is known; NaN if no tick settled.
 double contact_known_fraction(const Trace& trace);

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/measures/contact_force.h"
 #include "analysis/measures/first_tick.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "core/geometry/rotation.h"
 
@@ -91,13 +93,13 @@ double first_slave_contact_time_s(const Trace& trace) {
 }
 
 double max_device_force_N(const Trace& trace) {
-  double largest = kNoValue;
-  for (const Vec3& force : trace.device_force_N) largest = std::fmax(largest, force.norm());
-  return largest;
+  return max_where(
+      trace.device_force_N.size(), [](std::size_t) { return true; },
+      [&](std::size_t i) { return trace.device_force_N[i].norm(); });
 }
 
 double slave_anticipation_s(const Trace& trace) {
-  const auto is_felt = [&](std::size_t i) { return !trace.device_force_N[i].isZero(0); };
+  const auto is_felt = [&](std::size_t i) { return is_force(trace.device_force_N[i]); };
   return first_slave_contact_time_s(trace) - time_of(trace, first_tick(trace, is_felt));
 }
 

@@ -70,8 +70,8 @@ Range range_of(const std::vector<Pressed>& ticks) {
   if (ticks.empty()) return {};
   Range range{ticks.front().depth_m, ticks.front().depth_m};
   for (const Pressed& tick : ticks) {
-    range.low = std::min({range.low, tick.before_m, tick.depth_m});
-    range.high = std::max({range.high, tick.before_m, tick.depth_m});
+    range.low = std::min({range.low, tick.before_m, tick.depth_m});    // no NaN
+    range.high = std::max({range.high, tick.before_m, tick.depth_m});  // no NaN
   }
   return range;
 }
@@ -89,8 +89,8 @@ std::vector<Pressed> press_of(const Trace& trace) {
 double mean_force_N(const std::vector<Pressed>& ticks, const Range& range) {
   double work_J = 0, length_m = 0;
   for (const Pressed& tick : ticks) {
-    const double low = std::max(range.low, std::min(tick.before_m, tick.depth_m));
-    const double high = std::min(range.high, std::max(tick.before_m, tick.depth_m));
+    const double low = std::max(range.low, std::min(tick.before_m, tick.depth_m));    // no NaN
+    const double high = std::min(range.high, std::max(tick.before_m, tick.depth_m));  // no NaN
     if (!(high > low)) continue;
     const double slope = (tick.normal_N - tick.before_N) / (tick.depth_m - tick.before_m);
     work_J += (high - low) * (tick.before_N + slope * (0.5 * (low + high) - tick.before_m));
@@ -118,7 +118,7 @@ double stiffness_nonlinearity(const Trace& trace) {
   for (const Pressed& tick : press) {
     const double rest_N = tick.normal_N - line.mean_y - line.slope * (tick.depth_m - line.mean_x);
     squares += rest_N * rest_N;
-    largest_N = std::max(largest_N, tick.normal_N);
+    largest_N = std::max(largest_N, tick.normal_N);  // no NaN
   }
   return largest_N > 0 ? std::sqrt(squares / static_cast<double>(press.size())) / largest_N : kNoValue;
 }
@@ -126,7 +126,7 @@ double stiffness_nonlinearity(const Trace& trace) {
 double stiffness_hysteresis(const Trace& trace) {
   const std::vector<Pressed> press = press_of(trace), release = pressed_ticks(trace, false);
   const Range down = range_of(press), up = range_of(release);
-  const Range both{std::max(down.low, up.low), std::min(down.high, up.high)};
+  const Range both{std::max(down.low, up.low), std::min(down.high, up.high)};  // no NaN
   if (press.empty() || release.empty() || !both.is_long_enough()) return kNoValue;
   const double press_N = mean_force_N(press, both);
   return press_N > 0 ? 1 - mean_force_N(release, both) / press_N : kNoValue;

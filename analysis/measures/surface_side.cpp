@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 
@@ -26,6 +27,19 @@ bool SurfaceSide::add(double signed_distance_m) {
 double SurfaceSide::popped_through() const {
   if (!is_known_) return kNoValue;
   return side_ == Side::back ? result_if_behind_ : 0;
+}
+
+SideOfRun side_of_run(const Trace& trace, const std::vector<double>& distance_m) {
+  SurfaceSide side(trace.held_depth_m);
+  double first = kNoValue;
+  for (std::size_t i = 0; i < distance_m.size(); ++i)
+    if (trace.frame_index[i] >= 0 && side.add(distance_m[i]) && std::isnan(first))
+      first = static_cast<double>(i);
+  return {side.popped_through(), first};
+}
+
+const std::vector<double>& judged_distance_m(const Trace& trace) {
+  return trace.has_measured_surface() ? trace.measured_distance_m : trace.signed_distance_m;
 }
 
 }  // namespace remote_touch

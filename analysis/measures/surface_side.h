@@ -11,7 +11,11 @@
 // then it is not known how it came to the back.
 #pragma once
 
+#include <vector>
+
 namespace remote_touch {
+
+struct Trace;
 
 class SurfaceSide {
  public:
@@ -33,5 +37,19 @@ class SurfaceSide {
   bool was_unknown_ = false;     // true: it was unknown since the proxy was last in front, or since the start
   double result_if_behind_ = 0;  // 1, 0 or NaN as above
 };
+
+// The outcome of a run: popped_through() after its last tick, and the first tick in which the proxy pops
+// through (NaN: none). Ticks before the first frame do not count, because no renderer can hold a surface that
+// it has not received: the proxy begins where it is when the first frame comes.
+struct SideOfRun {
+  double popped_through = 0, first_pop_through_tick = 0;
+};
+// distance_m: distance of the proxy from a surface in each tick of the trace.
+SideOfRun side_of_run(const Trace& trace, const std::vector<double>& distance_m);
+
+// The distances by which a run is judged: from the true surface or, in a run that has one beside it, from the
+// surface that the camera measured. What lies between the two is the error of the camera, which no renderer
+// can know.
+const std::vector<double>& judged_distance_m(const Trace& trace);
 
 }  // namespace remote_touch

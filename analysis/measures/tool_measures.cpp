@@ -1,7 +1,6 @@
 #include "analysis/measures/tool_measures.h"
 
-#include <algorithm>
-#include <limits>
+#include <cmath>
 #include <optional>
 
 #include "core/geometry/rotation.h"
@@ -36,8 +35,7 @@ double torque_magnitude_Nm(const Trace& trace, std::size_t i) {
 
 double min_clearance_m(const Trace& trace) {
   if (!trace.has_tool()) return kNoValue;
-  double found = std::numeric_limits<double>::infinity();
-  for (const double gap_m : trace.nearest_distance_m) found = std::min(found, gap_m);  // ignores NaN
+  const double found = min_of(trace.nearest_distance_m);
   return std::isinf(found) ? kNoValue : found;
 }
 

@@ -2,10 +2,10 @@
 // or no guidance.
 #pragma once
 
-#include <algorithm>
 #include <type_traits>
 
 #include "analysis/measures/no_value.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
@@ -37,12 +37,12 @@ template <auto of>
 double tool_max(const Trace& trace) {
   if (!trace.has_tool() || trace.length() == 0) return kNoValue;
   double found = value_of_tick<of>(trace, 0);
-  for (std::size_t i = 1; i < trace.length(); ++i) found = std::max(found, value_of_tick<of>(trace, i));
+  for (std::size_t i = 1; i < trace.length(); ++i) found = max_or_nan(found, value_of_tick<of>(trace, i));
   return found;
 }
 
 // Gap between the tool and the nearest point or region, m, negative inside the tool: minimum over the ticks
-// that have a nearest point or region; NaN if there is no such tick.
+// that have a nearest point or region; NaN if there is no such tick, or if a gap is unknown.
 double min_clearance_m(const Trace& trace);
 
 // Fraction of the ticks with an active guidance fixture whose target is visible.

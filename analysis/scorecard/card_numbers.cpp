@@ -10,7 +10,7 @@ namespace remote_touch {
 
 namespace {
 
-// Fraction of a mean by which its interval is widened: for rounding, and for changes too small to matter.
+// Fraction of a mean by which it may differ: for rounding, and for changes too small to matter.
 constexpr double kSlack = 1e-3;
 
 using Texts = std::vector<std::string>;
@@ -54,29 +54,23 @@ std::string sentence(const CardCell& cell, const char* format, auto... numbers) 
 
 void compare(const CardNumbers::Count& then, const CardNumbers::Count& now, std::vector<std::string>& list) {
   const Proportion &a = then.successes, &b = now.successes;
-  if (b.runs > 0 && b.fraction >= a.low && b.fraction <= a.high) return;
-  list.push_back(sentence(now.cell, "%d of %d runs succeed, stored %d of %d (%.3g to %.3g)", b.events, b.runs,
-                          a.events, a.runs, a.low, a.high));
+  if (b.runs == a.runs && b.events == a.events) return;
+  list.push_back(
+      sentence(now.cell, "%d of %d runs succeed, stored %d of %d", b.events, b.runs, a.events, a.runs));
 }
 
 void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::vector<std::string>& list) {
-  const MeanDifference &a = then.value, &b = now.value;
-  if (std::isnan(a.mean)) return;  // no stored mean to compare with; the counts show it
+  const double a = then.value.value, b = now.value.value;
+  if (std::isnan(a)) return;  // no stored mean to compare with; the counts show it
   if (then.units != now.units) {
     list.push_back(words(now.cell) + ": " + now.measure + " is in " + now.units + ", stored in " +
                    then.units);
     return;
   }
+  if (std::abs(b - a) <= kSlack * std::abs(a)) return;  // not for NaN
   const std::string what = now.measure + (now.units == "1" ? "" : " in " + now.units);
-  const double slack = kSlack * std::abs(a.mean);
-  const double low = (std::isnan(a.low) ? a.mean : a.low) - slack;
-  const double high = (std::isnan(a.high) ? a.mean : a.high) + slack;
-  if (b.mean >= low && b.mean <= high) return;
-  if (std::isnan(b.mean))
-    list.push_back(sentence(now.cell, "%s is NaN, stored %.6g", what.c_str(), a.mean));
-  else
-    list.push_back(sentence(now.cell, "%s is %.6g, stored %.6g (%.6g to %.6g)", what.c_str(), b.mean, a.mean,
-                            low, high));
+  list.push_back(std::isnan(b) ? sentence(now.cell, "%s is NaN, stored %.6g", what.c_str(), a)
+                               : sentence(now.cell, "%s is %.6g, stored %.6g", what.c_str(), b, a));
 }
 
 }  // namespace
@@ -96,13 +90,15 @@ CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept) {
 }
 
 Table counts_table(const CardNumbers& numbers) {
-  Table table =
-      table_of_cells("success", "fractions of successful runs with Wilson's 95 % interval", numbers.counts);
+  Table table = table_of_cells("success",
+                               "fractions of successful runs with their 95 % intervals (Clopper and Pearson)",
+                               numbers.counts);
   const auto add = [&](const char* name, const char* meaning, auto part) {
     add_column(table, numbers.counts, name, meaning, [part](const auto& row) { return row.successes.*part; });
   };
   add("successes", "successful runs", &Proportion::events);
-  add("runs", "number of runs; identical runs, as without noise, count once", &Proportion::runs);
+  add("runs", "number of runs; runs that are all one and the same, as without noise, count once",
+      &Proportion::runs);
   add("fraction", "fraction of successful runs", &Proportion::fraction);
   add("low", "lower end of the interval", &Proportion::low);
   add("high", "upper end of the interval", &Proportion::high);
@@ -114,15 +110,15 @@ Table means_table(const CardNumbers& numbers) {
   const std::vector<Row>& rows = numbers.means;
   Table table = table_of_cells(
       "measures",
-      "means with Student's 95 % intervals; judged measures over the successful runs, reported measures over "
-      "all runs",
+      "means with their 95 % intervals (Student, Hall); judged measures over the successful runs, reported "
+      "measures over all runs",
       rows);
   add_column(table, rows, "measure", "measure", &Row::measure);
   add_column(table, rows, "units", "unit of the measure", &Row::units);
   add_column(table, rows, "runs", "runs that have a number",
-             [](const Row& row) { return static_cast<std::int32_t>(row.value.pairs); });
+             [](const Row& row) { return static_cast<std::int32_t>(row.value.clusters); });
   add_column(table, rows, "mean", "mean, in the measure's unit",
-             [](const Row& row) { return row.value.mean; });
+             [](const Row& row) { return row.value.value; });
   add_column(table, rows, "low", "lower end of the interval", [](const Row& row) { return row.value.low; });
   add_column(table, rows, "high", "upper end of the interval", [](const Row& row) { return row.value.high; });
   return table;
@@ -142,8 +138,10 @@ CardNumbers numbers_in(const Table& counts, const Table& means) {
     numbers.means.push_back({cell_in(means, i),
                              values_of<Texts>(means, "measure")[i],
                              values_of<Texts>(means, "units")[i],
-                             {values_of<Counts>(means, "runs")[i], number(means, "mean", i),
-                              number(means, "low", i), number(means, "high", i)}});
+                             {.value = number(means, "mean", i),
+                              .low = number(means, "low", i),
+                              .high = number(means, "high", i),
+                              .clusters = values_of<Counts>(means, "runs")[i]}});
   return numbers;
 }
 

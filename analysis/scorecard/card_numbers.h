@@ -28,7 +28,7 @@ struct CardNumbers {
   struct Mean {
     CardCell cell;
     std::string measure, units;
-    MeanDifference value;  // NaN if no run succeeded; the interval is NaN also for one run
+    Estimate value;  // NaN if no run succeeded; the interval is NaN also for one run
   };
   std::vector<Count> counts;
   std::vector<Mean> means;
@@ -66,9 +66,8 @@ Table means_table(const CardNumbers& numbers);
 CardNumbers numbers_in(const Table& counts, const Table& means);
 
 // Returns a sentence for each number of the new card that does not agree with the stored one:
-// - a fraction of successes outside the stored Wilson interval,
-// - a mean outside the stored Student's interval, widened by a thousandth of the mean (a single run has only
-//   the widening),
+// - another number of successes, or of runs,
+// - a mean that differs by more than a thousandth,
 // - a mean that is missing, and a number that is not stored at all.
 // Stored numbers that the new card lacks are not compared. Both cards use the same seeds, so equal programs
 // have equal numbers and no difference is due to chance.

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "analysis/scorecard/card_numbers.h"
-#include "analysis/statistics/paired_bootstrap.h"
 
 namespace remote_touch {
 
@@ -13,9 +12,9 @@ namespace {
 
 constexpr double kUntested = std::numeric_limits<double>::quiet_NaN();
 
-MeanDifference mean_over_scenes(const std::vector<double>& fractions) {
-  constexpr std::uint64_t kBootstrapKey = 1;
-  return bootstrap_mean({fractions}, kBootstrapKey);
+// A scene without runs counts with no method.
+EventCounts counts_of(const Proportion& share) {
+  return {share.events, share.runs - share.events, 0};
 }
 
 // Adds a weakness if other methods are better by more than chance. It names the first of them in the order of
@@ -24,11 +23,11 @@ void add_significant(const SceneScore& scene, const std::string& what, const std
                      const Ranking& ranking, const Scorecard& card, std::size_t own,
                      std::vector<Weakness>& list) {
   if (ranking.against.empty()) return;
-  Weakness found{scene.name, what, units, {}, 0, ranking.mean[own].mean, 0, 0, true};
+  Weakness found{scene.name, what, units, {}, 0, ranking.mean[own].value, 0, 0, true};
   for (const std::size_t c : ranking.order) {
     if (!ranking.against[c][own].shows_better()) continue;
     if (found.ahead++ > 0) continue;
-    found.other = card.methods[c], found.other_mean = ranking.mean[c].mean;
+    found.other = card.methods[c], found.other_mean = ranking.mean[c].value;
     found.p = ranking.against[c][own].p;
   }
   if (found.ahead > 0) list.push_back(found);
@@ -79,18 +78,18 @@ std::vector<MethodSummary> overview(const Scorecard& card) {
   std::vector<MethodSummary> methods(card.methods.size());
   for (std::size_t c = 0; c < methods.size(); ++c) {
     MethodSummary& method = methods[c];
-    std::vector<double> noisy, noise_free, old;
+    std::vector<EventCounts> noisy, noise_free, old;
     for (const SceneScore& scene : card.scenes) {
       const Mark mark = mark_of(scene.ranking, c);
       method.held += scene.success[c].noisy.fraction > kHeldFraction;
       method.best += mark == Mark::best, method.worst += mark == Mark::worst;
-      noisy.push_back(scene.success[c].noisy.fraction);
-      if (const auto& quiet = scene.success[c].noise_free) noise_free.push_back(quiet->fraction);
-      if (!scene.old_success.empty()) old.push_back(scene.old_success[c].noisy.fraction);
+      noisy.push_back(counts_of(scene.success[c].noisy));
+      if (const auto& quiet = scene.success[c].noise_free) noise_free.push_back(counts_of(*quiet));
+      if (!scene.old_success.empty()) old.push_back(counts_of(scene.old_success[c].noisy));
     }
-    method.success = mean_over_scenes(noisy);
-    method.noise_free = mean_over_scenes(noise_free);
-    method.old_success = mean_over_scenes(old);
+    method.success = estimated_fraction(noisy);
+    method.noise_free = estimated_fraction(noise_free);
+    method.old_success = estimated_fraction(old);
   }
   return methods;
 }
@@ -117,16 +116,16 @@ Table overview_table(const Scorecard& card) {
     add_column(table, rows, name, meaning, value);
   };
   table.add("method", "1", "method", card.methods);
-  add("scenes", "scenes", [](const Row& one) { return static_cast<std::int32_t>(one.success.pairs); });
+  add("scenes", "scenes", [](const Row& one) { return static_cast<std::int32_t>(one.success.clusters); });
   add("success", "mean over the scenes of the fraction of successes with noise",
-      [](const Row& one) { return one.success.mean; });
-  add("low", "lower end of its interval, of a bootstrap over scenes",
+      [](const Row& one) { return one.success.value; });
+  add("low", "lower end of its interval, with scenes as clusters (Korn and Graubard)",
       [](const Row& one) { return one.success.low; });
   add("high", "upper end of its interval", [](const Row& one) { return one.success.high; });
   add("noise_free", "mean over the scenes of the fraction of successes without noise",
-      [](const Row& one) { return one.noise_free.mean; });
+      [](const Row& one) { return one.noise_free.value; });
   add("old_success", "like success, by the previous rule, over the scenes that have one",
-      [](const Row& one) { return one.old_success.mean; });
+      [](const Row& one) { return one.old_success.value; });
   add("held", "scenes held in more than 90 % of the runs", &Row::held);
   add("best", "scenes in which it is significantly better than all other methods", &Row::best);
   add("worst", "scenes in which it is significantly worse than all other methods", &Row::worst);

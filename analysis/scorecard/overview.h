@@ -18,10 +18,10 @@ inline constexpr double kHeldFraction = 0.9;
 // Results of one method over all scenes.
 struct MethodSummary {
   int held = 0, best = 0, worst = 0;  // numbers of scenes
-  // Mean over the scenes of the fraction of successes, with an interval of the percentile bootstrap over
-  // scenes, as if they were drawn from all possible scenes: for runs with noise, for runs without noise, and
-  // for runs with noise by the previous rule. `pairs` is the number of scenes.
-  MeanDifference success, noise_free, old_success;
+  // Mean over the scenes of the fraction of successes, with the interval of estimated_fraction(), as if the
+  // scenes were drawn from all possible scenes: for runs with noise, for runs without noise, and for runs
+  // with noise by the previous rule. The clusters are the scenes.
+  Estimate success, noise_free, old_success;
 };
 std::vector<MethodSummary> overview(const Scorecard& card);
 

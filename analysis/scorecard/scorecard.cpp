@@ -7,7 +7,7 @@
 #include "analysis/scorecard/card_numbers.h"
 #include "analysis/scorecard/overview.h"
 #include "analysis/scorecard/threshold_summary.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/paired_test.h"
 #include "analysis/statistics/student.h"
 
 namespace remote_touch {
@@ -16,9 +16,16 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-Proportion fraction_of(int events, int runs) {
-  const auto [low, high] = wilson_interval(events, runs);
-  return {events, runs, runs > 0 ? static_cast<double>(events) / runs : kNone, low, high};
+Proportion proportion_of(const std::vector<std::vector<double>>& clusters) {
+  Proportion share;
+  for (const auto& cluster : clusters) {
+    share.events += static_cast<int>(std::count(cluster.begin(), cluster.end(), 1.0));
+    share.runs += static_cast<int>(cluster.size());
+  }
+  const Estimate fraction = fraction_of(clusters);
+  share.fraction = fraction.value;
+  if (share.runs > 0) share.low = fraction.low, share.high = fraction.high;
+  return share;
 }
 
 // Values of the runs by noise level and replicate.
@@ -29,10 +36,10 @@ PairedValues by_level(const SweepResult& sweep, Value&& value) {
   return values;
 }
 
-// True for each level without noise whose replicates are all the same run, to the last bit of every measure.
-// A scene's own noise level is NaN and may be zero, so its replicates are compared too.
-Repeats repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m) {
-  Repeats repeats;
+// Finds the levels whose replicates are all the same run, to the last bit of every measure. They are one run
+// if nothing is random there: without noise, or at every level if the noise changes no run at all. Runs that
+// are equal at some noisy levels only are separate draws of the noise. A scene's own noise level is NaN.
+std::vector<bool> repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m) {
   const auto same = [&](std::size_t a, std::size_t b) {
     const auto equal = [&](const Column& measure) {
       const auto& values = std::get<std::vector<double>>(measure.values);
@@ -41,11 +48,16 @@ Repeats repeats_of(const SweepResult& sweep, const std::vector<double>& noise_m)
     return sweep.state[a] == sweep.state[b] &&
            std::all_of(sweep.measures.begin(), sweep.measures.end(), equal);
   };
+  std::vector<bool> repeats;
+  bool all = true;
   for (std::size_t level = 0; level < noise_m.size(); ++level) {
-    bool all = !(noise_m[level] > 0);
-    for (int k = 1; k < sweep.replicates; ++k) all = all && same(sweep.run(level, 0), sweep.run(level, k));
-    repeats.push_back(all);
+    bool own = true;
+    for (int k = 1; k < sweep.replicates; ++k) own = own && same(sweep.run(level, 0), sweep.run(level, k));
+    repeats.push_back(own);
+    all = all && own && same(0, sweep.run(level, 0));
   }
+  for (std::size_t level = 0; level < noise_m.size(); ++level)
+    repeats[level] = all || (repeats[level] && noise_m[level] == 0);
   return repeats;
 }
 
@@ -62,21 +74,18 @@ std::vector<Level> noisy(const std::vector<Level>& levels, const std::vector<dou
   return list;
 }
 
-// Counts the values that are 1 among those that are a number.
-Successes counted(const PairedValues& success, const std::vector<double>& noise_m) {
+// Counts the values that are 1 among those that are a number. If all levels repeat one run, they are one.
+Successes counted(const PairedValues& all, const SharedRuns& shared, const std::vector<double>& noise_m) {
   Successes result;
-  int events = 0, runs = 0;
-  for (std::size_t i = 0; i < success.size(); ++i) {
-    const auto won = static_cast<int>(std::count(success[i].begin(), success[i].end(), 1.0));
-    const auto known = static_cast<int>(
-        std::count_if(success[i].begin(), success[i].end(), [](double value) { return !std::isnan(value); }));
-    result.at_level.push_back(fraction_of(won, known));
-    if (!has_noise(noise_m[i]))
-      result.noise_free = result.at_level.back();
-    else
-      events += won, runs += known;
+  const PairedValues values = distinct(all, shared);
+  PairedValues with_noise = noisy(values, noise_m);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    result.at_level.push_back(proportion_of(clusters_of({values[i]}, shared)));
+    if (!has_noise(noise_m[i])) result.noise_free = result.at_level.back();
   }
-  result.noisy = fraction_of(events, runs);
+  const bool is_one = std::count(shared.repeats.begin(), shared.repeats.end(), false) == 0;
+  if (is_one && with_noise.size() > 1) with_noise.resize(1);
+  result.noisy = proportion_of(clusters_of(with_noise, shared));
   return result;
 }
 
@@ -84,11 +93,11 @@ Successes counted(const PairedValues& success, const std::vector<double>& noise_
 struct Runs {
   const std::vector<SweepResult>& sweeps;
   std::vector<double> noise_m;
-  std::vector<Repeats> repeats = {};  // repeats of each method, by level
+  std::vector<SharedRuns> shared = {};  // one for each method
 
-  std::vector<Repeats> noisy_repeats() const {
-    std::vector<Repeats> list;
-    for (const Repeats& one : repeats) list.push_back(noisy(one, noise_m));
+  std::vector<SharedRuns> shared_noisy() const {
+    std::vector<SharedRuns> list = shared;
+    for (SharedRuns& one : list) one.repeats = noisy(one.repeats, noise_m);
     return list;
   }
   std::vector<PairedValues> noisy_levels(const std::vector<PairedValues>& values) const {
@@ -109,8 +118,7 @@ std::vector<PairedValues> won_by(const Runs& runs, const std::vector<Bound>& bou
 
 std::vector<Successes> counts_of(const Runs& runs, const std::vector<PairedValues>& won) {
   std::vector<Successes> list;
-  for (std::size_t c = 0; c < won.size(); ++c)
-    list.push_back(counted(distinct(won[c], runs.repeats[c]), runs.noise_m));
+  for (std::size_t c = 0; c < won.size(); ++c) list.push_back(counted(won[c], runs.shared[c], runs.noise_m));
   return list;
 }
 
@@ -137,10 +145,10 @@ JudgedMeasure judged(const std::string& name, Better better, const Runs& runs,
   for (std::size_t c = 0; c < runs.sweeps.size(); ++c) {
     values.push_back(values_in(runs, c, name, better != Better::neither, won[c]));
     measure.at_level.emplace_back();
-    for (const auto& level : distinct(values.back(), runs.repeats[c]))
-      measure.at_level.back().push_back(student_mean({level}, {level.size() == 1}));
+    for (const auto& level : distinct(values.back(), runs.shared[c]))
+      measure.at_level.back().push_back(estimated_mean(level));
   }
-  measure.ranking = ranking(runs.noisy_levels(values), better, false, runs.noisy_repeats());
+  measure.ranking = ranking(runs.noisy_levels(values), better, false, runs.shared_noisy());
   return measure;
 }
 
@@ -152,7 +160,7 @@ SceneThreshold below(const PerceptionThreshold& threshold, const Runs& runs,
     for (std::vector<double>& level : values)
       for (double& value : level)
         if (!std::isnan(value)) value = is_below(threshold, value) ? 1 : 0;
-    scene.below.push_back(counted(distinct(values, runs.repeats[c]), runs.noise_m));
+    scene.below.push_back(counted(values, runs.shared[c], runs.noise_m));
   }
   return scene;
 }
@@ -163,11 +171,13 @@ SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps
   SceneScore scene{rules.name, rules.title, rules.meaning, {kNone}, {}, {}, {}, {}};
   if (!own_noise) scene.noise_m = std::get<std::vector<double>>(sweeps.front().axes.front().values);
   Runs runs{sweeps, scene.noise_m};
-  for (const SweepResult& sweep : sweeps) runs.repeats.push_back(repeats_of(sweep, scene.noise_m));
+  for (std::size_t c = 0; c < sweeps.size(); ++c)
+    runs.shared.push_back(
+        {repeats_of(sweeps[c], scene.noise_m), c < rules.by_replicate.size() && rules.by_replicate[c]});
   const std::vector<PairedValues> won = won_by(runs, rules.success);
   scene.success = counts_of(runs, won);
   if (!rules.old_success.empty()) scene.old_success = counts_of(runs, won_by(runs, rules.old_success));
-  scene.ranking = ranking(runs.noisy_levels(won), Better::larger, true, runs.noisy_repeats());
+  scene.ranking = ranking(runs.noisy_levels(won), Better::larger, true, runs.shared_noisy());
   for (const auto& [name, better] : rules.measures) scene.measures.push_back(judged(name, better, runs, won));
   for (const PerceptionThreshold& threshold : perception_thresholds())
     if (std::any_of(rules.measures.begin(), rules.measures.end(),
@@ -182,7 +192,8 @@ void correct(Scorecard& card) {
     rankings.push_back(&scene.ranking);
     for (JudgedMeasure& measure : scene.measures) rankings.push_back(&measure.ranking);
   }
-  correct_together(rankings);
+  card.tests = correct_together(rankings);
+  card.least_pairs = std::max(kMinPairs, pairs_for_family(card.tests));
 }
 
 namespace {

@@ -14,8 +14,8 @@
 
 namespace remote_touch {
 
-// A fraction of runs with Wilson's interval; runs that are one and the same (Repeats) count once. Without
-// runs the fraction is NaN and the interval is [0, 1].
+// A fraction of runs with its interval, see estimated_fraction(); runs that are one and the same (SharedRuns)
+// count once. Without runs the fraction is NaN and the interval is [0, 1].
 struct Proportion {
   int events = 0, runs = 0;
   double fraction = 0, low = 0, high = 1;
@@ -24,12 +24,12 @@ struct Proportion {
 struct JudgedMeasure {
   std::string name, units;
   Better better = Better::neither;
-  // The ranking is over all levels with noise; the means have Student's intervals. A judged measure uses the
-  // successful runs only, and two methods are compared in the pairs in which both succeeded. A measure that
-  // is only reported (Better::neither) uses all runs.
+  // The ranking is over all levels with noise. A judged measure uses the successful runs only, and two
+  // methods are compared in the pairs in which both succeeded. A measure that is only reported
+  // (Better::neither) uses all runs.
   Ranking ranking = {};
-  // Mean of each method at each noise level.
-  std::vector<std::vector<MeanDifference>> at_level = {};
+  // Mean of each method at each noise level, see estimated_mean().
+  std::vector<std::vector<Estimate>> at_level = {};
 };
 
 // Number of successes of a method by one rule. Runs without noise are not mixed with the others: most of them
@@ -62,6 +62,9 @@ struct SceneScore {
 struct Scorecard {
   std::vector<std::string> methods, method_titles;
   std::vector<SceneScore> scenes;
+  // The number of comparisons that are corrected together, and of the pairs that one of them needs at least
+  // to be significant; see correct().
+  std::int64_t tests = 0, least_pairs = kMinPairs;
 };
 
 struct SceneRules {
@@ -69,6 +72,9 @@ struct SceneRules {
   std::vector<Bound> success;
   std::vector<std::pair<std::string, Better>> measures;
   std::vector<Bound> old_success = {};  // the previous rule; empty without one
+  // True for a method whose runs draw random numbers that are the same at all levels of a replicate, see
+  // SharedRuns::by_replicate. Empty: no method does.
+  std::vector<bool> by_replicate = {};
 };
 
 // Scores the finished sweeps of all methods in a scene; their one axis is the noise. own_noise: the scene has

@@ -27,11 +27,17 @@ std::vector<double> isotonic_falling(const std::vector<double>& values, const st
 }
 
 double crossing(const std::vector<double>& x, const std::vector<double>& falling, double level) {
-  if (falling.front() < level) return x.front();
-  for (std::size_t i = 1; i < x.size(); ++i)
-    if (falling[i] < level)
-      return x[i - 1] + (x[i] - x[i - 1]) * (falling[i - 1] - level) / (falling[i - 1] - falling[i]);
-  return x.back();
+  constexpr double kEqual = 1e-12;  // a pooled share may miss the level by a rounding
+  std::size_t above = 0, not_below = 0;
+  for (const double value : falling) {
+    above += value > level + kEqual ? 1 : 0;
+    not_below += value >= level - kEqual ? 1 : 0;
+  }
+  if (not_below > above) return 0.5 * (x[above] + x[not_below - 1]);
+  if (above == 0) return x.front();
+  if (above == x.size()) return x.back();
+  const double from = falling[above - 1], to = falling[above];
+  return x[above - 1] + (x[above] - x[above - 1]) * (from - level) / (from - to);
 }
 
 }  // namespace remote_touch

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <utility>
 #include <vector>
 
+#include "analysis/statistics/estimate.h"
 #include "analysis/statistics/proportion.h"
 
 namespace remote_touch {
@@ -20,36 +19,38 @@ double root_mean_square(const std::vector<double>& values);
 // uses only +, -, * and /, so every machine computes the same bits. pre: plus, minus >= 0.
 double sign_test(std::int64_t plus, std::int64_t minus);
 
-// A test of the same null hypothesis, that a difference is as likely as its opposite, by the sum of the
-// differences: it detects a few large differences one way among many small ones both ways, which the sign
-// test does not detect. Returns Hoeffding's upper bound of p, min(1, 2 exp(-(sum d)^2 / (2 sum d^2))), not
-// the exact p. The bound holds for any number of pairs and any distribution (W. Hoeffding, J. Am. Stat.
-// Assoc. 58 (1963), theorem 2). Returns 1 if all differences are 0. pre: all finite.
-double symmetry_test(const std::vector<double>& differences);
+// Mean of paired differences of clusters, with a test that it is 0. NaNs are skipped and count as unknown.
+// - Fewer than 6 differences: the interval of estimated_mean(), and no p.
+// - 6 to 16: the exact test by sign flips (R. Fisher, The Design of Experiments, 1935), which assumes that a
+//   difference is as likely as its opposite; the ends of the interval are means of subsets of the differences
+//   (J. Hartigan, J. Am. Stat. Assoc. 64 (1969), 1303-1317).
+// - More: Student's t; p is at least 2^(1 - n), which an exact test of n pairs can reach.
+// If all differences are 0, p is 1. If all are equal, there is no interval, but a note. Numbers that differ
+// by less than 1e-9 of the sum of all magnitudes count as equal. is_skewed is true, with a note, if p <= 0.05
+// but the interval of estimated_mean() holds 0.
+Estimate estimated_difference(const std::vector<double>& differences);
 
-// Interval of a difference of two proportions counted on the same pairs, (plus - minus) / pairs: Wald's
-// interval after adding 1/2 to each of the four cells, clamped to [-1, 1] (A. Agresti, Y. Min, Statistics in
-// Medicine 24 (2005), 729-740, "Wald+2"). [-1, 1] if there are no pairs. z: two-sided quantile of the
-// confidence.
-// pre: plus, minus >= 0, plus + minus <= pairs.
-std::pair<double, double> paired_difference_interval(std::int64_t plus, std::int64_t minus,
-                                                     std::int64_t pairs, double z = kTwoSided95);
-
-// Mean of the differences and its 95 % interval as if the mean were normal, in the unit of the differences.
-// The mean is NaN without pairs; the interval is NaN with fewer than two pairs.
-struct MeanDifference {
-  std::int64_t pairs = 0;
-  double mean = 0, low = 0, high = 0;
+// The outcomes of an event in the two runs of a pair: 1, 0, or NaN if unknown.
+struct OutcomePair {
+  double first = 0, second = 0;
 };
-// Uses the sum of the differences and half the width of the interval; NaN: there is no interval.
-MeanDifference mean_of_sum(double sum, std::int64_t pairs,
-                           double half_width = std::numeric_limits<double>::quiet_NaN());
-// NaN differences are skipped and not counted as pairs.
-MeanDifference mean_difference(const std::vector<double>& differences);
+// Difference of the fractions of an event, second minus first. Each element has the pairs of one cluster. If
+// each cluster has one pair: the exact sign test of the pairs that differ, and the interval of T. Tango
+// (Statistics in Medicine 17 (1998), 891-908), extended to 0 if p > 0.05; no p below 6 pairs. Otherwise the
+// clusters' means are compared as numbers. The value is that of the known pairs. With unknown outcomes, the
+// interval is the hull of those of both extreme assignments of them, and p the larger one; it is 1 if the two
+// differences have different signs.
+Estimate estimated_event_difference(const std::vector<std::vector<OutcomePair>>& clusters);
 
 // p values of tests made together, adjusted so that the probability of any false "adjusted < alpha" is at
 // most alpha, whatever their dependence (S. Holm, Scand. J. Stat. 6 (1979), 65-70). Returned in the given
-// order; none is below its own p. pre: all within [0, 1].
+// order; none is below its own p. NaN: there was no test; it does not count, and stays NaN. pre: the others
+// are within [0, 1].
 std::vector<double> holm_adjusted(const std::vector<double>& p);
+// Returns the number of tests among them: of the p values that are not NaN.
+std::int64_t tests_among(const std::vector<double>& p);
+// The fewest pairs whose exact test can reach an adjusted p of 0.05 in a family of this many tests: with n
+// pairs, the least p is 2^(1 - n).
+std::int64_t pairs_for_family(std::int64_t tests);
 
 }  // namespace remote_touch

@@ -1,8 +1,8 @@
 #include "analysis/statistics/student.h"
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <numbers>
 
 #include "analysis/statistics/mean.h"
 
@@ -10,81 +10,103 @@ namespace remote_touch {
 
 namespace {
 
-// Hall's transformation of t, which increases with the mean whatever the skewness is.
-double hall_t(const Moments& m) {
-  const double sd = std::sqrt(m.variance), u = m.mean / sd, skewness = m.third / (m.variance * sd);
-  const double y = skewness * u;
-  return std::sqrt(m.count) * (u * (1 + y / 3 + y * y / 27) + skewness / (6 * m.count));
+// The critical value of more degrees differs from the normal one by 1e-5 at most.
+constexpr double kMostDegrees = 1e5;
+constexpr double kHallNumbers = 6, kHallDegrees = 5;  // the fewest for Hall's correction
+
+// Returns the strata with one that has all numbers which are alone in theirs, the first; fixed ones have no
+// scatter and count once.
+std::vector<Moments> strata_with_scatter(const std::vector<StratumMoments>& strata) {
+  std::vector<double> lone;
+  std::vector<Moments> all(1);
+  for (const StratumMoments& s : strata) {
+    if (s.moments.count == 0) continue;
+    if (s.is_fixed)
+      all.push_back({1, s.moments.mean, 0, 0});
+    else if (s.moments.count == 1)
+      lone.push_back(s.moments.mean);
+    else
+      all.push_back(s.moments);
+  }
+  all.front() = moments_of(lone);
+  return all;
 }
 
-constexpr double kMostDegrees =
-    1e5;  // with more, the critical value differs from the normal one by 1e-5 at most
+// The mean of strata, its scatter, and what follows from them.
+struct PooledMoments {
+  double count = 0, sum = 0, scatter = 0, squares = 0, cubes = 0;
+
+  explicit PooledMoments(const std::vector<Moments>& strata) {
+    for (const Moments& m : strata) {
+      count += m.count, sum += m.count * m.mean;
+      if (m.count < 2) continue;
+      const double part = m.count * m.variance;
+      scatter += part, squares += part * part / (m.count - 1), cubes += m.count * m.third;
+    }
+  }
+  double degrees() const {
+    // A whole number may be missed by a rounding.
+    return std::floor(std::clamp(scatter * scatter / squares * (1 + 1e-12), 1.0, kMostDegrees));
+  }
+  double skewness() const { return cubes / (scatter * std::sqrt(scatter)); }
+};
+
+// Hall's transformation: the t of a mean whose skewness is g.
+double hall(double y, double g) {
+  if (std::abs(g) < 1e-9) return y;
+  return 3 / g * (std::cbrt(1 + g * (y - g / 6)) - 1);
+}
 
 }  // namespace
 
-double student_two_sided(double t, int degrees) {
-  const double angle = std::atan(std::abs(t) / std::sqrt(static_cast<double>(degrees)));
-  const double cosine = std::cos(angle), sine = std::sin(angle);
-  const bool is_odd = degrees % 2 == 1;
-  double term = is_odd ? cosine : 1, sum = degrees == 1 ? 0 : term;
-  for (int k = is_odd ? 3 : 2; k <= degrees - 2; k += 2) term *= cosine * cosine * (k - 1) / k, sum += term;
-  const double within = is_odd ? 2 / std::numbers::pi * (angle + sine * sum) : sine * sum;
-  return std::max(1 - within, 0.0);
+double student_two_sided(double t, double degrees) {
+  if (std::isinf(t)) return 0;
+  return 2 * boost::math::cdf(complement(boost::math::students_t(degrees), std::abs(t)));
 }
 
-double student_quantile(double probability, int degrees) {
-  double low = 0, high = 1;
-  while (high < 1e12 && student_two_sided(high, degrees) > probability) high *= 2;
-  for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high))
-    (student_two_sided(middle, degrees) > probability ? low : high) = middle;
-  return high;
+double student_quantile(double probability, double degrees) {
+  return boost::math::quantile(complement(boost::math::students_t(degrees), probability / 2));
 }
 
-MeanDifference student_mean(const std::vector<std::vector<double>>& groups,
-                            const std::vector<bool>& without_scatter) {
-  std::vector<Moments> moments;
-  for (const std::vector<double>& group : groups) moments.push_back(moments_of(group));
-  return student_mean_of_moments(moments, without_scatter);
-}
-
-MeanDifference student_mean_of_moments(const std::vector<Moments>& groups,
-                                       const std::vector<bool>& without_scatter) {
-  std::vector<double> lone;
-  std::vector<Moments> all_groups(1);  // the first is that of the lone numbers
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    const bool is_lone = groups[i].count == 1 && !(i < without_scatter.size() && without_scatter[i]);
-    if (is_lone)
-      lone.push_back(groups[i].mean);
-    else
-      all_groups.push_back(groups[i]);
+Estimate estimated_mean(const std::vector<StratumMoments>& strata, bool has_third) {
+  const PooledMoments all(strata_with_scatter(strata));
+  Estimate e;
+  bool are_fixed = true;
+  for (const StratumMoments& s : strata) {
+    e.unknown += s.unknown;
+    are_fixed &= s.is_fixed || s.moments.count == 0;
   }
-  all_groups.front() = moments_of(lone);
-  double all = 0, sum = 0, scatter = 0, squares = 0;
-  bool has_scatter = false;
-  for (const Moments& m : all_groups) {
-    if (m.count == 0) continue;
-    all += m.count, sum += m.count * m.mean;
-    if (m.count < 2) continue;
-    const double part = m.count * m.variance;
-    scatter += part, squares += part * part / (m.count - 1), has_scatter = true;
-  }
-  const auto pairs = static_cast<std::int64_t>(all);
-  if (!has_scatter) return mean_of_sum(sum, pairs);
-  const int degrees =
-      scatter > 0 ? static_cast<int>(std::clamp(scatter * scatter / squares, 1.0, kMostDegrees)) : 1;
-  return mean_of_sum(sum, pairs,
-                     scatter > 0 ? student_quantile(0.05, degrees) * std::sqrt(scatter) / all : 0);
+  e.clusters = static_cast<std::int64_t>(all.count);
+  if (all.count == 0) return e;
+  e.value = all.sum / all.count;
+  if (are_fixed) e.method = kExactMethod;
+  if (are_fixed) return e;
+  if (!(all.scatter > 0)) e.add_note(all.count > 1 ? "no scatter" : "one run");
+  if (!(all.scatter > 0)) return e;
+  const double se = std::sqrt(all.scatter) / all.count, d = all.degrees(), t = student_quantile(0.05, d);
+  e.low = e.value - t * se, e.high = e.value + t * se, e.method = "Student's t";
+  if (all.count < kHallNumbers) e.add_note("assumes a normal distribution");
+  if (all.count < kHallNumbers || d < kHallDegrees) return e;
+  if (!has_third) e.add_note("no correction for a skewed distribution: needs all runs");
+  if (!has_third) return e;
+  const double g = all.skewness();
+  e.low = std::min(e.low, e.value - se * hall(t, g));
+  e.high = std::max(e.high, e.value - se * hall(-t, g));
+  e.method = "Student's t, Hall";
+  return e;
 }
 
-double mean_test(const std::vector<double>& differences) {
-  const Moments m = moments_of(differences);
-  if (m.count < 2 || m.mean == 0) return 1;
-  const double least = std::exp2(1 - m.count);
-  if (!(m.variance > 0)) return least;
-  const int degrees = static_cast<int>(m.count) - 1;
-  const double t = m.mean * std::sqrt(m.count / m.variance), corrected = hall_t(m);
-  if (!(t * corrected > 0)) return 1;
-  return std::max(least, student_two_sided(std::min(std::abs(t), std::abs(corrected)), degrees));
+Estimate estimated_mean(const std::vector<Stratum>& strata) {
+  std::vector<StratumMoments> moments;
+  for (const Stratum& s : strata) {
+    StratumMoments& m = moments.emplace_back(StratumMoments{moments_of(s.numbers), s.is_fixed});
+    m.unknown = static_cast<std::int64_t>(s.numbers.size()) - static_cast<std::int64_t>(m.moments.count);
+  }
+  return estimated_mean(moments, true);
+}
+
+Estimate estimated_mean(const std::vector<double>& numbers) {
+  return estimated_mean(std::vector<Stratum>{{numbers}});
 }
 
 }  // namespace remote_touch

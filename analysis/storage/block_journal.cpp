@@ -65,6 +65,13 @@ bool has_no_links(int error) {
   return error == EPERM || error == EOPNOTSUPP || error == ENOSYS || error == EMLINK;
 }
 
+// True if nothing can be recovered from the journal: its writer was killed before the second block was whole.
+bool is_useless(const std::filesystem::path& journal) {
+  if (!is_journal(journal)) return false;
+  JournalReader reader(journal);
+  return reader.is_abandoned() && (!reader.next() || !reader.next());
+}
+
 }  // namespace
 
 std::filesystem::path journal_of(const std::filesystem::path& target) {
@@ -93,6 +100,7 @@ void require_no_journal_beside(const std::filesystem::path& target) {
   const std::filesystem::path journal = journal_of(target);
   std::error_code unreachable;
   if (!std::filesystem::exists(std::filesystem::symlink_status(journal, unreachable))) return;
+  if (is_useless(journal)) return;
   throw InputError(journal.string(),
                    "exists, an earlier recording that did not end: use another name for the new one, or "
                    "recover it with " +
@@ -134,7 +142,7 @@ void JournalWriter::create(const JournalBlock& first) {
   flush_folder(file_);
 }
 
-// Gives the file its name, unless a file with that name exists.
+// Gives the file its name, unless a file with that name exists that is of use.
 void JournalWriter::give_name(const std::filesystem::path& temporary) const {
   if (::link(temporary.c_str(), file_.c_str()) == 0) {
     ::unlink(temporary.c_str());
@@ -142,7 +150,7 @@ void JournalWriter::give_name(const std::filesystem::path& temporary) const {
   }
   const int error = errno;
   require_no_journal_beside(target_);
-  if (!has_no_links(error)) refuse(error);
+  if (error != EEXIST && !has_no_links(error)) refuse(error);
   if (::rename(temporary.c_str(), file_.c_str()) != 0) refuse(errno);
 }
 
@@ -196,7 +204,8 @@ JournalReader::JournalReader(const std::filesystem::path& file) : file_(file) {
     if (descriptor_ >= 0) ::close(descriptor_);
     refuse_reading(file, error);
   }
-  is_growing_ = lock_error(descriptor_, LOCK_SH | LOCK_NB) == EWOULDBLOCK;
+  const int lock = lock_error(descriptor_, LOCK_SH | LOCK_NB);
+  is_growing_ = lock == EWOULDBLOCK, is_abandoned_ = lock == 0;
   size_ = static_cast<std::uint64_t>(there.st_size);
   at_ = last_ = kJournalOpening.size();
 }

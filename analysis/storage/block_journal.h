@@ -27,7 +27,8 @@ bool is_journal(const std::filesystem::path& file);
 // the command that makes a recording of the journal.
 void require_no_journal(const std::filesystem::path& file);
 
-// Throws InputError if the journal of the target exists, because only the user may remove it.
+// Throws InputError if the journal of the target exists, because only the user may remove it. Does not throw
+// for a journal that nothing can use: one without a whole block after its first one, whose writer has ended.
 void require_no_journal_beside(const std::filesystem::path& target);
 
 struct JournalBlock {
@@ -42,7 +43,8 @@ struct JournalBlock {
 // removed, every later append() throws too, because its block could not be read.
 class JournalWriter {
  public:
-  // Throws InputError if the target is a folder, a pipe or a device, or if it already has a journal.
+  // Replaces a journal that nothing can use. Throws InputError if the target is a folder, a pipe or a device,
+  // or if it already has another journal.
   JournalWriter(const std::filesystem::path& target, const JournalBlock& first);
   ~JournalWriter();
   JournalWriter(const JournalWriter&) = delete;
@@ -86,6 +88,9 @@ class JournalReader {
   std::uint64_t left() const { return size_ - at_; }
   // True if a writer had the file open when this reader was constructed.
   bool is_growing() const { return is_growing_; }
+  // True if it is certain that no writer had the file open then. A file system without locks leaves both
+  // false.
+  bool is_abandoned() const { return is_abandoned_; }
   // Undoes the last next(), because the content of its block is not valid for its kind. left() then includes
   // this block, and next() returns nothing.
   void reject() { at_ = last_; }
@@ -95,7 +100,7 @@ class JournalReader {
 
   const std::filesystem::path file_;
   int descriptor_ = -1;
-  bool is_growing_ = false;
+  bool is_growing_ = false, is_abandoned_ = false;
   std::uint64_t size_ = 0, at_ = 0, last_ = 0, number_ = 0;
 };
 

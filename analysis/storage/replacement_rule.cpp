@@ -58,8 +58,8 @@ void set_replacement_rule(const std::filesystem::path& target, ReplacementRule r
 
 void require_output(const std::filesystem::path& output, const ReplacementRule& rule) {
   if (is_journal(output))
-    throw InputError(output.string(),
-                     "is an unfinished recording and is never overwritten: expected another file");
+    throw KeptFile(output.string(),
+                   "is an unfinished recording and is never overwritten: expected another file");
   if (!rule.allows(output))
     throw InputError(output.string(), "exists already and is not " + rule.kind +
                                           " of this program: expected another file, or " + rule.force_option);

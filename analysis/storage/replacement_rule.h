@@ -5,7 +5,16 @@
 #include <functional>
 #include <string>
 
+#include "core/parameters/input_error.h"
+
 namespace remote_touch {
+
+// The refusal to replace a file that holds what nothing else holds. No option overrides it: code that lets
+// --force through a refusal passes this one on.
+class KeptFile : public InputError {
+ public:
+  using InputError::InputError;
+};
 
 // Decides which existing files an output may replace. A file without content may always be replaced, an
 // unfinished recording never.
@@ -23,8 +32,8 @@ struct ReplacementRule {
 // always replaced.
 void set_replacement_rule(const std::filesystem::path& target, ReplacementRule rule);
 
-// Throws InputError unless the rule allows the output and its folder is writable. Sets the rule, because the
-// file may be written by others while the result is computed.
+// Throws InputError unless the rule allows the output and its folder is writable; KeptFile for an unfinished
+// recording. Sets the rule, because the file may be written by others while the result is computed.
 void require_output(const std::filesystem::path& output, const ReplacementRule& rule);
 
 // Renames the temporary file to the target, or to what the target links to. Returns 0, or the errno of the

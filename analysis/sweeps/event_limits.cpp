@@ -1,18 +1,17 @@
 #include "analysis/sweeps/event_limits.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "analysis/statistics/isotonic_regression.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/student.h"
 #include "analysis/sweeps/cell_groups.h"
+#include "analysis/sweeps/sweep_means.h"
 
 namespace remote_touch {
 
 namespace {
-
-constexpr double kOutside = std::numeric_limits<double>::quiet_NaN();
 
 enum class Place : std::int32_t {
   inside,
@@ -21,175 +20,271 @@ enum class Place : std::int32_t {
   other_direction,
   no_runs,
   below_the_runs,
-  above_the_runs
+  above_the_runs,
+  no_direction,
+  none_of_the_runs,
+  all_of_the_runs
 };
-const std::vector<std::string> kPlaceNames = {
-    "inside",  "below the first value",      "above the last value",      "changes the other way",
-    "no runs", "below the values with runs", "above the values with runs"};
+const std::vector<std::string> kPlaceNames = {"inside",
+                                              "below the first value",
+                                              "above the last value",
+                                              "changes the other way",
+                                              "no runs",
+                                              "below the values with runs",
+                                              "above the values with runs",
+                                              "no direction",
+                                              "none of the runs",
+                                              "all of the runs"};
 
-// The counts of one group of cells, in increasing order of the axis.
-struct Counts {
-  std::vector<double> x, runs;
-  std::vector<Tally> tallies;
+// The runs of one group of cells, in increasing order of the axis.
+struct AxisRuns {
+  std::vector<RunsAtValue> values;
   bool has_first = false, has_last = false;  // the first and the last value of the axis have runs
+  bool are_independent = true;
+
+  EventCounts sum() const {
+    EventCounts all;
+    for (const RunsAtValue& value : values) all.add(value.counts);
+    return all;
+  }
 };
 
-std::vector<std::size_t> other_axes(const SweepResult& result, std::size_t along) {
+std::vector<std::size_t> axes_without(const SweepResult& result, const std::vector<std::size_t>& left_out) {
   std::vector<std::size_t> others;
   for (std::size_t axis = 0; axis < result.axes.size(); ++axis)
-    if (axis != along) others.push_back(axis);
+    if (std::find(left_out.begin(), left_out.end(), axis) == left_out.end()) others.push_back(axis);
   return others;
 }
 
-Counts counts_of(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question,
-                 const CellGroup& group) {
-  const auto& x = std::get<std::vector<double>>(outline.axes[question.along].values);
-  std::vector<std::size_t> order(group.cells.size());  // the cells of a group follow the axis
+// Returns the places of the cells of a group by increasing value of the axis.
+std::vector<std::size_t> by_value(const std::vector<double>& x) {
+  std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
-  Counts counts;
+  return order;
+}
+
+AxisRuns runs_of(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question,
+                 const CellStreams& streams, const CellGroup& group) {
+  const auto& x = std::get<std::vector<double>>(outline.axes[question.along].values);
+  AxisRuns runs;
+  runs.are_independent = streams.are_independent(group.cells);
+  const std::vector<std::size_t> order = by_value(x);  // the cells of a group follow the axis
   for (const std::size_t i : order) {
-    const Tally t = cells.events(group.cells[i]);
-    if (t.runs == 0) continue;
-    counts.x.push_back(x[i]), counts.runs.push_back(t.runs), counts.tallies.push_back(t);
-    counts.has_first |= i == order.front(), counts.has_last |= i == order.back();
+    const EventCounts counts = cells.events(group.cells[i]);
+    if (counts.runs() == 0) continue;
+    runs.values.push_back(RunsAtValue{x[i], counts, streams.is_fixed(group.cells[i])}.of_one_run_if_fixed());
+    runs.has_first |= i == order.front(), runs.has_last |= i == order.back();
   }
-  return counts;
+  return runs;
 }
 
-// Covariance of the share of events with the index on the axis, times the number of runs.
-double slope(const Counts& counts) {
-  double runs = 0, events = 0, indices = 0, products = 0;
-  for (std::size_t i = 0; i < counts.x.size(); ++i) {
-    const auto index = static_cast<double>(i);
-    runs += counts.runs[i], events += counts.tallies[i].events;
-    indices += counts.runs[i] * index, products += counts.tallies[i].events * index;
+// The covariance of the event with the index on the axis, times the number of runs, and its variance if the
+// event does not depend on the axis. Fixed cells do not vary.
+struct Slope {
+  double sum = 0, variance = 0, runs = 0;
+};
+
+// pre: `unknown_has_event(index - mean index)` says how unknown outcomes count.
+Slope slope_of(const AxisRuns& row, bool towards_rising) {
+  double runs = 0, indices = 0;
+  for (std::size_t i = 0; i < row.values.size(); ++i) {
+    const auto n = static_cast<double>(row.values[i].counts.runs());
+    runs += n, indices += n * static_cast<double>(i);
   }
-  return runs > 0 ? products - events * indices / runs : 0;
+  const double middle = indices / runs;
+  const auto events_at = [&](std::size_t i) {
+    const EventCounts& c = row.values[i].counts;
+    const bool is_event = (static_cast<double>(i) > middle) == towards_rising;
+    return static_cast<double>(c.events + (is_event ? c.unknown : 0));
+  };
+  double events = 0;
+  for (std::size_t i = 0; i < row.values.size(); ++i) events += events_at(i);
+  const double share = events / runs;
+  Slope slope;
+  for (std::size_t i = 0; i < row.values.size(); ++i) {
+    const auto n = static_cast<double>(row.values[i].counts.runs());
+    const double apart = static_cast<double>(i) - middle, with = events_at(i);
+    slope.sum += apart * (with - n * share);
+    if (row.values[i].is_fixed) continue;
+    slope.variance += apart * apart * (with * (1 - share) * (1 - share) + (n - with) * share * share);
+    slope.runs += n;
+  }
+  return slope;
 }
 
-// True if the share of events at one end of the axis is clearly on the wrong side of that at the other end:
-// their intervals do not overlap.
-bool changes_the_other_way(const Counts& counts, bool rises) {
-  if (counts.tallies.empty()) return false;
-  const Tally &first = counts.tallies.front(), &last = counts.tallies.back();
-  const Tally &less = rises ? last : first, &more = rises ? first : last;
-  return wilson_interval(less.events, less.runs).second < wilson_interval(more.events, more.runs).first;
+// True if the slopes of these rows together are clearly above 0, or below 0 if not `rising`. Unknown outcomes
+// are taken against it. Rows that share random numbers may all deviate alike.
+bool is_shown(const std::vector<AxisRuns>& rows, bool rising, bool rows_are_independent) {
+  double sum = 0, variance = 0, deviation = 0, runs = 0;
+  for (const AxisRuns& row : rows) {
+    if (row.values.empty()) continue;
+    const Slope slope = slope_of(row, !rising);
+    sum += slope.sum, variance += slope.variance, deviation += std::sqrt(slope.variance), runs += slope.runs;
+  }
+  const double sd = rows_are_independent ? std::sqrt(variance) : deviation;
+  if (!(rising ? sum > 0 : sum < 0)) return false;
+  if (sd == 0) return true;  // fixed cells only
+  return runs >= kLeastPairs && std::abs(sum) / sd > student_quantile(0.05, runs - 1);
 }
 
-struct Crossing {
-  double x = kOutside;
+struct Row {
+  Estimate estimate;
   Place place = Place::no_runs;
 };
 
-// Returns the x at which the falling curve that is nearest to the values crosses the level.
-Crossing crossing_of(const Counts& counts, const std::vector<double>& values, double level) {
-  if (values.empty()) return {};
-  const std::vector<double> falling = isotonic_falling(values, counts.runs);
-  if (falling.front() < level)
-    return {kOutside, counts.has_first ? Place::below_the_first : Place::below_the_runs};
-  if (falling.back() > level)
-    return {kOutside, counts.has_last ? Place::above_the_last : Place::above_the_runs};
-  return {crossing(counts.x, falling, level), Place::inside};
+Row without_limit(const AxisRuns& runs, Place place) {
+  Row row{{}, place};
+  const EventCounts all = runs.sum();
+  row.estimate.clusters = all.runs(), row.estimate.unknown = all.unknown;
+  return row;
 }
 
-struct Limit {
-  Crossing best, low, high;
-  double at_least = kOutside, at_most = kOutside;
-};
-
-// Sets the values of the axis that enclose the limit: the last one with the curve of the low ends above the
-// level, and the first one with the curve of the high ends below it.
-void enclose(const Counts& counts, const std::vector<double>& low, const std::vector<double>& high,
-             double level, Limit& limit) {
-  if (counts.x.empty()) return;
-  const std::vector<double> from = isotonic_falling(low, counts.runs);
-  const std::vector<double> to = isotonic_falling(high, counts.runs);
-  for (std::size_t i = 0; i < counts.x.size(); ++i)
-    if (from[i] > level) limit.at_least = counts.x[i];
-  for (std::size_t i = counts.x.size(); i-- > 0;)
-    if (to[i] < level) limit.at_most = counts.x[i];
+Row row_of(const AxisRuns& runs, const std::optional<bool>& rises, double level) {
+  if (runs.values.empty()) return {};
+  const EventCounts all = runs.sum();
+  if (!rises && all.known() > 0 && (all.events == 0 || all.without == 0))
+    return without_limit(runs, all.events == 0 ? Place::none_of_the_runs : Place::all_of_the_runs);
+  if (!rises) return without_limit(runs, Place::no_direction);
+  if (is_shown({runs}, !*rises, true)) return without_limit(runs, Place::other_direction);
+  const Limit limit = estimated_limit(runs.values, {level, *rises, runs.are_independent});
+  Row row{limit.estimate, static_cast<Place>(limit.place)};
+  if (limit.place == LimitPlace::no_runs) row.place = Place::no_runs;
+  if (limit.place == LimitPlace::below_the_first && !runs.has_first) row.place = Place::below_the_runs;
+  if (limit.place == LimitPlace::above_the_last && !runs.has_last) row.place = Place::above_the_runs;
+  return row;
 }
 
-// Returns the number of finished runs of a cell that have a note.
-std::int32_t noted_runs(const SweepResult& result, std::size_t cell) {
-  std::int32_t count = 0;
-  for (int replicate = 0; replicate < result.replicates; ++replicate)
-    if (result.notes[result.run(cell, replicate)] != 0) ++count;
-  return count;
+// Adds a note if more than 5 % of the runs at a value are unknown.
+void note_unknown_values(const AxisRuns& runs, Estimate& e) {
+  Estimate worst;
+  std::int64_t of_runs = 1;
+  for (const RunsAtValue& value : runs.values)
+    if (value.counts.unknown * of_runs > worst.unknown * value.counts.runs())
+      worst.unknown = value.counts.unknown, of_runs = value.counts.runs();
+  note_unknown(worst, of_runs, true);
+  if (!worst.note.empty()) e.add_note("at one value " + worst.note);
 }
 
-// A rising share is a falling share with the other sign, so that no share is rounded.
-Limit limit_of(const Counts& counts, bool rises, double level) {
-  if (changes_the_other_way(counts, rises)) return {{kOutside, Place::other_direction}, {}, {}};
-  const double sign = rises ? -1 : 1;
-  std::vector<double> shares, low, high;
-  for (const Tally& t : counts.tallies) {
-    const auto [from, to] = wilson_interval(t.events, t.runs);
-    shares.push_back(sign * (static_cast<double>(t.events) / t.runs));
-    low.push_back(sign * (rises ? to : from)), high.push_back(sign * (rises ? from : to));
+EventOutcome outcome_of(const SweepResult& result, double value, std::size_t run, double threshold) {
+  if (result.state[run] != RunState::done) return EventOutcome::missing;
+  if (std::isnan(value)) return EventOutcome::unknown;
+  return value > threshold ? EventOutcome::event : EventOutcome::without;
+}
+
+CellCounts counts_of_runs(const SweepResult& result, const LimitQuestion& question) {
+  const std::vector<double>& measure = result.measure(question.measure);
+  return {[&](std::size_t cell) { return event_counts(result, measure, cell, question.threshold); }};
+}
+
+// Returns the direction in which the event becomes more probable.
+std::optional<bool> direction_of(const std::vector<AxisRuns>& rows, bool are_independent) {
+  for (const bool rising : {true, false})
+    if (is_shown(rows, rising, are_independent)) return rising;
+  return std::nullopt;
+}
+
+// True if no two of the groups share random numbers.
+bool groups_are_independent(const std::vector<CellGroup>& groups, const CellStreams& streams) {
+  std::vector<std::size_t> one_of_each;  // along the axis sharing does no harm
+  for (const CellGroup& group : groups) {
+    const auto random = std::find_if(group.cells.begin(), group.cells.end(),
+                                     [&](std::size_t cell) { return !streams.is_fixed(cell); });
+    if (random != group.cells.end()) one_of_each.push_back(*random);
   }
-  Limit limit{crossing_of(counts, shares, sign * level), crossing_of(counts, low, sign * level),
-              crossing_of(counts, high, sign * level)};
-  enclose(counts, low, high, sign * level, limit);
-  return limit;
+  return streams.are_independent(one_of_each);
 }
 
 }  // namespace
 
-EventLimits event_limits(const SweepResult& result, const LimitQuestion& question) {
-  const std::vector<double>& measure = result.measure(question.measure);
-  CellCounts cells{[&](std::size_t cell) { return tally(result, measure, cell, question.threshold); }};
-  if (!result.notes.empty()) cells.noted = [&](std::size_t cell) { return noted_runs(result, cell); };
-  return event_limits(result, cells, question);
+EventLimits event_limits(const SweepResult& result, const LimitQuestion& question,
+                         const CellStreams& streams) {
+  CellCounts cells = counts_of_runs(result, question);
+  if (!result.notes.empty())
+    cells.noted = [&](std::size_t cell) { return noted_runs(result, {{{}, {cell}}}).front(); };
+  return event_limits(result, cells, question, streams);
 }
 
-EventLimits event_limits(const SweepResult& result, const CellCounts& cells, const LimitQuestion& question) {
-  const std::vector<std::size_t> others = other_axes(result, question.along);
+EventLimits event_limits(const SweepResult& result, const CellCounts& cells, const LimitQuestion& question,
+                         const CellStreams& streams) {
+  const std::vector<std::size_t> others = axes_without(result, {question.along});
   const std::vector<CellGroup> groups = cell_groups(result, others);
-  std::vector<Counts> all;
-  double sum = 0;
-  for (const CellGroup& group : groups)
-    sum += slope(all.emplace_back(counts_of(result, cells, question, group)));
-  const bool rises = sum >= 0;
-  std::vector<double> limits, low, high, at_least, at_most;
-  std::vector<std::int32_t> places, noted;
-  std::vector<std::int64_t> runs;
-  for (const Counts& counts : all) {
-    const Limit limit = limit_of(counts, rises, question.level);
-    limits.push_back(limit.best.x), low.push_back(limit.low.x), high.push_back(limit.high.x);
-    at_least.push_back(limit.at_least), at_most.push_back(limit.at_most);
-    places.push_back(static_cast<std::int32_t>(limit.best.place));
-    runs.push_back(static_cast<std::int64_t>(std::accumulate(counts.runs.begin(), counts.runs.end(), 0.0)));
+  std::vector<AxisRuns> all;
+  for (const CellGroup& group : groups) all.push_back(runs_of(result, cells, question, streams, group));
+  const std::optional<bool> rises =
+      question.rises ? question.rises : direction_of(all, groups_are_independent(groups, streams));
+  std::vector<Estimate> estimates;
+  std::vector<std::int32_t> places;
+  std::vector<std::int64_t> noted;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    Row row = row_of(all[i], rises, question.level);
+    note_unknown_values(all[i], row.estimate);
+    if (const std::string equal = equal_runs_note(result, streams, groups[i].cells); !equal.empty())
+      row.estimate.add_note(equal);
+    estimates.push_back(std::move(row.estimate)), places.push_back(static_cast<std::int32_t>(row.place));
+    if (!cells.noted) continue;
+    noted.push_back(0);
+    for (const std::size_t cell : groups[i].cells) noted.back() += cells.noted(cell);
   }
   const Column& axis = result.axes[question.along];
   Table table{"limits", "limit of " + question.measure + " along " + axis.name,
               axes_of(result, others, groups)};
-  table.add(
-      "limit", axis.units,
-      "value of the axis at which the event has the given probability; NaN: not between values with runs",
-      limits);
-  table.add("limit_low", axis.units, "lower end of its 95 % interval; NaN: not between values with runs",
-            low);
-  table.add("limit_high", axis.units, "upper end of its 95 % interval; NaN: not between values with runs",
-            high);
-  table.add("at_least", axis.units,
-            "last value of the axis before the limit at which the interval is off the given probability",
-            std::move(at_least));
-  table.add("at_most", axis.units,
-            "first value of the axis after the limit at which the interval is off the given probability",
-            std::move(at_most));
+  add_estimates(table, estimates,
+                {axis.units,
+                 "value of the axis at which the event has the given probability; NaN: not between values "
+                 "with runs",
+                 "number of finished runs"},
+                noted);
   table.columns.push_back({"place", "1", "where the limit is, relative to the values of the axis",
                            std::move(places), 1, kPlaceNames});
-  table.columns.push_back({"runs", "1", "number of finished runs", counts_in_column(runs)});
-  if (cells.noted) {
-    for (const CellGroup& group : groups) {
-      noted.push_back(0);
-      for (const std::size_t cell : group.cells) noted.back() += cells.noted(cell);
-    }
-    table.add("noted_runs", "1", "number of finished runs with a note", std::move(noted));
-  }
   return {std::move(table), rises};
+}
+
+Table limit_comparisons(const SweepResult& result, const LimitQuestion& question, std::size_t between,
+                        const CellStreams& streams, LimitComparison comparison) {
+  const bool is_ratio = comparison == LimitComparison::ratio;
+  std::vector<std::size_t> kept = axes_without(result, {question.along, between});
+  kept.push_back(between);
+  std::vector<CellGroup> groups = cell_groups(result, kept);
+  std::erase_if(groups, [](const CellGroup& group) { return group.indices.back() == 0; });
+  const auto& x = std::get<std::vector<double>>(result.axes[question.along].values);
+  const std::vector<double>& measure = result.measure(question.measure);
+  const auto curve_of = [&](const CellGroup& group, bool is_first) {
+    std::vector<OutcomesAtValue> curve;
+    for (const std::size_t i : by_value(x)) {
+      std::vector<std::size_t> indices = result.axis_indices(group.cells[i]);
+      if (is_first) indices[between] = 0;
+      const std::size_t cell = result.cell_at(indices);
+      OutcomesAtValue& value = curve.emplace_back(OutcomesAtValue{x[i], {}, streams.is_fixed(cell)});
+      for (int replicate = 0; replicate < result.replicates; ++replicate) {
+        const std::size_t run = result.run(cell, replicate);
+        value.outcomes.push_back(outcome_of(result, measure[run], run, question.threshold));
+      }
+    }
+    return curve;
+  };
+  std::vector<Estimate> estimates;
+  for (const CellGroup& group : groups) {
+    Estimate& e = estimates.emplace_back();
+    if (!question.rises) e.add_note("no direction");
+    if (!question.rises) continue;
+    e = estimated_limit_comparison(curve_of(group, true), curve_of(group, false),
+                                   {question.level, *question.rises, streams.are_independent(group.cells)},
+                                   comparison);
+    if (result.round.empty()) continue;
+    e.low = e.high = e.p = std::numeric_limits<double>::quiet_NaN();
+    e.method.clear(), e.add_note("the sweep was refined: no interval");
+  }
+  const Column &axis = result.axes[question.along], &variants = result.axes[between];
+  const std::string what = is_ratio ? "ratio" : "difference";
+  Table table{"limit_" + what,
+              what + " of the limit of " + question.measure + " along " + axis.name +
+                  (is_ratio ? " to" : " from") + " that of the first value of " + variants.name,
+              axes_of(result, kept, groups)};
+  add_estimates(table, estimates,
+                {is_ratio ? "1" : axis.units, what + " of the limits", "number of replicates", !is_ratio},
+                noted_runs(result, groups));
+  return table;
 }
 
 }  // namespace remote_touch

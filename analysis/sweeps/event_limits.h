@@ -2,54 +2,60 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "analysis/statistics/limit.h"
+#include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
 
-// The event happens in a run if its measure is above the threshold.
+// The event happens in a run if its measure is above the threshold; it is unknown if the measure is NaN.
 struct LimitQuestion {
   std::string measure;
   double threshold = 0.5;
   std::size_t along = 0;  // number of an axis; pre: its values are numbers
   double level = 0.5;     // probability of the event at the limit, in (0, 1)
+  // True: the event becomes more probable along the axis; false: less. Empty: the runs show it, or nothing
+  // does.
+  std::optional<bool> rises = {};
 };
 
 struct EventLimits {
   Table table;
-  bool rises = true;  // true: the event becomes more probable along the axis
+  std::optional<bool> rises;  // the stated direction, or the one that the runs show; empty: none
 };
 
-// The table has a row for each combination of the other axes: their values, `limit`, `limit_low`,
-// `limit_high`, `at_least` and `at_most` in the unit of the axis, `place` and `runs`, and `noted_runs` if the
-// sweep has stored the notes on its runs.
+// The table has a row for each combination of the other axes: their values, the columns of add_estimates()
+// (sweep_means.h) in the unit of the axis, and `place`. value, low and high are those of estimated_limit(). A
+// fixed cell counts as one run, which is certain.
 //
-// At each value of the axis the share of finished runs with the event has a 95 % Wilson interval. The curve
-// that is nearest to the shares and only falls, or only rises, along the axis crosses the level at `limit`,
-// with linear interpolation (isotonic_regression.h). The curves of the two ends of the intervals cross it at
-// limit_low and limit_high. They are NaN if the curve does not cross the level between values of the axis
-// that have finished runs. `place` then states on which side of the axis the limit is or, if the value at
-// that end of the axis has no finished runs, on which side of the values that have some.
-//
-// Interpolation can make an interval narrower than the distance between two values of the axis. The limit is
-// at least at `at_least` and at most at `at_most` without it: these are the last value at which the event is
-// clearly less probable than the level and the first at which it is clearly more probable, or the other way
-// round if the event becomes less probable along the axis. NaN if there is no such value.
-//
-// All rows have one direction: that in which the shares change over the whole sweep. A row that clearly
-// changes the other way has no limit, and `place` says so: at one end of the axis its interval is on the
-// wrong side of that at the other end. Values without a finished run are left out. A run whose measure is NaN
-// counts as a run without the event, as in tally().
-EventLimits event_limits(const SweepResult& result, const LimitQuestion& question);
+// All rows have one direction. If the question does not state it, the runs must show it: the slope of the
+// event over the index on the axis, summed over the rows, differs from 0 by Student's t at 5 %, with the less
+// favourable assignment of unknown outcomes. Rows that share random numbers count as if they were one. Fixed
+// cells show a slope without a test. Without a direction there is no limit; `place` then says that all or
+// none of the runs of the row had the event, or else that there is no direction. A row that clearly changes
+// the other way has no limit, and `place` says so. Values without a finished run are left out.
+EventLimits event_limits(const SweepResult& result, const LimitQuestion& question,
+                         const CellStreams& streams);
 
 // The counts of each cell, for a sweep that does not keep its runs.
 struct CellCounts {
-  std::function<Tally(std::size_t cell)> events;             // counts the finished runs
-  std::function<std::int32_t(std::size_t cell)> noted = {};  // finished runs with a note; empty: not known
+  std::function<EventCounts(std::size_t cell)> events;       // counts the finished runs
+  std::function<std::int64_t(std::size_t cell)> noted = {};  // finished runs with a note; empty: not known
 };
 // The same with these counts. Only the axes of the outline are used.
-EventLimits event_limits(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question);
+EventLimits event_limits(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question,
+                         const CellStreams& streams);
+
+// Returns the differences, or ratios, of the limits at each value of the axis `between` from that at its
+// first value, for each combination of the axes other than it and the axis of the question: the values, and
+// the columns of add_estimates(), with p for differences. See estimated_limit_comparison(). Without a
+// direction, and in a refined sweep, the rows have no interval. pre: `between` is not the axis of the
+// question; the direction is that of event_limits().
+Table limit_comparisons(const SweepResult& result, const LimitQuestion& question, std::size_t between,
+                        const CellStreams& streams, LimitComparison comparison);
 
 }  // namespace remote_touch

@@ -1,6 +1,7 @@
 #include "analysis/sweeps/refinement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "analysis/statistics/proportion.h"
@@ -10,15 +11,19 @@ namespace remote_touch {
 namespace {
 
 struct Belief {
-  bool known = false;      // some run is done
-  bool uncertain = false;  // the interval contains 0.5
-  bool likely = false;     // more than half of the runs had the event
+  bool known = false;      // the outcome of some run is known
+  bool uncertain = false;  // neither "likely" nor its opposite is certain
+  bool likely = false;     // more than half of the known runs had the event
 };
 
+// A cell is certain if it has more events than n / 2 by 1.96 deviations of n tosses of a fair coin, or as
+// many fewer, whatever its unknown outcomes are.
 Belief belief(const SweepResult& result, const RefinementRule& rule, std::size_t cell) {
-  const Tally t = tally(result, result.measure(rule.measure), cell, rule.threshold);
-  const auto [low, high] = wilson_interval(t.events, t.runs);
-  return {t.runs > 0, low < 0.5 && high > 0.5, 2 * t.events > t.runs};
+  const EventCounts counts = event_counts(result, result.measure(rule.measure), cell, rule.threshold);
+  const auto runs = static_cast<double>(counts.runs());
+  const double chance = 0.5 * runs + 0.5 * kTwoSided95 * std::sqrt(runs);
+  const bool is_certain = static_cast<double>(std::max(counts.events, counts.without)) >= chance;
+  return {counts.known() > 0, !is_certain, counts.events > counts.without};
 }
 
 int requested_replicates(const SweepResult& result, std::size_t cell) {

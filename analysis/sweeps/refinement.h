@@ -19,7 +19,8 @@ struct RefinementRule {
 };
 
 // Returns the runs that the next round adds. They depend on the finished runs alone, so every continuation
-// adds the same ones. A cell is uncertain while the Wilson interval of its probability contains 0.5. An
+// adds the same ones. A cell is uncertain while a score test does not tell its probability from 0.5, with the
+// less favourable assignment of unknown outcomes: |events - n / 2| < 1.96 sqrt(n) / 2 (Wilson's interval). An
 // uncertain cell is given more replicates, up to the maximum. If one of two neighbouring cells is uncertain,
 // or if they lie on different sides of 0.5, the cell half way between them is sampled. Cells with the fewest
 // runs come first. Empty if no cell is uncertain, or if the budget is spent. Because runs are added depending

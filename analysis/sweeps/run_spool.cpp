@@ -234,7 +234,12 @@ std::vector<std::string> RunSpool::errors(std::size_t first, std::size_t count) 
 Values RunSpool::values(const std::string& array, std::size_t first, std::size_t count) {
   if (array == "error") return errors(first, count);
   const std::size_t number = array_number(array);
-  if (array == "state" || array == "notes" || array == "round") {
+  if (array == "notes") {
+    std::vector<std::uint64_t> notes(count);
+    for (std::size_t i = 0; i < count; ++i) notes[i] = word(number, first + i);
+    return notes;
+  }
+  if (array == "state" || array == "round") {
     std::vector<std::int32_t> numbers(count);
     for (std::size_t i = 0; i < count; ++i) numbers[i] = static_cast<std::int32_t>(word(number, first + i));
     return numbers;

@@ -17,6 +17,15 @@ Column notes_column(const SweepResult& result) {
   return {"notes", "1", "notes on the run, one bit for each of note_kinds", result.notes};
 }
 
+std::vector<std::uint64_t> note_numbers(const Column& notes) {
+  if (const auto* numbers = std::get_if<std::vector<std::uint64_t>>(&notes.values)) return *numbers;
+  std::vector<std::uint64_t> numbers;
+  if (const auto* narrow = std::get_if<std::vector<std::int32_t>>(&notes.values))
+    for (const std::int32_t bits : *narrow)
+      numbers.push_back(static_cast<std::uint64_t>(static_cast<std::int64_t>(bits)));
+  return numbers;
+}
+
 Column error_column(const SweepResult& result) {
   return {"error", "1", "why the run failed", result.error};
 }

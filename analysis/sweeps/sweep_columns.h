@@ -8,6 +8,8 @@ namespace remote_touch {
 // Each has the values of the result; without values if it has none.
 Column state_column(const SweepResult& result);
 Column notes_column(const SweepResult& result);
+// Returns the numbers of a stored column of notes. Earlier results store them in 32 bits.
+std::vector<std::uint64_t> note_numbers(const Column& notes);
 Column error_column(const SweepResult& result);
 Column round_column(const SweepResult& result);
 // The numbers of the runs of a part. pre: the result is a part.

@@ -89,7 +89,7 @@ std::int32_t checksum(const SweepResult& result, std::size_t place) {
   mix(static_cast<std::uint64_t>(result.state[place]));
   for (const Column& measure : result.measures)
     mix(std::bit_cast<std::uint64_t>(std::get<std::vector<double>>(measure.values)[place]));
-  if (!result.notes.empty()) mix(static_cast<std::uint32_t>(result.notes[place]));
+  if (!result.notes.empty()) mix(result.notes[place]);
   return static_cast<std::int32_t>(hash);
 }
 

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "analysis/storage/schema.h"
+#include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 
@@ -39,6 +40,7 @@ class SweepReader {
     column.width = 1;  // a second dimension is an axis
     return column;
   }
+  Column column(const std::string& name) const { return hdf5_.column("/sweep/" + name); }
   template <class Value>
   std::vector<Value> values(const std::string& name) const {
     return hdf5_.values<Value>("/sweep/" + name);
@@ -90,16 +92,18 @@ void read_part(const SweepReader& reader, std::size_t all_runs, SweepResult& res
 
 // Results of earlier versions have no notes.
 void read_notes(const SweepReader& reader, std::size_t runs, SweepResult& result) {
-  constexpr std::size_t kBits = 31;  // a number without its sign
+  constexpr std::size_t kBits = 64;
   if (!reader.has("notes")) return;
   if (result.note_kinds.empty() || result.note_kinds.size() > kBits)
     reader.damaged("its attribute note_kinds has no names, or too many");
-  result.notes = reader.values<std::int32_t>("notes", runs);
+  result.notes = note_numbers(reader.column("notes"));
+  if (result.notes.size() != runs) reader.damaged("/sweep/notes has another length or type");
 }
 
 void require_known_notes(const SweepReader& reader, const SweepResult& result) {
-  for (const std::int32_t bits : result.notes)
-    if (bits < 0 || bits >> result.note_kinds.size() != 0) reader.damaged("a note is unknown");
+  const std::size_t kinds = result.note_kinds.size();
+  for (const std::uint64_t bits : result.notes)
+    if (!SweepResult::are_known_notes(bits, kinds)) reader.damaged("a note is unknown");
 }
 
 }  // namespace

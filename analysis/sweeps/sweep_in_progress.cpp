@@ -48,7 +48,7 @@ void SweepInProgress::record(const SweepResult& result, std::size_t at) {
   const auto state = static_cast<std::int32_t>(result.state[at]);
   const std::int32_t sum = checksum(result, at);
   put(state_offset_ + 4 * place, &state, sizeof state);
-  if (!result.notes.empty()) put(notes_offset_ + 4 * place, &result.notes[at], sizeof result.notes[at]);
+  if (!result.notes.empty()) put(notes_offset_ + 8 * place, &result.notes[at], sizeof result.notes[at]);
   put(checksum_offset_ + 4 * place, &sum, sizeof sum);
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <cstdio>
 #include <limits>
 #include <map>
 
@@ -10,112 +10,106 @@
 #include "analysis/statistics/paired_test.h"
 #include "analysis/statistics/proportion.h"
 #include "analysis/statistics/student.h"
-#include "analysis/sweeps/cell_groups.h"
 
 namespace remote_touch {
 
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* kPMeaning = "p value of the null hypothesis that there is no difference";
+constexpr const char* kAdjustedMeaning = "p value after Holm's adjustment over all tests of the answer";
 
-// The measure of each finished run; NaN for the other runs.
-std::vector<double> finished_values(const SweepResult& result, const std::string& measure) {
-  std::vector<double> values = result.measure(measure);
-  for (std::size_t run = 0; run < values.size(); ++run)
-    if (result.state[run] != RunState::done) values[run] = kNone;
-  return values;
+double mean_of_known(const std::vector<double>& values) {
+  return mean_where(
+      values.size(), [&](std::size_t i) { return !std::isnan(values[i]); },
+      [&](std::size_t i) { return values[i]; });
 }
 
-using Groups = std::vector<std::vector<double>>;  // values of each cell, one for each replicate
-
-MeanDifference share_of(const Groups& cells) {
-  int events = 0, runs = 0;
-  for (const std::vector<double>& values : cells)
-    for (const double value : values)
-      if (!std::isnan(value)) events += value == 1 ? 1 : 0, ++runs;
-  const auto [low, high] = wilson_interval(events, runs);
-  return runs == 0 ? MeanDifference{0, kNone, kNone, kNone}
-                   : MeanDifference{runs, static_cast<double>(events) / runs, low, high};
+EventCounts counts_of(const std::vector<double>& values) {
+  EventCounts counts;
+  for (const double value : values)
+    ++(std::isnan(value) ? counts.unknown : value > 0.5 ? counts.events : counts.without);
+  return counts;
 }
 
-struct Difference {
-  MeanDifference mean;
-  double p = kNone;
+// A row's clusters with the values of their runs.
+struct ValueClusters {
+  std::vector<RunCluster> clusters;
+  std::vector<std::vector<double>> values;
+  bool by_replicate = false, are_fixed = true;
+  std::int64_t runs = 0, unknown = 0;
+
+  template <class ValueOf>
+  ValueClusters(std::vector<RunCluster> of_row, bool is_by_replicate, ValueOf&& value_of)
+      : clusters(std::move(of_row)), by_replicate(is_by_replicate) {
+    for (const RunCluster& cluster : clusters) {
+      are_fixed &= cluster.is_fixed;
+      std::vector<double>& own = values.emplace_back();
+      for (const std::size_t run : cluster.runs) {
+        own.push_back(value_of(run));
+        ++runs, unknown += std::isnan(own.back()) ? 1 : 0;
+      }
+    }
+  }
 };
 
-Difference difference_of_events(const Groups& cells) {
-  std::int64_t plus = 0, minus = 0, pairs = 0;
-  for (const std::vector<double>& values : cells)
-    for (const double value : values)
-      if (!std::isnan(value)) plus += value > 0 ? 1 : 0, minus += value < 0 ? 1 : 0, ++pairs;
-  if (pairs == 0) return {{0, kNone, kNone, kNone}};
-  const auto [low, high] = paired_difference_interval(plus, minus, pairs);
-  return {{pairs, static_cast<double>(plus - minus) / static_cast<double>(pairs), low, high},
-          sign_test(plus, minus)};
-}
-
-Difference difference_of_numbers(const Groups& cells) {
-  std::vector<double> all;
-  for (const std::vector<double>& values : cells)
-    std::copy_if(values.begin(), values.end(), std::back_inserter(all),
-                 [](double value) { return !std::isnan(value); });
-  if (all.empty()) return {{0, kNone, kNone, kNone}};
-  return {student_mean({all}), mean_test(all)};
-}
-
-// Returns the p values after Holm's adjustment over those that are known.
-std::vector<double> adjusted(const std::vector<double>& p) {
-  std::vector<double> known;
-  std::copy_if(p.begin(), p.end(), std::back_inserter(known),
-               [](double value) { return !std::isnan(value); });
-  const std::vector<double> holm = holm_adjusted(known);
-  std::vector<double> all;
-  auto next = holm.begin();
-  for (const double value : p) all.push_back(std::isnan(value) ? kNone : *next++);
-  return all;
-}
-
-// Returns the means of the known values of several cells, replicate by replicate.
-std::vector<double> mean_of_cells(const Groups& cells) {
+Estimate exact_estimate(const ValueClusters& row) {
+  Estimate e;
   std::vector<double> means;
-  for (std::size_t replicate = 0; replicate < cells.front().size(); ++replicate)
-    means.push_back(mean_where(
-        cells.size(), [&](std::size_t i) { return !std::isnan(cells[i][replicate]); },
-        [&](std::size_t i) { return cells[i][replicate]; }));
-  return means;
+  for (const std::vector<double>& values : row.values) means.push_back(mean_of_known(values));
+  e.value = mean_of_known(means), e.method = kExactMethod;
+  e.clusters = static_cast<std::int64_t>(row.clusters.size()), e.unknown = row.unknown;
+  return e;
 }
 
-// The values of a group of cells, whose noise is independent of each other.
-struct IndependentValues {
-  Groups cells;
-  bool is_merged = false;  // true if several cells had the same noise
-};
-
-// values_of: values of a cell. shared: the axes with common noise that the group does not have in common.
-template <class ValuesOf>
-IndependentValues independent(const SweepResult& result, const CellGroup& group,
-                              const std::vector<std::size_t>& shared, ValuesOf&& values_of) {
-  std::map<std::size_t, Groups> of_noise;  // by the first cell on the shared axes
-  for (const std::size_t cell : group.cells) {
-    std::vector<std::size_t> indices = result.axis_indices(cell);
-    for (const std::size_t axis : shared) indices[axis] = 0;
-    of_noise[result.cell_at(indices)].push_back(values_of(cell));
-  }
-  IndependentValues all;
-  for (const auto& [first, cells] : of_noise) {
-    all.cells.push_back(cells.size() == 1 ? cells.front() : mean_of_cells(cells));
-    all.is_merged |= cells.size() > 1;
-  }
-  return all;
+Estimate fraction_estimate(const ValueClusters& row) {
+  std::vector<EventCounts> counts;
+  for (const std::vector<double>& values : row.values) counts.push_back(counts_of(values));
+  return estimated_fraction(counts);
 }
 
-// Returns the axes with common noise over which a row of the table pools.
-std::vector<std::size_t> pooled(const std::vector<std::size_t>& common_noise,
-                                const std::vector<std::size_t>& kept) {
-  std::vector<std::size_t> axes = common_noise;
-  std::erase_if(axes,
-                [&](std::size_t axis) { return std::find(kept.begin(), kept.end(), axis) != kept.end(); });
-  return axes;
+Estimate mean_estimate(const ValueClusters& row) {
+  std::map<std::pair<bool, std::size_t>, Stratum> strata;  // a fixed cell is a stratum of its own
+  for (std::size_t i = 0; i < row.clusters.size(); ++i) {
+    const RunCluster& cluster = row.clusters[i];
+    const std::size_t key = cluster.is_fixed ? i : row.by_replicate ? 0 : cluster.noise_cell;
+    Stratum& stratum = strata[{cluster.is_fixed, key}];
+    stratum.is_fixed = cluster.is_fixed;
+    stratum.numbers.push_back(mean_of_known(row.values[i]));
+  }
+  std::vector<Stratum> all;
+  for (auto& [key, stratum] : strata) all.push_back(std::move(stratum));
+  Estimate e = estimated_mean(all);
+  e.unknown = row.unknown;
+  return e;
+}
+
+// pair_of: the values of the two runs of a pair, named by the run of the second.
+template <class PairOf>
+Estimate pair_estimate(const ValueClusters& row, bool is_event, PairOf&& pair_of) {
+  if (row.clusters.empty()) return {};
+  if (row.are_fixed) return exact_estimate(row);
+  if (is_event) {
+    std::vector<std::vector<OutcomePair>> pairs;
+    for (const RunCluster& cluster : row.clusters) {
+      pairs.emplace_back();
+      for (const std::size_t run : cluster.runs) pairs.back().push_back(pair_of(run));
+    }
+    return estimated_event_difference(pairs);
+  }
+  std::vector<double> means;
+  for (const std::vector<double>& own : row.values) means.push_back(mean_of_known(own));
+  Estimate e = estimated_difference(means);
+  e.unknown = row.unknown;
+  return e;
+}
+
+void note_clusters(Estimate& e, const ValueClusters& row, const std::string& equal_runs, const char* what) {
+  if (!equal_runs.empty()) e.add_note(equal_runs);
+  const auto clusters = static_cast<std::int64_t>(row.clusters.size());
+  if (clusters < row.runs)
+    e.add_note(std::to_string(row.runs) + " " + what + " share random numbers and count as " +
+               std::to_string(clusters));
 }
 
 const Column& measure_column(const SweepResult& result, const std::string& measure) {
@@ -130,73 +124,173 @@ std::size_t moved(const SweepResult& result, std::size_t cell, std::size_t axis,
   return result.cell_at(indices);
 }
 
-}  // namespace
-
-void add_mean_columns(Table& table, const std::vector<MeanDifference>& means, const std::string& unit,
-                      const std::string& mean_meaning, const std::string& count) {
-  std::vector<double> mean, low, high;
-  std::vector<std::int64_t> counts;
-  for (const MeanDifference& m : means) {
-    mean.push_back(m.mean), low.push_back(m.low), high.push_back(m.high);
-    counts.push_back(m.pairs);
-  }
-  table.add("mean", unit, mean_meaning, std::move(mean));
-  table.add("low", unit, "lower end of its 95 % interval", std::move(low));
-  table.add("high", unit, "upper end of its 95 % interval", std::move(high));
-  table.columns.push_back({count, "1",
-                           "number of " + count + " with a value; those with the same noise count as one",
-                           counts_in_column(counts)});
+std::string name_beside(const Table& table, const std::string& name) {
+  const bool is_taken = std::any_of(table.columns.begin(), table.columns.end(),
+                                    [&](const Column& column) { return column.name == name; });
+  return is_taken ? name + "_of_answer" : name;
 }
 
-Table sweep_means(const SweepResult& result, const std::string& measure, const TableAxes& axes) {
-  const std::vector<double> values = finished_values(result, measure);
-  const Column& column = measure_column(result, measure);
-  const std::vector<CellGroup> groups = cell_groups(result, axes.by);
-  const std::vector<std::size_t> shared = pooled(axes.common_noise, axes.by);
-  const auto values_of = [&](std::size_t cell) {
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(result.run(cell, 0));
-    return std::vector<double>(first, first + result.replicates);
-  };
-  std::vector<MeanDifference> means;
+Column* with_meaning(Table& table, const char* meaning) {
+  for (Column& column : table.columns)
+    if (column.long_name == meaning) return &column;
+  return nullptr;
+}
+
+}  // namespace
+
+void note_unknown(Estimate& e, std::int64_t runs, bool is_event) {
+  if (e.unknown == 0) return;
+  if (!is_event)
+    e.add_note("of " + std::to_string(runs - e.unknown) + " of " + std::to_string(runs) +
+               " runs that have a value");
+  else if (20 * e.unknown > runs)
+    e.add_note(std::to_string(e.unknown) + " of " + std::to_string(runs) + " runs unknown");
+}
+
+std::vector<std::int64_t> noted_runs(const SweepResult& result, const std::vector<CellGroup>& groups) {
+  std::vector<std::int64_t> counts;
+  if (result.notes.empty()) return counts;
   for (const CellGroup& group : groups) {
-    const IndependentValues all = independent(result, group, shared, values_of);
-    means.push_back(is_event(column) && !all.is_merged ? share_of(all.cells) : student_mean(all.cells));
+    std::int64_t& count = counts.emplace_back(0);
+    for (const std::size_t cell : group.cells)
+      for (int replicate = 0; replicate < result.replicates; ++replicate)
+        count += result.notes[result.run(cell, replicate)] != 0 ? 1 : 0;
   }
-  Table table{"mean_" + measure, "mean of " + measure, axes_of(result, axes.by, groups)};
-  add_mean_columns(table, means, column.units, "mean: " + column.long_name, "runs");
+  return counts;
+}
+
+void add_estimates(Table& table, const std::vector<Estimate>& estimates, const EstimateTexts& texts,
+                   const std::vector<std::int64_t>& noted) {
+  const auto numbers_of = [&](double Estimate::*member) {
+    std::vector<double> values;
+    for (const Estimate& e : estimates) values.push_back(e.*member);
+    return values;
+  };
+  const auto counts_of_rows = [&](std::int64_t Estimate::*member) {
+    std::vector<std::int64_t> counts;
+    for (const Estimate& e : estimates) counts.push_back(e.*member);
+    return counts_in_column(counts);
+  };
+  const auto texts_of_rows = [&](std::string Estimate::*member) {
+    std::vector<std::string> all;
+    for (const Estimate& e : estimates) all.push_back(e.*member);
+    return all;
+  };
+  const auto add = [&](const std::string& name, const std::string& unit, const std::string& meaning,
+                       Values values) {
+    table.columns.push_back({name_beside(table, name), unit, meaning, std::move(values)});
+  };
+  add("value", texts.unit, texts.value, numbers_of(&Estimate::value));
+  add("low", texts.unit, "lower end of its 95 % interval; NaN: open", numbers_of(&Estimate::low));
+  add("high", texts.unit, "upper end of its 95 % interval; NaN: open", numbers_of(&Estimate::high));
+  add("runs", "1", texts.runs, counts_of_rows(&Estimate::clusters));
+  add("unknown", "1", "number of runs whose value is unknown", counts_of_rows(&Estimate::unknown));
+  if (!noted.empty()) add("noted_runs", "1", "number of finished runs with a note", counts_in_column(noted));
+  add("method", "1", "how the interval was computed", texts_of_rows(&Estimate::method));
+  if (texts.has_tests) {
+    const std::vector<double> p = numbers_of(&Estimate::p);
+    add("p", "1", kPMeaning, p);
+    add("adjusted_p", "1", kAdjustedMeaning, holm_adjusted(p));
+  }
+  add("note", "1", "what the row lacks, and why", texts_of_rows(&Estimate::note));
+}
+
+std::string adjust_together(std::vector<Table>& tables) {
+  std::vector<double> all;
+  for (Table& table : tables)
+    if (const Column* p = with_meaning(table, kPMeaning)) {
+      const auto& own = std::get<std::vector<double>>(p->values);
+      all.insert(all.end(), own.begin(), own.end());
+    }
+  const std::int64_t tests = tests_among(all);
+  if (tests == 0) return {};
+  const std::vector<double> adjusted = holm_adjusted(all);
+  auto next = adjusted.begin();
+  std::int64_t most = 0;  // pairs of the row with the most of them
+  for (Table& table : tables)
+    if (Column* column = with_meaning(table, kAdjustedMeaning)) {
+      auto& values = std::get<std::vector<double>>(column->values);
+      const auto end = next + static_cast<std::ptrdiff_t>(values.size());
+      values.assign(next, end), next = end;
+      for (const Column& counts : table.columns)
+        if (const auto* pairs = std::get_if<std::vector<std::int32_t>>(&counts.values);
+            pairs && counts.name.starts_with("runs"))
+          for (const std::int32_t n : *pairs) most = std::max<std::int64_t>(most, n);
+    }
+  std::string text = "adjusted_p: after Holm, over all " + std::to_string(tests) + " tests of this answer. ";
+  const std::int64_t needed = pairs_for_family(tests);
+  if (most < needed)
+    text += "That many tests need at least " + std::to_string(needed) +
+            " pairs in a row, or none can have an adjusted p of 0.05. ";
+  return text;
+}
+
+Table sweep_means(const SweepResult& result, const std::string& measure, const std::vector<std::size_t>& by,
+                  const CellStreams& streams) {
+  const std::vector<double>& values = result.measure(measure);
+  const Column& column = measure_column(result, measure);
+  const std::vector<CellGroup> groups = cell_groups(result, by);
+  std::vector<Estimate> estimates;
+  for (const CellGroup& group : groups) {
+    const bool by_replicate = streams.share_replicates(group.cells);
+    const ValueClusters row(clusters_of(result, streams, group.cells, by_replicate), by_replicate,
+                            [&](std::size_t run) { return values[run]; });
+    Estimate e = row.clusters.empty() ? Estimate{}
+                 : row.are_fixed      ? exact_estimate(row)
+                 : is_event(column)   ? fraction_estimate(row)
+                                      : mean_estimate(row);
+    note_clusters(e, row, equal_runs_note(result, streams, group.cells), "runs");
+    note_unknown(e, row.runs, is_event(column));
+    estimates.push_back(std::move(e));
+  }
+  Table table{"mean_" + measure, "mean of " + measure, axes_of(result, by, groups)};
+  add_estimates(table, estimates,
+                {column.units, (is_event(column) ? "fraction: " : "mean: ") + column.long_name,
+                 "number of independent runs; those that share random numbers count as one"},
+                noted_runs(result, groups));
   return table;
 }
 
 Table sweep_differences(const SweepResult& result, const std::string& measure, std::size_t between,
-                        const TableAxes& axes) {
-  const std::vector<double> values = finished_values(result, measure);
+                        const std::vector<std::size_t>& by, const CellStreams& streams) {
+  const std::vector<double>& values = result.measure(measure);
   const Column& column = measure_column(result, measure);
-  std::vector<std::size_t> kept = axes.by;
+  std::vector<std::size_t> kept = by;
   kept.push_back(between);
   std::vector<CellGroup> groups = cell_groups(result, kept);
   std::erase_if(groups, [](const CellGroup& group) { return group.indices.back() == 0; });
-  const std::vector<std::size_t> shared = pooled(axes.common_noise, kept);
-  const auto differences_of = [&](std::size_t cell) {
-    const std::size_t first = moved(result, cell, between, 0);
-    std::vector<double> differences;
-    for (int replicate = 0; replicate < result.replicates; ++replicate)
-      differences.push_back(values[result.run(cell, replicate)] - values[result.run(first, replicate)]);
-    return differences;
+  CellStreams of_pairs = streams;  // a pair draws what its two runs draw
+  for (std::size_t cell = 0; cell < of_pairs.draws.size(); ++cell) {
+    const RandomStreams first = streams.draws[moved(result, cell, between, 0)];
+    of_pairs.draws[cell].of_cell |= first.of_cell, of_pairs.draws[cell].of_replicate |= first.of_replicate;
+  }
+  const auto partner = [&](std::size_t run) {
+    return result.run(moved(result, result.cell_of(run), between, 0), result.replicate_of(run));
   };
-  std::vector<MeanDifference> means;
-  std::vector<double> p;
+  std::vector<Estimate> estimates;
   for (const CellGroup& group : groups) {
-    const IndependentValues all = independent(result, group, shared, differences_of);
-    const Difference difference = is_event(column) && !all.is_merged ? difference_of_events(all.cells)
-                                                                     : difference_of_numbers(all.cells);
-    means.push_back(difference.mean), p.push_back(difference.p);
+    const bool by_replicate = of_pairs.share_replicates(group.cells);
+    std::vector<RunCluster> clusters = clusters_of(result, of_pairs, group.cells, by_replicate);
+    for (RunCluster& cluster : clusters)
+      std::erase_if(cluster.runs,
+                    [&](std::size_t run) { return result.state[partner(run)] != RunState::done; });
+    std::erase_if(clusters, [](const RunCluster& cluster) { return cluster.runs.empty(); });
+    const ValueClusters row(std::move(clusters), by_replicate,
+                            [&](std::size_t run) { return values[run] - values[partner(run)]; });
+    Estimate e = pair_estimate(row, is_event(column), [&](std::size_t run) {
+      return OutcomePair{values[partner(run)], values[run]};
+    });
+    note_clusters(e, row, equal_runs_note(result, of_pairs, group.cells), "pairs");
+    note_unknown(e, row.runs, is_event(column));
+    estimates.push_back(std::move(e));
   }
   Table table{"difference_" + measure,
               "difference of " + measure + " from the first value of " + result.axes[between].name,
               axes_of(result, kept, groups)};
-  add_mean_columns(table, means, column.units, "mean difference: " + column.long_name, "pairs");
-  table.add("p", "1", "p value of the null hypothesis that there is no difference", p);
-  table.add("adjusted_p", "1", "p value after Holm's adjustment over the rows", adjusted(p));
+  add_estimates(table, estimates,
+                {column.units, "mean difference: " + column.long_name,
+                 "number of independent pairs; those that share random numbers count as one", true},
+                noted_runs(result, groups));
   return table;
 }
 

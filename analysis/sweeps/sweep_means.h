@@ -1,41 +1,56 @@
 // Means of the measures of a sweep and differences between the values of one of its axes, with 95 %
-// intervals.
+// intervals: the rows of tables of estimates.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "analysis/statistics/paired_test.h"
+#include "analysis/statistics/estimate.h"
+#include "analysis/sweeps/cell_groups.h"
+#include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
 
-// The axes of a table. Those with common noise have the same noise at all their values, so that their runs
-// are not independent: where they are pooled, the runs of one replicate count as one, with their mean.
-struct TableAxes {
-  std::vector<std::size_t> by;            // increasing
-  std::vector<std::size_t> common_noise;  // increasing
-};
-
-// Returns a table with a row for each combination of the axes `by`: their values, `mean`, `low`, `high` and
-// `runs`. Runs that are not finished or whose measure is NaN are left out. The interval is Wilson's if the
-// measure is an event (is_event()) and no common noise is pooled. Else it is that of student_mean() with a
-// group for each cell; it is NaN if no group has two numbers.
-Table sweep_means(const SweepResult& result, const std::string& measure, const TableAxes& axes);
+// Returns a table with a row for each combination of the axes `by` (increasing): their values, and the
+// columns of add_estimates(). Runs that are not finished are left out. Runs that share random numbers count
+// as one, with their mean (clusters_of()); fixed cells count once. An event (is_event()) has the fraction of
+// estimated_fraction(), another measure the mean of estimated_mean() with a stratum for each noise cell, or
+// one stratum if runs are taken together by replicate. streams: of the sweep's cells. pre: the result is
+// whole.
+Table sweep_means(const SweepResult& result, const std::string& measure, const std::vector<std::size_t>& by,
+                  const CellStreams& streams);
 
 // Returns a table of the differences of the measure at each value of the axis `between` from that at its
-// first value. It has a row for each such value and each combination of the axes `by`: the values, `mean`,
-// `low`, `high`, `pairs`, `p` and `adjusted_p`. A pair is two finished runs of one replicate whose cells
-// differ on the axis `between` only; with common noise they differ in nothing else. If the measure is an
-// event and no common noise is pooled, the interval is that of paired_difference_interval() and p that of
-// sign_test(). Else they are those of student_mean(), with all pairs of the row as one group, and
-// mean_test(). adjusted_p: after Holm, over the rows with pairs; both are NaN in the others. pre: `by` does
-// not contain `between`.
+// first value. It has a row for each such value and each combination of the axes `by`: the values, and the
+// columns of add_estimates() with p. A pair is two finished runs of one replicate whose cells differ on the
+// axis `between` only; with common noise they differ in nothing else. Pairs that share random numbers count
+// as one. An event is compared by estimated_event_difference(), another measure by estimated_difference(). A
+// row whose cells are all fixed is exact and has no p. pre: `by` does not contain `between`.
 Table sweep_differences(const SweepResult& result, const std::string& measure, std::size_t between,
-                        const TableAxes& axes);
+                        const std::vector<std::size_t>& by, const CellStreams& streams);
 
-// Adds the columns mean, low, high and `count`, "runs" or "pairs". mean_meaning: the long name of the means.
-void add_mean_columns(Table& table, const std::vector<MeanDifference>& means, const std::string& unit,
-                      const std::string& mean_meaning, const std::string& count);
+// The meaning of the columns of a table of estimates.
+struct EstimateTexts {
+  std::string unit;
+  std::string value;       // long name of the values
+  std::string runs;        // long name of the counts
+  bool has_tests = false;  // true: there are the columns p and adjusted_p
+};
+// Adds the columns value, low, high, runs (clusters), unknown, noted_runs if `noted` is not empty, method,
+// p and adjusted_p if there are tests, and note. A column whose name an axis has is called NAME_of_answer.
+// adjusted_p: after Holm, over the rows of the table.
+void add_estimates(Table& table, const std::vector<Estimate>& estimates, const EstimateTexts& texts,
+                   const std::vector<std::int64_t>& noted);
+// The number of finished runs with a note in each group; empty if the result has no notes.
+std::vector<std::int64_t> noted_runs(const SweepResult& result, const std::vector<CellGroup>& groups);
+
+// Adjusts the p of all tables together, as one family of Holm's, and returns a sentence about it: the number
+// of tests, and how many pairs are needed if that many can never reach 0.05. Empty without a test.
+std::string adjust_together(std::vector<Table>& tables);
+
+// Adds a note on unknown runs to an estimate: for an event if they are more than 5 % of `runs`, for a mean
+// always, because it leaves them out.
+void note_unknown(Estimate& estimate, std::int64_t runs, bool is_event);
 
 }  // namespace remote_touch

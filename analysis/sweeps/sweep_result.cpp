@@ -1,6 +1,7 @@
 #include "analysis/sweeps/sweep_result.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -116,15 +117,15 @@ SweepResult without_others(SweepResult result) {
   return part;
 }
 
-Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell, double above) {
-  Tally tally;
+EventCounts event_counts(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
+                         double above) {
+  EventCounts counts;
   for (int replicate = 0; replicate < result.replicates; ++replicate) {
     const std::size_t run = result.run(cell, replicate);
     if (result.state[run] != RunState::done) continue;
-    ++tally.runs;
-    tally.events += measure[run] > above ? 1 : 0;
+    ++(std::isnan(measure[run]) ? counts.unknown : measure[run] > above ? counts.events : counts.without);
   }
-  return tally;
+  return counts;
 }
 
 }  // namespace remote_touch

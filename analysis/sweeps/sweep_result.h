@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/statistics/proportion.h"
 #include "analysis/trace/column.h"
 
 namespace remote_touch {
@@ -35,7 +36,12 @@ struct SweepResult {
   // a note of the kind note_kinds[i]. It is 0 if the run is not done. Both are empty in results that were
   // stored without notes.
   std::vector<std::string> note_kinds;
-  std::vector<std::int32_t> notes;
+  std::vector<std::uint64_t> notes;
+
+  // True if a number of `notes` has bits of the first `kinds` kinds only.
+  static bool are_known_notes(std::uint64_t bits, std::size_t kinds) {
+    return kinds >= 64 || bits >> kinds == 0;
+  }
 
   // Sizes the arrays and sets every run to not_sampled. pre: axes, replicates, part, measures and note_kinds
   // are set.
@@ -82,13 +88,9 @@ SweepResult whole_of(SweepResult result);
 // unchanged.
 SweepResult without_others(SweepResult result);
 
-// Count of an event in the finished runs of a cell. pre: the result is whole.
-struct Tally {
-  int events = 0, runs = 0;
-};
-// The event happens if the measure is above the threshold. A run whose measure is NaN counts as a run without
-// the event; the note "outcome unknown" counts these runs.
-Tally tally(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
-            double above = 0.5);
+// Returns the outcomes of an event in the finished runs of a cell. The event happens if the measure is above
+// the threshold; it is unknown if the measure is NaN. pre: the result is whole.
+EventCounts event_counts(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
+                         double above = 0.5);
 
 }  // namespace remote_touch

@@ -20,7 +20,7 @@ bool is_increasing(const std::vector<std::uint64_t>& numbers) {
 }  // namespace
 
 void CellTally::add_done(const TallyLayout& layout, std::uint64_t run, std::span<const double> values,
-                         std::uint32_t note_bits) {
+                         std::uint64_t note_bits) {
   ++done;
   for (std::size_t i = 0; i < measures.size(); ++i) measures[i].add(values[i]);
   for (std::size_t kind = 0; kind < notes.size(); ++kind) count_note(notes[kind], note_bits >> kind & 1, run);

@@ -13,7 +13,7 @@ namespace remote_touch {
 // The layout that all tallies of one sweep have.
 struct TallyLayout {
   std::size_t measures = 0;    // number of measures
-  std::size_t note_kinds = 0;  // number of kinds of notes, at most 31
+  std::size_t note_kinds = 0;  // number of kinds of notes, at most 64
   std::vector<std::size_t>
       events;  // the measures whose runs are listed, increasing; empty for keep = "tally"
 };
@@ -46,7 +46,7 @@ struct CellTally {
   // Adds a run that was done. values: one for each measure; NaN if unknown. note_bits: bit i is set if the
   // run has a note of kind i. pre: the tally was made for this layout.
   void add_done(const TallyLayout& layout, std::uint64_t run, std::span<const double> values,
-                std::uint32_t note_bits);
+                std::uint64_t note_bits);
   // Adds a run that failed. It counts in no measure and has no notes.
   void add_failed(std::uint64_t run, const std::string& error);
   // pre: both tallies were made for the same layout.

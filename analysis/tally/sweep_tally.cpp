@@ -80,7 +80,7 @@ CellTally& SweepTally::tally_for(const TallyLayout& layout, std::uint64_t run) {
 }
 
 void SweepTally::add_done(const TallyLayout& layout, std::uint64_t run, std::span<const double> values,
-                          std::uint32_t note_bits) {
+                          std::uint64_t note_bits) {
   tally_for(layout, run).add_done(layout, run, values, note_bits);
 }
 

@@ -18,7 +18,7 @@ struct SweepTally {
   std::vector<Column> axes;             // one row for each value
   int replicates = 1;                   // number of runs of every cell
   std::vector<Column> measures;         // name, unit and meaning; no values
-  std::vector<std::string> note_kinds;  // names of the kinds, at most 31
+  std::vector<std::string> note_kinds;  // names of the kinds, at most 64
   bool keeps_events = false;            // keep = "events": the numbers of the runs in which an event happened
   std::vector<std::uint64_t> cells;     // the cells of which there are runs, increasing
   std::vector<CellTally> tallies;       // one for each of these cells
@@ -34,7 +34,7 @@ struct SweepTally {
   // Adds one run, see CellTally. Throws std::invalid_argument if the tally has it already, or if there is no
   // such run. layout: what layout() returns.
   void add_done(const TallyLayout& layout, std::uint64_t run, std::span<const double> values,
-                std::uint32_t note_bits);
+                std::uint64_t note_bits);
   void add_failed(const TallyLayout& layout, std::uint64_t run, const std::string& error);
 
   // Returns why the other tally cannot be added, for example "runs 12 to 15 are in both"; empty if it can.

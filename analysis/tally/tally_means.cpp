@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "analysis/statistics/limit.h"
 #include "analysis/statistics/proportion.h"
 #include "analysis/statistics/student.h"
 #include "analysis/sweeps/cell_groups.h"
 #include "analysis/sweeps/sweep_means.h"
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
@@ -18,47 +20,90 @@ const CellTally* tally_of(const SweepTally& tally, std::uint64_t cell) {
   return &tally.tallies[static_cast<std::size_t>(found - tally.cells.begin())];
 }
 
-MeanDifference share_of(const SweepTally& tally, std::size_t measure, const CellGroup& group) {
-  std::int64_t runs = 0;
-  double events = 0;
-  for (const std::size_t cell : group.cells)
-    if (const CellTally* const own = tally_of(tally, cell)) {
-      runs += own->measures[measure].values;
-      events += own->measures[measure].sum.value();
-    }
-  if (runs == 0) return student_mean_of_moments({});
-  const auto [low, high] = wilson_interval(static_cast<std::int64_t>(events), runs);
-  return {runs, events / static_cast<double>(runs), low, high};
+EventCounts counts_in(const CellTally& cell, std::size_t measure) {
+  const MeasureTally& m = cell.measures[measure];
+  const auto events = static_cast<std::int64_t>(m.sum.value());
+  return {events, m.values - events, m.unknown};
 }
 
-MeanDifference mean_of(const SweepTally& tally, std::size_t measure, const CellGroup& group) {
-  std::vector<Moments> moments;
+// The runs of a fixed cell are equal, and count as one.
+Estimate fraction_of(const SweepTally& tally, std::size_t measure, const CellGroup& group,
+                     const CellStreams& streams) {
+  EventCounts all;
+  bool are_fixed = true;
+  for (const std::size_t cell : group.cells) {
+    const EventCounts own = event_counts(tally, measure, cell);
+    all.add(RunsAtValue{0, own, streams.is_fixed(cell)}.of_one_run_if_fixed().counts);
+    are_fixed &= streams.is_fixed(cell) || own.runs() == 0;
+  }
+  Estimate e = estimated_fraction(all);
+  if (are_fixed && all.runs() > 0) e.low = e.high = Estimate{}.low, e.method = kExactMethod;
+  return e;
+}
+
+Estimate mean_of(const SweepTally& tally, std::size_t measure, const CellGroup& group,
+                 const CellStreams& streams) {
+  std::vector<StratumMoments> strata;
+  bool are_fixed = true;
   for (const std::size_t cell : group.cells)
     if (const CellTally* const own = tally_of(tally, cell)) {
       const MeasureTally& values = own->measures[measure];
-      moments.push_back({static_cast<double>(values.values), values.values > 0 ? values.mean() : 0,
-                         values.values > 1 ? values.variance() : 0, 0});
+      const bool is_fixed = streams.is_fixed(cell);
+      are_fixed &= is_fixed;
+      strata.push_back({{static_cast<double>(values.values), values.values > 0 ? values.mean() : 0,
+                         values.values > 1 ? values.variance() : 0, 0},
+                        is_fixed,
+                        is_fixed ? std::min<std::int64_t>(values.unknown, 1) : values.unknown});
     }
-  return student_mean_of_moments(moments);
+  Estimate e = estimated_mean(strata, false);
+  if (are_fixed && !strata.empty()) e.clusters += e.unknown, e.method = kExactMethod;
+  return e;
+}
+
+// The note on the fixed cells of a row, as equal_runs_note().
+std::string equal_runs(const SweepTally& tally, const CellGroup& group, const CellStreams& streams) {
+  std::int64_t runs = 0, fixed = 0;
+  for (const std::size_t cell : group.cells)
+    if (const CellTally* const own = tally_of(tally, cell); own && streams.is_fixed(cell) && own->done > 1)
+      runs += own->done, ++fixed;
+  if (fixed == 0) return {};
+  return std::to_string(runs) + " equal runs count as " + (fixed == 1 ? "one" : std::to_string(fixed));
 }
 
 }  // namespace
 
-Tally event_count(const SweepTally& tally, std::size_t measure, std::uint64_t cell) {
+EventCounts event_counts(const SweepTally& tally, std::size_t measure, std::uint64_t cell) {
   const CellTally* const own = tally_of(tally, cell);
-  if (!own) return {};
-  return {static_cast<int>(own->measures[measure].sum.value()), static_cast<int>(own->done)};
+  return own ? counts_in(*own, measure) : EventCounts{};
 }
 
 Table tally_means(const SweepTally& tally, const SweepResult& outline, std::size_t measure,
-                  const std::vector<std::size_t>& by) {
+                  const std::vector<std::size_t>& by, const CellStreams& streams) {
   const Column& column = tally.measures[measure];
   const std::vector<CellGroup> groups = cell_groups(outline, by);
-  std::vector<MeanDifference> means;
-  for (const CellGroup& group : groups)
-    means.push_back(is_event(column) ? share_of(tally, measure, group) : mean_of(tally, measure, group));
+  std::vector<Estimate> estimates;
+  for (const CellGroup& group : groups) {
+    if (!streams.are_independent(group.cells))
+      throw InputError("by",
+                       "a tally does not know which runs of pooled cells share random numbers: expected "
+                       "all axes, or a sweep with \"keep\": \"runs\"");
+    Estimate e = is_event(column) ? fraction_of(tally, measure, group, streams)
+                                  : mean_of(tally, measure, group, streams);
+    std::int64_t runs = 0;
+    for (const std::size_t cell : group.cells)
+      if (const CellTally* const own = tally_of(tally, cell)) {
+        const std::int64_t of_cell = own->measures[measure].values + own->measures[measure].unknown;
+        runs += streams.is_fixed(cell) ? std::min<std::int64_t>(of_cell, 1) : of_cell;
+      }
+    if (const std::string equal = equal_runs(tally, group, streams); !equal.empty()) e.add_note(equal);
+    note_unknown(e, runs, is_event(column));
+    estimates.push_back(std::move(e));
+  }
   Table table{"mean_" + column.name, "mean of " + column.name, axes_of(outline, by, groups)};
-  add_mean_columns(table, means, column.units, "mean: " + column.long_name, "runs");
+  add_estimates(table, estimates,
+                {column.units, (is_event(column) ? "fraction: " : "mean: ") + column.long_name,
+                 "number of independent runs"},
+                {});
   return table;
 }
 

@@ -24,7 +24,8 @@ struct Sums {
   double mean() const { return sum / static_cast<double>(count); }
   double variance() const {
     const double n = static_cast<double>(count);
-    return n > 1 ? std::max(0.0, (squares - sum * sum / n) / (n - 1)) : kNotKnown;
+    const double value = n > 1 ? (squares - sum * sum / n) / (n - 1) : kNotKnown;
+    return value < 0 ? 0 : value;  // NaN stays NaN
   }
   double deviation() const { return std::sqrt(variance()); }
 };

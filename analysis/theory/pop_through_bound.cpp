@@ -15,7 +15,8 @@ double critical_acceleration(const Lift& lift) {
 double bound_acceleration(const Lift& lift, double thickness_m, double normal_error) {
   const double f = lift.frame_rate_hz;
   const double gap_m = lift.r1_m + thickness_m - lift.start_velocity_m_per_s * normal_error / f;
-  return std::max(0.0, gap_m * f * f / (1 + (lift.updates - 1) * normal_error));
+  const double bound = gap_m * f * f / (1 + (lift.updates - 1) * normal_error);
+  return bound < 0 ? 0 : bound;  // NaN stays NaN
 }
 
 double PrintedFit::at(double sigma_m) const {

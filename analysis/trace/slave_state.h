@@ -15,6 +15,14 @@ struct SlaveToolState {
   Vec3 torque_Nm = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
+// Energies of the channel between hand and slave since the start of a run, J. None of them falls. in - out of
+// both ends is the energy in the channel; it is negative if the channel has given more than it received.
+struct ChannelEnergy {
+  double hand_in_J = 0, hand_out_J = 0;    // entered and left at the hand
+  double slave_in_J = 0, slave_out_J = 0;  // entered and left at the slave
+  double dissipated_J = 0;                 // kept from leaving by passivity control, not part of the balance
+};
+
 // The slave of a run with teleoperation, world frame, and the packets that were sent to it and by it.
 struct SlaveState {
   Vec3 command_W = Vec3::Zero();   // position to which the command that it has received last sends it
@@ -24,7 +32,8 @@ struct SlaveState {
   double clearance_m = 0;          // distance of ball or tool from the true surface, negative behind it
   // Packets so far: commands and forces that were sent, and frames that have arrived.
   std::int32_t command_packets = 0, force_packets = 0, frame_packets = 0;
-  std::optional<SlaveToolState> tool;  // present in all ticks of a run whose slave has a tool
+  std::optional<ChannelEnergy> energy;  // present in all ticks of a run whose hand is to feel the slave
+  std::optional<SlaveToolState> tool;   // present in all ticks of a run whose slave has a tool
 };
 
 }  // namespace remote_touch

@@ -26,6 +26,7 @@ bool has(const TraceTick& tick, TracePart part) {
          (part == TracePart::measured_surface && tick.truth.measured_distance_m) ||
          (part == TracePart::rounded_hand && tick.hand && tick.hand->true_pose) ||
          (part == TracePart::slave && tick.slave) ||
+         (part == TracePart::channel_energy && tick.slave && tick.slave->energy) ||
          (part == TracePart::slave_tool && tick.slave && tick.slave->tool);
 }
 
@@ -36,6 +37,7 @@ bool has(const Trace& trace, TracePart part) {
          (part == TracePart::measured_surface && trace.has_measured_surface()) ||
          (part == TracePart::rounded_hand && trace.has_rounded_hand()) ||
          (part == TracePart::slave && trace.has_slave()) ||
+         (part == TracePart::channel_energy && trace.has_channel_energy()) ||
          (part == TracePart::slave_tool && trace.has_slave_tool());
 }
 

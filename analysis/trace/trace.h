@@ -51,6 +51,7 @@ struct Trace {
   bool has_hand() const { return !intended_position_m.empty(); }
   bool has_rounded_hand() const { return !hand_position_m.empty(); }
   bool has_slave() const { return !slave_position_m.empty(); }
+  bool has_channel_energy() const { return !hand_energy_in_J.empty(); }
   bool has_slave_tool() const { return !slave_orientation.empty(); }
   bool has_replay() const { return !expected_force_N.empty(); }
   bool has_measured_surface() const { return !measured_distance_m.empty(); }
@@ -80,7 +81,7 @@ struct Trace {
 // The runs that have a column: all, those with a 6-DOF tool, those with guidance or a sequence, those with a
 // simulated operator or device, those that replay a contact whose force is known, those with a measured
 // surface beside the true one, those whose device rounds the pose of the hand, those with a slave, those
-// whose slave has a tool.
+// whose hand is to feel the slave, those whose slave has a tool.
 enum class TracePart {
   always,
   tool,
@@ -90,6 +91,7 @@ enum class TracePart {
   measured_surface,
   rounded_hand,
   slave,
+  channel_energy,
   slave_tool
 };
 

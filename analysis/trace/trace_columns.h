@@ -130,6 +130,17 @@ TRACE_COLUMN(force_packets, std::int32_t, "force_packets", "1", slave, t.slave->
              "number of forces that the slave has sent so far")
 TRACE_COLUMN(frame_packets, std::int32_t, "frame_packets", "1", slave, t.slave->frame_packets,
              "number of frames that have arrived from the camera of the slave so far")
+TRACE_COLUMN(hand_energy_in_J, double, "hand_energy_in", "J", channel_energy, t.slave->energy->hand_in_J,
+             "energy that has entered the channel to the slave at the hand so far")
+TRACE_COLUMN(hand_energy_out_J, double, "hand_energy_out", "J", channel_energy, t.slave->energy->hand_out_J,
+             "energy that has left this channel at the hand so far")
+TRACE_COLUMN(slave_energy_in_J, double, "slave_energy_in", "J", channel_energy, t.slave->energy->slave_in_J,
+             "energy that has entered this channel at the slave so far")
+TRACE_COLUMN(slave_energy_out_J, double, "slave_energy_out", "J", channel_energy,
+             t.slave->energy->slave_out_J, "energy that has left this channel at the slave so far")
+TRACE_COLUMN(dissipated_energy_J, double, "dissipated_energy", "J", channel_energy,
+             t.slave->energy->dissipated_J,
+             "energy that passivity control has kept from leaving this channel so far")
 TRACE_COLUMN(slave_orientation, Eigen::Quaterniond, "slave_orientation", "1", slave_tool,
              t.slave->tool->orientation_W, "orientation of the slave's tool, quaternion w x y z")
 TRACE_COLUMN(slave_torque_Nm, Vec3, "slave_torque", "N m", slave_tool, t.slave->tool->torque_Nm,

@@ -4,20 +4,48 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
+#include "core/mesh/mesh_sides.h"
 #include "core/mesh/welded_mesh.h"
 
 namespace remote_touch {
 
-namespace {
+// The surface that is measured, and the whole mesh for its winding number if faces cross.
+struct MeshDistance::Surface {
+  TriangleMesh mesh;
+  bool is_closed = false, has_inverted_part = false;
+  std::vector<char> is_doubtful;
+  std::shared_ptr<const TriangleTree> winding;
+};
 
-TriangleMesh with_area(const TriangleMesh& mesh) {
-  TriangleMesh welded = welded_mesh(mesh);
+MeshDistance::Surface MeshDistance::surface_of(const TriangleMesh& mesh) {
+  Surface surface;
+  surface.mesh = welded_mesh(mesh);
+  TriangleMesh& welded = surface.mesh;
   if (welded.triangles.empty()) throw std::invalid_argument("MeshDistance: no triangle has an area");
-  return welded;
+  surface.is_closed = is_closed_surface(welded);
+  if (!surface.is_closed) return surface;
+  const std::vector<FaceSide> sides = face_sides(welded);
+  const auto have = [&](FaceSide side) { return std::find(sides.begin(), sides.end(), side) != sides.end(); };
+  surface.has_inverted_part = has_inverted_part_in(welded, sides);
+  std::vector<char> at_crossed(welded.vertices.size(), 0);
+  if (have(FaceSide::crossed)) surface.winding = std::make_shared<const TriangleTree>(welded);
+  for (std::size_t f = 0; f < sides.size(); ++f)
+    if (sides[f] == FaceSide::crossed || sides[f] == FaceSide::inverted)
+      for (const int corner : welded.triangles[f]) at_crossed[corner] = 1;
+  std::vector<std::array<int, 3>> kept;
+  for (std::size_t f = 0; f < sides.size(); ++f) {
+    const auto& triangle = welded.triangles[f];
+    if (sides[f] == FaceSide::inner) continue;
+    kept.push_back(triangle);
+    surface.is_doubtful.push_back(
+        std::any_of(triangle.begin(), triangle.end(), [&](int corner) { return at_crossed[corner] != 0; }));
+  }
+  welded.triangles = std::move(kept);
+  leave_out_unused_vertices(welded);
+  return surface;
 }
-
-}  // namespace
 
 // The point of a face that is nearest to a position, and the part of the face that contains it.
 struct MeshDistance::OnFace {
@@ -35,11 +63,16 @@ struct MeshDistance::OnFace {
   }
 };
 
-MeshDistance::MeshDistance(const TriangleMesh& mesh)
-    : mesh_(with_area(mesh)),
+MeshDistance::MeshDistance(const TriangleMesh& mesh) : MeshDistance(surface_of(mesh)) {}
+
+MeshDistance::MeshDistance(Surface surface)
+    : mesh_(std::move(surface.mesh)),
       normals_(pseudonormals(mesh_)),
       tree_(mesh_),
-      is_closed_(std::count(normals_.edge_on_border.begin(), normals_.edge_on_border.end(), 1) == 0) {}
+      is_closed_(surface.is_closed),
+      has_inverted_part_(surface.has_inverted_part),
+      is_doubtful_(std::move(surface.is_doubtful)),
+      winding_(std::move(surface.winding)) {}
 
 // Each side has a plane that contains it and is normal to the face. If p is beyond the planes of some sides,
 // the nearest point is on one of these sides, because it can be seen from the foot of p in the plane of the
@@ -85,8 +118,18 @@ NearestOnMesh MeshDistance::with_normal(const OnFace& nearest, const Vec3& p) co
     result.normal = normals_.of_vertex[vertex];
     result.on_border = normals_.vertex_on_border[vertex] != 0;
   }
+  if (is_closed_) result.on_border = false;  // faces inside of the solid are left out beside others
   const double distance_m = std::sqrt(nearest.squared_m2);
-  result.distance_m = (p - nearest.point).dot(result.normal) >= 0 ? distance_m : -distance_m;
+  bool is_inside = (p - nearest.point).dot(result.normal) < 0;
+  if (winding_ && is_doubtful_[nearest.face] != 0) {
+    const double turns = winding_->winding_number(p);
+    // The number is about 1/2 on a face, and says nothing there.
+    if (std::abs(turns - 0.5) > 0.1 && (turns > 0.5) != is_inside) {
+      is_inside = !is_inside;
+      result.normal = -result.normal;
+    }
+  }
+  result.distance_m = is_inside ? -distance_m : distance_m;
   return result;
 }
 

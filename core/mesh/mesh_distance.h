@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/mesh/face_tree.h"
 #include "core/mesh/pseudonormals.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/mesh/triangle_tree.h"
 
 namespace remote_touch {
 
@@ -21,10 +23,15 @@ struct NearestOnMesh {
   bool on_border = false;
 };
 
-// A surface of triangles at rest, in its own frame. Its corners run counter-clockwise seen from outside, and
-// it does not intersect itself; parts may touch at vertices and edges. Then the sign is right wherever the
-// nearest point is not on a border, so a surface without a border has the right sign everywhere. Vertices at
-// the same position count as one.
+// A surface of triangles at rest, in its own frame. Its corners run counter-clockwise seen from outside.
+// Vertices at the same position count as one.
+//
+// A closed surface bounds the solid of mesh_sides.h: all positions around which the whole mesh winds once or
+// more. Its sign is right everywhere. Parts may touch, lie in each other and cross: faces with the solid on
+// both sides are left out, unless other faces cross them. Near faces that are crossed the sign is that of the
+// winding number, and the distance is that to the nearest face, which inside of the solid may lie in the
+// solid, too. Elsewhere, and for a surface with a border, the sign is that of the normal; it is right
+// wherever the nearest point is not on the border if the surface does not cross itself.
 class MeshDistance {
  public:
   // pre: check_mesh(mesh).readable(), coordinates below 1e15 m. Triangles without area are left out, as by
@@ -41,20 +48,29 @@ class MeshDistance {
   // run along every edge in one direction as in the other; unlike for check_mesh(), they may be more than
   // two.
   bool is_closed() const { return is_closed_; }
+  // True if a part of a closed surface has the solid on neither side: its triangles run clockwise.
+  bool has_inverted_part() const { return has_inverted_part_; }
+  // True if faces of a closed surface cross each other.
+  bool crosses_itself() const { return winding_ != nullptr; }
 
-  // The surface that is measured: welded_mesh() of the mesh.
+  // The surface that is measured: welded_mesh() of the mesh, without faces inside of its solid.
   const std::vector<Vec3>& vertices() const { return mesh_.vertices; }
   const std::vector<std::array<int, 3>>& triangles() const { return mesh_.triangles; }
 
  private:
   struct OnFace;
+  struct Surface;
+  explicit MeshDistance(Surface surface);
+  static Surface surface_of(const TriangleMesh& mesh);
   OnFace nearest_on_face(int face, const Vec3& p) const;
   NearestOnMesh with_normal(const OnFace& nearest, const Vec3& p) const;
 
   TriangleMesh mesh_;
   Pseudonormals normals_;
   FaceTree tree_;
-  bool is_closed_;
+  bool is_closed_, has_inverted_part_;
+  std::vector<char> is_doubtful_;  // faces whose normals may give the wrong sign: crossed ones, neighbours
+  std::shared_ptr<const TriangleTree> winding_;  // null: no face is crossed
 };
 
 }  // namespace remote_touch

@@ -40,14 +40,38 @@ bool is_line(const std::vector<Vec3>& corners) {
   return max_area <= 1e-10 * max_length;
 }
 
-// Projects the polygon so that it runs counter-clockwise. The projection drops one coordinate and computes
-// none, because rounding would bend straight edges.
+// True if the loops of a polygon that crosses itself cancel each other: the area vector is rounding.
+bool has_no_normal(const std::vector<Vec3>& corners, const Vec3& area) {
+  double max_length = 0;
+  for (const Vec3& corner : corners) max_length = std::max(max_length, (corner - corners[0]).squaredNorm());
+  return area.norm() <= 1e-10 * max_length;
+}
+
+// True if the corners are in one plane, up to the rounding of single precision.
+bool is_flat(const std::vector<Vec3>& corners, const Vec3& unit_normal) {
+  double max_height = 0, max_length = 0;
+  for (const Vec3& corner : corners) {
+    max_height = std::max(max_height, std::abs((corner - corners[0]).dot(unit_normal)));
+    max_length = std::max(max_length, (corner - corners[0]).norm());
+  }
+  return max_height <= 1e-6 * max_length;
+}
+
+// Projects the polygon so that it runs counter-clockwise: along its normal, so that the result does not
+// depend on the axes of the file. In a plane any direction shows the same polygon. There the projection drops
+// one coordinate and computes none, because rounding would bend straight edges.
 std::vector<Vec2> seen_flat(const std::vector<Vec3>& corners, const Vec3& normal) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   const double sign = normal[axis] < 0 ? -1 : 1;
+  Vec3 x = Vec3::Unit((axis + 1) % 3), y = sign * Vec3::Unit((axis + 2) % 3);
+  const Vec3 unit_normal = normal.normalized();
+  if (!is_flat(corners, unit_normal)) {
+    x = (x - x.dot(unit_normal) * unit_normal).normalized();
+    y = unit_normal.cross(x);
+  }
   std::vector<Vec2> flat;
-  for (const Vec3& corner : corners) flat.emplace_back(corner[(axis + 1) % 3], sign * corner[(axis + 2) % 3]);
+  for (const Vec3& corner : corners) flat.emplace_back(x.dot(corner), y.dot(corner));
   return flat;
 }
 
@@ -121,7 +145,9 @@ bool have_area_of_polygon(const Triangles& triangles, const std::vector<Vec2>& a
 
 std::optional<std::vector<std::array<int, 3>>> polygon_triangles(const std::vector<Vec3>& corners) {
   if (is_line(corners)) return fan(corners.size());
-  const std::vector<Vec2> at = seen_flat(corners, area_vector(corners));
+  const Vec3 area = area_vector(corners);
+  if (has_no_normal(corners, area)) return {};
+  const std::vector<Vec2> at = seen_flat(corners, area);
   if (has_fan(at)) return fan(corners.size());
   if (!is_simple(at)) return {};
   std::optional<Triangles> triangles = ears(at);

@@ -153,6 +153,8 @@ void leave_out_small_fins(TriangleMesh& mesh) {
   for (const int fin : fins) mesh.triangles.erase(mesh.triangles.begin() + fin);
 }
 
+}  // namespace
+
 void leave_out_unused_vertices(TriangleMesh& mesh) {
   std::vector<int> now(mesh.vertices.size(), -1);
   for (const Triangle& triangle : mesh.triangles)
@@ -167,8 +169,6 @@ void leave_out_unused_vertices(TriangleMesh& mesh) {
   for (Triangle& triangle : mesh.triangles)
     for (int& corner : triangle) corner = now[corner];
 }
-
-}  // namespace
 
 TriangleMesh welded_mesh(const TriangleMesh& mesh) {
   TriangleMesh welded = mesh;

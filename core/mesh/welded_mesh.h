@@ -20,4 +20,7 @@ namespace remote_touch {
 // pre: check_mesh(mesh).readable(). The result has no triangles if none has an area.
 TriangleMesh welded_mesh(const TriangleMesh& mesh);
 
+// Vertices and triangles keep their order.
+void leave_out_unused_vertices(TriangleMesh& mesh);
+
 }  // namespace remote_touch

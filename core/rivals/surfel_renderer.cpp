@@ -1,7 +1,7 @@
 #include "core/rivals/surfel_renderer.h"
 
 #include <algorithm>
-#include <vector>
+#include <limits>
 
 #include "core/rivals/exact_sum.h"
 
@@ -17,20 +17,6 @@ constexpr double kRadiusInSpacings = 3, kRadiusWithoutSpacing_m = 0.01;
 // none.
 constexpr double kCheckStride = 0.125, kMaxSlide = 0.5, kMaxProjection = 0.5, kSurfelRest = 1e-9;
 constexpr int kMaxChecks = 64;
-
-PointCloud joined(const std::deque<std::shared_ptr<const NeighbourSearch>>& frames, const Kernels& kernels) {
-  PointCloud all, buffer;
-  for (const auto& frame : frames) {
-    const PointCloud& cloud = frame->every_point(kernels, buffer);
-    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(all.x, cloud.x), append(all.y, cloud.y), append(all.z, cloud.z);
-    append(all.stiffness_N_per_m, cloud.stiffness_N_per_m);
-  }
-  if (all.stiffness_N_per_m.size() != all.size()) all.stiffness_N_per_m.clear();
-  return all;
-}
 
 }  // namespace
 
@@ -61,27 +47,58 @@ std::string validate(const SurfelParameters& p) {
 SurfelRenderer::SurfelRenderer(const SurfelParameters& parameters, double, const Kernels& kernels)
     : RivalRenderer(kRadiusWithoutSpacing_m, parameters.stiffness_N_per_m, kernels),
       p_(parameters),
-      radius_m_(parameters.support_radius_m),
-      normals_(parameters.normal_neighbours, kernels) {}
+      radius_m_(parameters.support_radius_m) {
+  for (int frame = 0; frame < p_.fused_frames; ++frame)
+    frames_.push_back({nullptr, PointNormals(p_.normal_neighbours, kernels)});
+}
 
 void SurfelRenderer::reserve(std::size_t points) {
   RivalRenderer::reserve(points);
-  normals_.reserve(points);
+  for (FusedFrame& frame : frames_) frame.normals.reserve(points);
   gathered_normals_.grow(points + kLanes);
 }
 
 std::shared_ptr<const NeighbourSearch> SurfelRenderer::shown(const Frame& frame) {
-  if (p_.fused_frames == 1) return frame.points;
-  latest_.push_back(frame.points);
-  if (latest_.size() > static_cast<std::size_t>(p_.fused_frames)) latest_.pop_front();
-  return make_search(joined(latest_, kernels_));
+  newest_ = (newest_ + 1) % frames_.size();
+  FusedFrame& newest = frames_[newest_];
+  newest.points = frame.points;
+  newest.normals.set_points(*frame.points, view_point(*frame.points, p_.view_direction));
+  return frames_.size() == 1 ? frame.points : make_search(joined());
+}
+
+// Joins the points of the frames, each in the order of every_point(). The normals must be those of each frame
+// by itself: the joined cloud has no camera, and repeated points have no plane.
+PointCloud SurfelRenderer::joined() {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  PointCloud all;
+  const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (FusedFrame& frame : frames_) {
+    frame.first = all.size();
+    if (!frame.points) continue;
+    const PointCloud& cloud = frame.points->every_point(kernels_, buffer_);
+    append(all.x, cloud.x), append(all.y, cloud.y), append(all.z, cloud.z);
+    if (cloud.stiffness_N_per_m.empty() && all.stiffness_N_per_m.empty()) continue;
+    all.stiffness_N_per_m.resize(frame.first, kNone);
+    append(all.stiffness_N_per_m, cloud.stiffness_N_per_m);
+    all.stiffness_N_per_m.resize(all.size(), kNone);
+  }
+  return all;
+}
+
+// Returns the normal of a point of the joined cloud, or of the newest frame if only that one is shown.
+Vec3 SurfelRenderer::normal_of(std::uint32_t number, const Vec3& x_W) {
+  std::size_t frame = frames_.size() - 1;
+  while (number < frames_[frame].first) --frame;
+  return frames_[frame].normals.of(number - static_cast<std::uint32_t>(frames_[frame].first), x_W);
 }
 
 bool SurfelRenderer::set_points(const NeighbourSearch& points) {
-  normals_.set_points(points, view_point(points, p_.view_direction));
   gathered_normals_.grow(points.size() + kLanes);
   if (radius_m_ == 0 && points.size() > 0) {
-    radius_m_ = kRadiusInSpacings * mean_spacing_m(points, normals_.nearest(), kernels_, buffer_);
+    radius_m_ =
+        kRadiusInSpacings * mean_spacing_m(points, frames_[newest_].normals.nearest(), kernels_, buffer_);
     if (radius_m_ == 0) radius_m_ = kRadiusWithoutSpacing_m;
   }
   return true;
@@ -94,7 +111,7 @@ SurfaceSample SurfelRenderer::sample(const Vec3& p_W) {
   PointsView points = near.view();
   points.radius = nullptr;
   for (std::size_t i = 0; i < near.size(); ++i)
-    gathered_normals_[i] = normals_.of(near.index()[i], {points.x[i], points.y[i], points.z[i]});
+    gathered_normals_[i] = normal_of(near.index()[i], {points.x[i], points.y[i], points.z[i]});
   const PointSurface surface(SurfaceKind::surfels, p_.weight, radius_m_, 1);
   return surface.oriented(points, gathered_normals_.data(), sum_grid_for(near.size()), p_W);
 }

@@ -1,7 +1,8 @@
 // The surfels of A. Leeper, S. Chan, K. Salisbury, ICRA 2012, [84] of the dissertation, after a description
 // of the authors' program (README.md of this folder says what is known of it). Every point has its own
-// normal, turned towards the sensor. The surface is f = n . (p - a) = 0 with the weighted means a of the
-// points and n of their normals within R. So f < 0 is behind the surface, from whichever side the proxy came.
+// normal, from the points of its frame, turned towards the sensor of that frame. The surface is f = n . (p -
+// a) = 0 with the weighted means a of the points and n of their normals within R. So f < 0 is behind the
+// surface, from whichever side the proxy came.
 //
 //   free      the proxy is the HIP, or follows it if its path needs more checks than a tick makes. Contact
 //             begins if f < 0 at a checked position (every R/8) on the path of the HIP since the last tick,
@@ -18,8 +19,8 @@
 // is entrenched if f < 0 at the end of a tick.
 #pragma once
 
-#include <deque>
 #include <string>
+#include <vector>
 
 #include "core/parameters/parameter.h"
 #include "core/rivals/point_normals.h"
@@ -61,6 +62,8 @@ class SurfelRenderer final : public RivalRenderer {
   void touch(const Vec3& hip_W, RenderOutput& out) override;
   void reset_motion() override { is_held_ = false; }
 
+  PointCloud joined();
+  Vec3 normal_of(std::uint32_t number, const Vec3& x_W);
   SurfaceSample sample(const Vec3& p_W);
   void approach(const Vec3& hip_W);
   void follow(const Vec3& hip_W);
@@ -69,10 +72,16 @@ class SurfelRenderer final : public RivalRenderer {
 
   SurfelParameters p_;
   double radius_m_;  // R; 0 until it is known
-  PointNormals normals_;
+  // One of the newest frames, which are joined. Its normals come from its own points and its own sensor.
+  struct FusedFrame {
+    std::shared_ptr<const NeighbourSearch> points;  // null before the frame came
+    PointNormals normals;
+    std::size_t first = 0;  // number of its first point in the joined cloud
+  };
+  std::vector<FusedFrame> frames_;
+  std::size_t newest_ = 0;
   PointCloud buffer_;
   Buffer<Vec3> gathered_normals_;
-  std::deque<std::shared_ptr<const NeighbourSearch>> latest_;  // frames that are fused, the newest last
   bool is_held_ = false;
   double depth_m_ = 0;  // depth of the held proxy behind the surface
   int samples_ = 0;     // evaluations of f in this tick

@@ -37,6 +37,25 @@ std::string validate(const DeadBandSettings& s) {
   return "weber_fraction = " + std::to_string(s.weber_fraction) + ": expected less than 1";
 }
 
+std::optional<double> longest_silence_s(const DeadBandSettings& s) {
+  if (s.weber_fraction == 0 && s.least == 0) return 0;
+  return s.longest_silence_s > 0 ? std::optional(s.longest_silence_s) : std::nullopt;
+}
+
+Parameters parameters(HoldSettings& s) {
+  return {
+      {"hold_s", &s.hold_s, 0, 10,
+       "a force of the slave is held for this long after a packet with the next one was due, and then fades, so that lost packets leave no force; a dead-band without longest_silence_s never makes a packet due; 0: the force is held until the next packet"},
+      {"fade_s", &s.fade_s, 0, 10, "the time in which it fades linearly to zero after hold_s"},
+  };
+}
+
+double held_share(const HoldSettings& s, double overdue_s) {
+  if (s.hold_s == 0 || overdue_s <= s.hold_s + kSameSilence_s) return 1;
+  const double left_s = s.hold_s + s.fade_s - overdue_s;
+  return left_s > kSameSilence_s ? left_s / s.fade_s : 0;
+}
+
 Eigen::Quaterniond shown_orientation(const DeadBandSample& sample, double age_s) {
   if (sample.turn_per_s.isZero(0)) return sample.orientation_W;
   return (rotation(age_s * sample.turn_per_s) * sample.orientation_W).normalized();

@@ -25,6 +25,23 @@ struct DeadBandSettings {
 Parameters parameters(DeadBandSettings& s);
 std::string validate(const DeadBandSettings& s);
 
+// Returns the longest time between two packets, if none is lost: 0 if every sample is sent; nothing if there
+// is no limit.
+std::optional<double> longest_silence_s(const DeadBandSettings& s);
+
+// The rest of a signal whose packets no longer arrive, such as a force that would otherwise act for ever.
+struct HoldSettings {
+  double hold_s = 0.05;
+  double fade_s = 0.02;
+};
+
+Parameters parameters(HoldSettings& s);
+
+// Returns the share of the value shown last that remains, overdue_s after the next packet was due. It is 1 up
+// to hold_s, falls linearly to 0 within the next fade_s, and is then 0. Returns 1 if hold_s is 0, which means
+// no limit.
+double held_share(const HoldSettings& s, double overdue_s);
+
 // The content of a packet. The receiver needs no other packet to show it, so a lost packet does not change
 // how later ones are shown.
 struct DeadBandSample {
@@ -96,6 +113,8 @@ class DeadBandReceiver {
   // Return what is shown at a time that is not before the last arrival; nothing before the first.
   std::optional<Vec3> shown(double time_s) const;
   std::optional<Eigen::Quaterniond> shown_orientation(double time_s) const;
+  // Returns the time since the last arrival. pre: there was one.
+  double silence_s(double time_s) const { return time_s - arrived_s_; }
 
  private:
   std::optional<DeadBandSample> last_;

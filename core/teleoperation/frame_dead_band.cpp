@@ -60,7 +60,7 @@ class NearPoints {
 Parameters parameters(FrameDeadBandSettings& s) {
   return {
       {"least_motion_m", &s.least_motion_m, 0, 1,
-       "a frame is sent only if the surface near the slave is farther than this from that of the last frame that was sent, or if regions or stiffness have changed; 0: every frame is sent"},
+       "a frame is sent only if the surface near the slave has moved by more than this anywhere since the last frame that was sent, by translation or rotation, or if regions or stiffness have changed; 0: every frame is sent"},
       {"near_m", &s.near_m, 0.001, 1,
        "radius around the slave in which the surfaces are compared; the reach of a tool and the radius of the regions are added"},
   };
@@ -76,7 +76,11 @@ double surface_motion_m(const NeighbourSearch& before, const NeighbourSearch& no
   const Vec3 foot = near_W - around->normal.dot(near_W - around->centre) * around->normal;
   const std::optional<LocalPlane> from = old_points.plane(foot, near_m), to = new_points.plane(foot, near_m);
   if (!from || !to) return from || to ? std::numeric_limits<double>::infinity() : 0;
-  return std::abs(from->normal.dot(to->centre - from->centre));
+  const Vec3 place = foot - from->normal.dot(foot - from->centre) * from->normal;
+  const double cosine = std::abs(from->normal.dot(to->normal));
+  if (!(cosine > 0)) return std::numeric_limits<double>::infinity();
+  const double height_m = std::abs(to->normal.dot(to->centre - place)) / cosine;
+  return height_m + near_m * from->normal.cross(to->normal).norm() / cosine;
 }
 
 // A frame without such values is a single point with the values that points then have. A stiffness of -1 is
@@ -111,13 +115,15 @@ bool FrameDeadBand::differ(const PointValues& before, const PointValues& now) {
   return std::ranges::any_of(before, is_other) || std::ranges::any_of(now, is_other);
 }
 
-bool FrameDeadBand::sends(const Frame& frame, const Vec3& slave_W, const Kernels& kernels) {
+bool FrameDeadBand::sends(const Frame& frame, const std::optional<Vec3>& slave_W, const Kernels& kernels) {
   if (s_.least_motion_m == 0) return ++sent_, true;
+  if (newest_s_ && frame.captured_s < *newest_s_) return false;
+  newest_s_ = frame.captured_s;
   if (last_ && !(frame.captured_s > last_->captured_s)) return false;
   PointValues values = values_of(*frame.points, kernels);
   const bool is_needed =
-      !last_ || !slave_W.allFinite() || differ(last_values_, values) || frame.guidance != last_->guidance ||
-      surface_motion_m(*last_->points, *frame.points, slave_W, s_.near_m, kernels) > s_.least_motion_m;
+      !last_ || !slave_W || differ(last_values_, values) || frame.guidance != last_->guidance ||
+      surface_motion_m(*last_->points, *frame.points, *slave_W, s_.near_m, kernels) > s_.least_motion_m;
   if (!is_needed) return false;
   ++sent_;
   last_ = frame, last_->prepared = nullptr;

@@ -62,37 +62,38 @@ Parameters parameters(PassivitySettings& s) {
 }
 
 void PortEnergy::add(double energy_J) {
+  if (energy_J > 0) repaid_J += std::min(energy_J, std::max(0.0, -balance_J()));
   (energy_J > 0 ? in_J : out_J) += std::abs(energy_J);
 }
 
-void PortEnergy::receive(double far_in_J) {
-  received_J = std::max(received_J, far_in_J);
+void PortEnergy::receive(double far_credit_J) {
+  received_J = std::max(received_J, far_credit_J);
+}
+
+void MotionPrediction::observe(const Vec3& displacement_m, const Vec3& force_N) {
+  last_but_one_m_ = last_m_, last_m_ = displacement_m;
+  last_but_one_force_N_ = last_force_N_, last_force_N_ = force_N;
+}
+
+Vec3 MotionPrediction::free_displacement() const {
+  return response_ > 0 ? Vec3(2 * last_m_ - last_but_one_m_ - response_ * last_but_one_force_N_) : last_m_;
 }
 
 ImpedancePassivityController::ImpedancePassivityController(const PassivitySettings& settings, double tick_s,
                                                            double response_m_per_N)
     : response_(response_m_per_N), max_stiffness_(settings.max_damping_Ns_per_m / tick_s) {}
 
-Vec3 ImpedancePassivityController::force(const Vec3& delayed_force_N, const Vec3& expected_displacement_m,
-                                         double far_in_J) {
-  energy_.receive(far_in_J);
+Vec3 ImpedancePassivityController::force(const Vec3& delayed_force_N, const Vec3& free_displacement_m,
+                                         double far_credit_J) {
+  energy_.receive(far_credit_J);
   delayed_force_N_ = delayed_force_N;
-  removed_N_ =
-      removed({expected_displacement_m, response_}, delayed_force_N, energy_.balance_J(), max_stiffness_);
-  last_but_one_force_N_ = last_force_N_;
-  last_force_N_ = delayed_force_N - removed_N_;
-  return last_force_N_;
+  return delayed_force_N -
+         removed({free_displacement_m, response_}, delayed_force_N, energy_.balance_J(), max_stiffness_);
 }
 
-void ImpedancePassivityController::observe(const Vec3& displacement_m) {
-  energy_.add(-delayed_force_N_.dot(displacement_m));
-  energy_.dissipated_J += removed_N_.dot(displacement_m);
-  last_but_one_m_ = last_m_;
-  last_m_ = displacement_m;
-}
-
-Vec3 ImpedancePassivityController::free_displacement() const {
-  return 2 * last_m_ - last_but_one_m_ - response_ * last_but_one_force_N_;
+void ImpedancePassivityController::observe(const Vec3& displacement_m, const Vec3& applied_N) {
+  energy_.add(-applied_N.dot(displacement_m));
+  energy_.dissipated_J += std::max(0.0, (delayed_force_N_ - applied_N).dot(displacement_m));
 }
 
 AdmittancePassivityController::AdmittancePassivityController(const PassivitySettings& settings, double tick_s,
@@ -114,8 +115,8 @@ Vec3 AdmittancePassivityController::correction(const Vec3& motion_m, const Vec3&
 }
 
 Vec3 AdmittancePassivityController::command(const Vec3& delayed_W, const Vec3& expected_force_N,
-                                            double far_in_J) {
-  energy_.receive(far_in_J);
+                                            double far_credit_J) {
+  energy_.receive(far_credit_J);
   if (!is_placed_) delayed_W_ = delayed_W;
   is_placed_ = true;
   motion_m_ = delayed_W - delayed_W_;
@@ -131,8 +132,8 @@ Vec3 AdmittancePassivityController::command(const Vec3& delayed_W, const Vec3& e
 }
 
 void AdmittancePassivityController::observe(const Vec3& force_N) {
-  energy_.add(force_N.dot(motion_m_));
-  energy_.dissipated_J += force_N.dot(yield_m_);
+  energy_.add(force_N.dot(motion_m_ + yield_m_));
+  energy_.dissipated_J += std::max(0.0, force_N.dot(yield_m_));
 }
 
 }  // namespace remote_touch

@@ -27,14 +27,17 @@ Parameters parameters(RegistrationError& s) {
   return {
       {"offset_m", &s.offset_m, 0, 1, "distance of the slave from its command, in a random direction"},
       {"rotation_deg", &s.rotation_deg, 0, 45,
-       "rotation of the slave's frame about a random axis through the origin of the world"},
+       "rotation of the slave's frame about a random axis through centre_m"},
+      {"centre_m", &s.centre_m, -100, 100,
+       "the point that the rotation leaves where it is, world frame: the base of the robot, or the centroid of the points with which it was calibrated"},
   };
 }
 
 RigidTransform registration_of(const RegistrationError& error, const NoiseKey& key) {
   RigidTransform X = RigidTransform::Identity();
   X.linear() = rotation(error.rotation_deg * kRadiansPerDegree * direction(key, axis)).toRotationMatrix();
-  X.translation() = error.offset_m * direction(key, offset);
+  const Vec3 about_centre_m = error.centre_m - X.linear() * error.centre_m;
+  X.translation() = about_centre_m + error.offset_m * direction(key, offset);
   return X;
 }
 

@@ -54,7 +54,7 @@ Slave::Slave(const SlaveSettings& settings, double tick_s, SlaveScene scene)
 bool Slave::is_far(const Vec3& reference_velocity) const {
   constexpr double kSceneMotion_m = 0.01;
   const double w = natural_rate_per_s(s_);
-  const double drive = w * w * (reference_W_ - state_.position_W).norm() +
+  const double drive = w * w * (state_.reference_W - state_.position_W).norm() +
                        2 * s_.damping_ratio * w * (reference_velocity - state_.velocity_W).norm();
   const double motion_m = tick_s_ * (state_.velocity_W.norm() + reference_velocity.norm() + tick_s_ * drive);
   return state_.clearance_m > kSceneMotion_m + 2 * motion_m;
@@ -76,37 +76,67 @@ Vec3 Slave::contact_force(double before_s, double now_s) {
   return Vec3::Zero();
 }
 
-void Slave::step(const Vec3& reference_velocity, bool can_touch, double before_s, double now_s) {
-  const double w = natural_rate_per_s(s_), step_s = tick_s_ / s_.steps_per_tick;
-  const Vec3 drive = cut(w * w * (reference_W_ - state_.position_W) +
-                             2 * s_.damping_ratio * w * (reference_velocity - state_.velocity_W),
-                         s_.max_acceleration_m_per_s2);
+Vec3 Slave::drive_acceleration(const Vec3& reference_velocity) const {
+  const double w = natural_rate_per_s(s_);
+  return cut(w * w * (state_.reference_W - state_.position_W) +
+                 2 * s_.damping_ratio * w * (reference_velocity - state_.velocity_W),
+             s_.max_acceleration_m_per_s2);
+}
+
+// The velocity that solves sqrt(2 b) u = b c' + D without a limit of the acceleration gives D, and D gives
+// c'.
+Vec3 Slave::reference_velocity(const Guide& guide) const {
+  if (const Vec3* const velocity = std::get_if<Vec3>(&guide)) return *velocity;
+  const auto& [value_W, b] = std::get<Wave>(guide);
+  const double w = natural_rate_per_s(s_), stiffness = s_.mass_kg * w * w;
+  const double damping = 2 * s_.damping_ratio * w * s_.mass_kg;
+  const Vec3 wave_N = std::sqrt(2 * b) * value_W;
+  const Vec3 unlimited =
+      (wave_N - stiffness * (state_.reference_W - state_.position_W) + damping * state_.velocity_W) /
+      (b + damping);
+  return (wave_N - s_.mass_kg * drive_acceleration(unlimited)) / b;
+}
+
+void Slave::step(const Guide& guide, bool can_touch, double before_s, double now_s) {
+  const double step_s = tick_s_ / s_.steps_per_tick;
+  const Vec3 rate = reference_velocity(guide), drive = drive_acceleration(rate);
   const Vec3 force = can_touch ? contact_force(before_s, now_s) : Vec3(Vec3::Zero());
   state_.velocity_W += step_s * (drive + force / s_.mass_kg);
   state_.position_W += step_s * state_.velocity_W;
-  reference_W_ += step_s * reference_velocity;
+  state_.reference_W += step_s * rate, state_.reference_displacement_m += step_s * rate;
   state_.force_N += force / s_.steps_per_tick;
   state_.peak_force_N = std::max(state_.peak_force_N, force.norm());
+  const Vec3 drive_N = s_.mass_kg * drive;
+  state_.drive_N += drive_N / s_.steps_per_tick;
+  state_.reference_work_J += step_s * drive_N.dot(rate);
+  state_.drive_work_J += step_s * drive_N.dot(state_.velocity_W);
 }
 
 const Slave::State& Slave::move(const Vec3& command_W, double time_s) {
-  if (!is_placed_) {
-    state_.position_W = reference_W_ = command_W;
-    depth_m_ = s_.radius_m - scene_.signed_distance(command_W, time_s), depth_W_ = command_W;
-    is_placed_ = true;
-    last_s_ = time_s;
-    state_.clearance_m = -depth_m_;
-    return state_;
-  }
-  const Vec3 reference_velocity = cut((command_W - reference_W_) / tick_s_, s_.max_speed_m_per_s);
-  state_.force_N = Vec3::Zero(), state_.peak_force_N = 0, state_.is_force_known = true;
+  if (is_placed_)
+    return move_through_tick(cut((command_W - state_.reference_W) / tick_s_, s_.max_speed_m_per_s), time_s);
+  state_.position_W = state_.reference_W = command_W;
+  depth_m_ = s_.radius_m - scene_.signed_distance(command_W, time_s), depth_W_ = command_W;
+  is_placed_ = true;
+  last_s_ = time_s;
+  state_.clearance_m = -depth_m_;
+  return state_;
+}
+
+const Slave::State& Slave::move(const Wave& wave, double time_s) {
+  return move_through_tick(wave, time_s);
+}
+
+const Slave::State& Slave::move_through_tick(const Guide& guide, double time_s) {
+  state_.force_N = state_.drive_N = state_.reference_displacement_m = Vec3::Zero();
+  state_.peak_force_N = state_.reference_work_J = state_.drive_work_J = 0, state_.is_force_known = true;
   const bool has_paused = time_s - last_s_ > 1.5 * tick_s_;  // the scene may be anywhere
   if (has_paused) depth_m_ = std::numeric_limits<double>::quiet_NaN();
   const double step_s = tick_s_ / s_.steps_per_tick, begin_s = time_s - tick_s_;
-  const bool can_touch = has_paused || !is_far(reference_velocity);
+  const bool can_touch = has_paused || !is_far(reference_velocity(guide));
   normal_W_.reset();
   for (int i = 0; i < s_.steps_per_tick; ++i)
-    step(reference_velocity, can_touch, begin_s + (i - 1) * step_s, begin_s + i * step_s);
+    step(guide, can_touch, begin_s + (i - 1) * step_s, begin_s + i * step_s);
   last_s_ = time_s;
   state_.clearance_m = scene_.signed_distance(state_.position_W, time_s) - s_.radius_m;
   if (!can_touch) depth_m_ = -state_.clearance_m, depth_W_ = state_.position_W;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
@@ -66,6 +67,10 @@ class Slave {
     Vec3 force_N = Vec3::Zero();  // mean force of the scene on the slave in the last tick, world frame
     double peak_force_N = 0;      // largest magnitude of the force in the last tick
     double clearance_m = 0;  // distance of the slave from the surface; negative in contact; NaN: not known
+    // The reference c, its displacement and the mean force D of the drive on the slave in the last tick, and
+    // the work D . c' of the reference on the drive and D . x' of the drive on the slave. Only of a ball.
+    Vec3 reference_W = Vec3::Zero(), reference_displacement_m = Vec3::Zero(), drive_N = Vec3::Zero();
+    double reference_work_J = 0, drive_work_J = 0;
     // False if the slave was behind the surface in the last tick and the normal there is not known. There is
     // then no force, because its direction is not known.
     bool is_force_known = true;
@@ -74,18 +79,29 @@ class Slave {
   // first call the slave is put at the command, at rest. If the last call was for an earlier time than
   // time_s - tick_s, the slave stood still meanwhile, and the scene has no known speed of approach.
   const State& move(const Vec3& command_W, double time_s);
+  // A wave u with an impedance b > 0, which moves the reference: sqrt(2 b) u = b c' + D at every step, with
+  // the force D of the drive on the slave. max_speed_m_per_s does not limit it.
+  struct Wave {
+    Vec3 value_W = Vec3::Zero();  // sqrt(W)
+    double impedance_Ns_per_m = 0;
+  };
+  // Moves the slave by a wave in place of a command. pre: move() has put the slave somewhere.
+  const State& move(const Wave& wave, double time_s);
   const State& state() const { return state_; }
 
  private:
+  using Guide = std::variant<Vec3, Wave>;  // a velocity or a wave, which moves the reference in a tick
+  Vec3 drive_acceleration(const Vec3& reference_velocity) const;
+  Vec3 reference_velocity(const Guide& guide) const;
   Vec3 contact_force(double before_s, double now_s);
   bool is_far(const Vec3& reference_velocity) const;
-  void step(const Vec3& reference_velocity, bool can_touch, double before_s, double now_s);
+  const State& move_through_tick(const Guide& guide, double time_s);
+  void step(const Guide& guide, bool can_touch, double before_s, double now_s);
 
   const SlaveSettings s_;
   const double tick_s_;
   const SlaveScene scene_;
   State state_;
-  Vec3 reference_W_ = Vec3::Zero();
   double depth_m_ = 0;            // d after the last step; NaN: not known
   Vec3 depth_W_ = Vec3::Zero();   // position to which it belongs
   std::optional<Vec3> normal_W_;  // normal of the surface in this tick

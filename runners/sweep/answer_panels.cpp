@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <set>
 
+#include "analysis/statistics/extremes.h"
 #include "analysis/sweeps/cell_groups.h"
 #include "core/parameters/unit.h"
 
@@ -18,6 +20,16 @@ constexpr std::size_t kMaxCurves = 8;
 const std::vector<double>* numbers_in(const Column& column) {
   return std::get_if<std::vector<double>>(&column.values);
 }
+
+// A table of an answer, with its axes.
+struct AnswerTable {
+  const Table& table;
+  std::size_t axes;
+
+  const Column& value() const { return table.columns[axes]; }
+  const Column& low() const { return table.columns[axes + 1]; }
+  const Column& high() const { return table.columns[axes + 2]; }
+};
 
 // Returns the number of the first axis of numbers that has more than one value.
 std::optional<std::size_t> axis_of_numbers(const AnswerTable& answer) {
@@ -64,40 +76,61 @@ double number_in(const Column& column, std::size_t row) {
   return std::get<std::vector<std::int32_t>>(column.values)[row];
 }
 
-// Returns the rows of each combination of the other axes, in the order of the table.
+// Returns the text for some axes of a row: "method = old, r c = 5 mm"; `except` is left out.
+std::string row_label(const AnswerTable& answer, std::size_t row, std::optional<std::size_t> except) {
+  std::string label;
+  for (std::size_t axis = 0; axis < answer.axes; ++axis) {
+    const Column& column = answer.table.columns[axis];
+    if (axis == except) continue;
+    label += (label.empty() ? "" : ", ") + in_words(column.name) + " = " +
+             with_unit(axis_text(column, row), column.value_names.empty() ? column.units : "1");
+  }
+  return label;
+}
+
+// Returns the rows of each combination of the axes other than x, in the order of the table; none if there are
+// too many.
 std::vector<AnswerCurve> curves_of(const AnswerTable& answer, std::size_t x) {
-  const std::vector<double>& value = numbers(answer.table, answer.value);
   std::vector<AnswerCurve> curves;
-  for (std::size_t row = 0; row < value.size(); ++row) {
-    std::string label;
+  for (std::size_t row = 0; row < answer.value().length(); ++row) {
     std::vector<double> others;
-    for (std::size_t axis = 0; axis < answer.axes; ++axis) {
-      const Column& column = answer.table.columns[axis];
-      if (axis == x) continue;
-      others.push_back(number_in(column, row));
-      label += (label.empty() ? "" : ", ") + in_words(column.name) + " = " +
-               with_unit(axis_text(column, row), column.value_names.empty() ? column.units : "1");
-    }
+    for (std::size_t axis = 0; axis < answer.axes; ++axis)
+      if (axis != x) others.push_back(number_in(answer.table.columns[axis], row));
     auto curve = std::find_if(curves.begin(), curves.end(),
                               [&](const AnswerCurve& each) { return each.values == others; });
-    if (curve == curves.end()) curve = curves.insert(curve, {label, others, {}});
-    if (std::isfinite(value[row])) curve->rows.push_back(row);
+    if (curve == curves.end()) curve = curves.insert(curve, {row_label(answer, row, x), others, {}});
+    curve->rows.push_back(row);
     if (curves.size() > kMaxCurves) return {};
   }
   return curves;
 }
 
-// Returns the rows as a table with increasing x.
-Table table_of_curve(const AnswerTable& answer, std::size_t x, std::vector<std::size_t> rows,
+// Returns the rows with x, value and interval as a table with increasing x.
+Table table_of_curve(const AnswerTable& answer, const Column& x, std::vector<std::size_t> rows,
                      const std::string& name, const std::string& label) {
-  const std::vector<double>& place = *numbers_in(answer.table.columns[x]);
+  const std::vector<double>& place = *numbers_in(x);
   std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return place[a] < place[b]; });
-  Table table{name, label.empty() ? answer.table.title : label};
-  for (const Column& column : answer.table.columns)
-    if (&column == &answer.table.columns[x] || column.name == answer.value || column.name == answer.low ||
-        column.name == answer.high)
-      table.columns.push_back(axis_at(column, rows));
+  Table table{name, label.empty() ? answer.table.title : label, {axis_at(x, rows)}};
+  for (const Column* column : {&answer.value(), &answer.low(), &answer.high()})
+    table.columns.push_back(axis_at(*column, rows));
   return table;
+}
+
+std::vector<std::size_t> with_value(const AnswerTable& answer, const std::vector<std::size_t>& rows) {
+  std::vector<std::size_t> some;
+  for (const std::size_t row : rows)
+    if (std::isfinite((*numbers_in(answer.value()))[row])) some.push_back(row);
+  return some;
+}
+
+// Adds a table and two curves: the intervals or the band, and the values.
+void add_curves(Figure& figure, Panel& panel, Table table, CurveStyle interval, CurveStyle value,
+                const std::string& label) {
+  Curve ends{table.name, table.columns[0].name, table.columns[2].name, interval};
+  ends.z = table.columns[3].name;
+  panel.curves.push_back(ends);
+  panel.curves.push_back({table.name, table.columns[0].name, table.columns[1].name, value, label});
+  figure.tables.push_back(std::move(table));
 }
 
 }  // namespace
@@ -120,19 +153,92 @@ std::string axis_text(const Column& axis, std::size_t row) {
                                   : axis.value_names[static_cast<std::size_t>(number)];
 }
 
-void add_answer_panel(Figure& figure, const AnswerTable& answer) {
+void add_answer_panel(Figure& figure, const Table& of_answer, std::size_t axes) {
+  const Table table = of_answer;  // it may be one of the figure, whose list grows
+  const AnswerTable answer{table, axes};
   const std::optional<std::size_t> x = axis_of_numbers(answer);
   if (!x) return;
-  const Column& axis = answer.table.columns[*x];
-  Panel panel{in_words(answer.table.title), in_words(axis.name), answer.value};
+  const Column& axis = table.columns[*x];
+  Panel panel{in_words(table.title), in_words(axis.name), answer.value().name};
   for (const AnswerCurve& curve : curves_of(answer, *x)) {
-    if (curve.rows.size() < 2) continue;
-    const std::string name = answer.table.name + "_" + std::to_string(panel.curves.size() / 2 + 1);
-    figure.tables.push_back(table_of_curve(answer, *x, curve.rows, name, curve.label));
-    Curve band{name, axis.name, answer.low, CurveStyle::band};
-    band.z = answer.high;
-    panel.curves.push_back(band);
-    panel.curves.push_back({name, axis.name, answer.value, CurveStyle::line, curve.label});
+    const std::vector<std::size_t> rows = with_value(answer, curve.rows);
+    if (rows.size() < 2) continue;
+    const std::string name = table.name + "_" + std::to_string(panel.curves.size() / 2 + 1);
+    add_curves(figure, panel, table_of_curve(answer, axis, rows, name, curve.label), CurveStyle::band,
+               CurveStyle::line, curve.label);
+  }
+  if (!panel.curves.empty()) figure.panels.push_back(panel);
+}
+
+namespace {
+
+// The end of the axis that a limit is beyond, as the rows' places say.
+enum class Beyond { first, last };
+
+std::vector<std::size_t> rows_beyond(const Table& table, const std::vector<std::size_t>& rows, Beyond end) {
+  const Column& place = table.columns.back();
+  const auto& numbers = std::get<std::vector<std::int32_t>>(place.values);
+  std::vector<std::size_t> some;
+  for (const std::size_t row : rows)
+    if (place.value_names[static_cast<std::size_t>(numbers[row])].starts_with(end == Beyond::first ? "below"
+                                                                                                   : "above"))
+      some.push_back(row);
+  return some;
+}
+
+// Puts limits that are not known at the end of the axis, with intervals that are open beyond it.
+void put_at_end(Table& table, const Column& along, Beyond end) {
+  const std::vector<double>& x = *numbers_in(along);
+  const bool is_last = end == Beyond::last;
+  const double at = is_last ? max_of(x) : min_of(x), infinity = std::numeric_limits<double>::infinity();
+  auto &values = std::get<std::vector<double>>(table.columns[1].values),
+       &inner = std::get<std::vector<double>>(table.columns[is_last ? 2 : 3].values),
+       &outer = std::get<std::vector<double>>(table.columns[is_last ? 3 : 2].values);
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    values[row] = at, outer[row] = is_last ? infinity : -infinity;
+    if (std::isnan(inner[row])) inner[row] = at;
+  }
+}
+
+}  // namespace
+
+void add_answer_limits(Figure& figure, const Table& of_answer, std::size_t axes, const Column& along) {
+  const Table table = of_answer;  // it may be one of the figure, whose list grows
+  const AnswerTable answer{table, axes};
+  const std::optional<std::size_t> axis = axis_of_numbers(answer);
+  Column x;
+  std::string x_label;
+  std::vector<AnswerCurve> curves;
+  if (axis) {
+    x = table.columns[*axis], x_label = in_words(x.name), curves = curves_of(answer, *axis);
+  } else if (answer.value().length() <= kMaxCurves) {
+    std::vector<double> places;
+    curves.emplace_back();
+    for (std::size_t row = 0; row < answer.value().length(); ++row) {
+      places.push_back(static_cast<double>(row + 1)), curves.front().rows.push_back(row);
+      const std::string label = row_label(answer, row, std::nullopt);
+      if (!label.empty()) x_label += (row > 0 ? "; " : "row ") + std::to_string(row + 1) + ": " + label;
+    }
+    x = {"row", "1", "number of the row", places};
+  }
+  Panel panel{in_words(table.title), x_label, answer.value().name};
+  int number = 0;
+  for (const AnswerCurve& curve : curves) {
+    const std::string name = table.name + "_" + std::to_string(++number);
+    const auto known = with_value(answer, curve.rows);
+    if (!known.empty())
+      add_curves(figure, panel, table_of_curve(answer, x, known, name, curve.label), CurveStyle::intervals,
+                 known.size() > 1 && axis ? CurveStyle::line : CurveStyle::dots, curve.label);
+    for (const Beyond end : {Beyond::first, Beyond::last}) {
+      const auto rows = rows_beyond(table, curve.rows, end);
+      if (rows.empty()) continue;
+      const std::string where = end == Beyond::first ? "below the first value" : "above the last value";
+      const std::string label = (curve.label.empty() ? "" : curve.label + ": ") + where;
+      Table marks =
+          table_of_curve(answer, x, rows, name + (end == Beyond::first ? "_below" : "_above"), label);
+      put_at_end(marks, along, end);
+      add_curves(figure, panel, std::move(marks), CurveStyle::intervals, CurveStyle::dots, label);
+    }
   }
   if (!panel.curves.empty()) figure.panels.push_back(panel);
 }

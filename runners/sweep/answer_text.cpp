@@ -22,8 +22,12 @@ std::string number_text(double value) {
 
 // True for the columns before the answer itself: the axes, whose values must not look alike.
 bool is_axis(const Table& table, const Column& column) {
-  const auto answers = [](const Column& each) { return each.name == "limit" || each.name == "mean"; };
-  return &column < &*std::find_if(table.columns.begin(), table.columns.end(), answers);
+  const auto named = [&](const char* name) {
+    return std::find_if(table.columns.begin(), table.columns.end(),
+                        [&](const Column& each) { return each.name == name; });
+  };
+  const auto renamed = named("value_of_answer");  // an axis is called "value"
+  return &column < &*(renamed == table.columns.end() ? named("value") : renamed);
 }
 
 // Returns the texts of a column: its name, its unit and the values.
@@ -31,6 +35,11 @@ std::vector<std::string> texts_of(const Table& table, const Column& column, std:
   std::vector<std::string> texts = {column.name, column.units == "1" ? "" : column.units};
   const auto* const numbers = std::get_if<std::vector<double>>(&column.values);
   const bool is_answer = numbers && !is_axis(table, column);
+  if (const auto* const words = std::get_if<std::vector<std::string>>(&column.values)) {
+    for (std::size_t row = 0; row < rows; ++row)
+      texts.push_back((*words)[row].empty() ? "-" : printable((*words)[row]));
+    return texts;
+  }
   for (std::size_t row = 0; row < rows; ++row)
     texts.push_back(is_answer ? number_text((*numbers)[row]) : printable(axis_text(column, row)));
   return texts;

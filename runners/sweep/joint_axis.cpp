@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
@@ -13,21 +12,13 @@ namespace {
 
 using Row = std::vector<ChangedSetting>;
 
-// The columns of an answer about a sweep, see event_limits.h and sweep_means.h.
-constexpr const char* kAnswerColumns[] = {"limit",      "limit_low", "limit_high", "at_least",  "at_most",
-                                          "noted_runs", "place",     "runs",       "mean",      "low",
-                                          "high",       "pairs",     "p",          "adjusted_p"};
-
-// A name of a coordinate in HDF5, in Python, in --cell NAME=VALUE and in the tables of an answer.
+// A name of a coordinate in HDF5, in Python and in --cell NAME=VALUE.
 void require_identifier(const std::string& name, const std::string& label) {
   const auto may_follow = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
       !std::all_of(name.begin(), name.end(), may_follow))
     throw InputError(label + ".name = " + shown(name),
                      "expected a letter, then letters, digits and _, for example \"r_c\"");
-  if (std::find(std::begin(kAnswerColumns), std::end(kAnswerColumns), name) != std::end(kAnswerColumns))
-    throw InputError(label + ".name = " + shown(name),
-                     "a column of analyse has this name: expected another one");
 }
 
 const Json& list_of(const Json& json, const char* key, const std::string& label, const char* expected) {

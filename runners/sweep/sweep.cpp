@@ -350,7 +350,8 @@ std::string Sweep::to_json() const {
 
 Sweep Sweep::thinned(int every) const {
   Json json = parse_json(to_json(), title());
-  for (Json& axis : json["axes"]) axis = thinned_axis(axis, static_cast<std::size_t>(every));
+  for (Json& axis : json["axes"])
+    axis = thinned_axis(axis, static_cast<std::size_t>(every), json.contains("refine"));
   return from_json(json.dump(), title());
 }
 

@@ -55,8 +55,8 @@ class Sweep {
   std::optional<RefinementRule> refinement() const;
   Keep keep() const;
   std::string to_json() const;  // complete: read again, it makes the same sweep
-  // Returns the sweep with every every-th value of each axis. A range, whose steps may not divide evenly, is
-  // thinned approximately. The runs have other noise than those of the full sweep.
+  // Returns the sweep with every every-th value of each axis, see thinned_axis(). The runs have other noise
+  // than those of the full sweep.
   Sweep thinned(int every) const;
 
  private:

@@ -5,13 +5,14 @@
 #include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <utility>
+#include <optional>
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
 #include "analysis/tally/tally_means.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/answer_panels.h"
+#include "runners/sweep/sweep_streams.h"
 #include "runners/sweep/tally_outline.h"
 #include "scenarios/text_files/json_text.h"
 
@@ -19,15 +20,17 @@ namespace remote_touch {
 
 namespace {
 
+using Axes = std::vector<std::size_t>;  // numbers of axes
+
 // The subject of a question: a sweep with its runs, or a tally.
 struct Asked {
   const SweepResult& result;  // only the outline if it is a tally
+  const CellStreams& streams;
   std::function<EventLimits(const LimitQuestion&)> limits;
-  std::function<Table(const std::string& measure, const TableAxes& axes)> means;
-  std::function<Table(const std::string& measure, std::size_t between, const TableAxes& axes)> differences;
+  std::function<Table(const LimitQuestion&, std::size_t between, LimitComparison)> limit_comparisons;
+  std::function<Table(const std::string& measure, const Axes& by)> means;
+  std::function<Table(const std::string& measure, std::size_t between, const Axes& by)> differences;
   std::string event;  // event of default_event()
-  // Number of finished runs, and of those in which the measure of that number is unknown (NaN).
-  std::function<std::pair<std::int64_t, std::int64_t>(std::size_t measure)> unknown;
 };
 
 bool has_numbers(const Column& axis) {
@@ -56,6 +59,7 @@ std::size_t axis_along(const SweepResult& result, const std::string& along) {
   throw InputError("along", "no axis has two numbers: expected a sweep with one, or no limit");
 }
 
+// Returns the axis between whose first and other values something is compared.
 std::size_t axis_between(const SweepResult& result, const std::string& between) {
   if (!between.empty()) {
     const std::size_t axis = number_of_column(result.axes, between, "between");
@@ -68,8 +72,8 @@ std::size_t axis_between(const SweepResult& result, const std::string& between) 
 }
 
 // Returns the numbers of the axes `by`, in the order of the sweep; all if none is named.
-std::vector<std::size_t> axes_by(const SweepResult& result, const std::vector<std::string>& by) {
-  std::vector<std::size_t> axes;
+Axes axes_by(const SweepResult& result, const std::vector<std::string>& by) {
+  Axes axes;
   for (const std::string& name : by) axes.push_back(number_of_column(result.axes, name, "by"));
   if (by.empty())
     for (std::size_t axis = 0; axis < result.axes.size(); ++axis) axes.push_back(axis);
@@ -78,65 +82,91 @@ std::vector<std::size_t> axes_by(const SweepResult& result, const std::vector<st
   return axes;
 }
 
-std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit, bool rises) {
+// rises: the direction that the runs show, or that the question states.
+std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit,
+                           const std::optional<bool>& rises) {
   char text[80];
   std::snprintf(text, sizeof text, " is above %.6g in %.6g %% of the runs. ", limit.threshold,
                 100 * limit.level);
-  return "Limit: the " + result.axes[limit.along].name + " at which " + limit.measure + text +
-         "Along the axis the event becomes " + (rises ? "more" : "less") + " probable. ";
+  const std::string direction =
+      !rises
+          ? "The runs do not show whether the event becomes more or less probable along the axis, so there "
+            "is no limit: state it as direction \"rises\" or \"falls\". "
+          : "Along the axis the event becomes " + std::string(*rises ? "more" : "less") + " probable" +
+                (limit.rises ? ", as stated. " : ". ");
+  return "Limit: the " + result.axes[limit.along].name + " at which " + limit.measure + text + direction;
 }
 
-// Returns a sentence with the number of runs in which it is unknown whether the event happened; empty if it
-// is known in all.
-std::string unknown_sentence(const Asked& asked, const std::string& event, std::size_t measure) {
-  const auto [done, unknown] = asked.unknown(measure);
-  if (unknown == 0) return {};
-  return event + " is unknown in " + std::to_string(unknown) + " of " + std::to_string(done) +
-         " runs; a run in which it is unknown counts as a run without the event. ";
+std::optional<bool> direction_in(const SweepQuestion& question) {
+  if (question.direction.empty()) return std::nullopt;
+  if (question.direction != "rises" && question.direction != "falls")
+    throw InputError("direction " + printable(question.direction), "expected rises or falls");
+  return question.direction == "rises";
+}
+
+bool are_above_0(const Column& axis) {
+  const auto& x = std::get<std::vector<double>>(axis.values);
+  return std::all_of(x.begin(), x.end(), [](double value) { return value > 0; });
 }
 
 void add_limits(Figure& figure, const Asked& asked, const SweepQuestion& question, const std::string& event) {
   const SweepResult& result = asked.result;
-  const std::size_t measure = number_of_column(result.measures, event, "limit");
+  number_of_column(result.measures, event, "limit");
   if (!(question.level > 0 && question.level < 1))
     throw InputError("level " + std::to_string(question.level), "expected a probability between 0 and 1");
-  const LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level};
+  LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level,
+                      direction_in(question)};
   const auto [table, rises] = asked.limits(limit);
-  figure.caption += limit_sentence(result, limit, rises) + unknown_sentence(asked, event, measure);
+  figure.caption += limit_sentence(result, limit, rises);
   figure.tables.push_back(table);
-  add_answer_panel(figure, {table, result.axes.size() - 1, "limit", "limit_low", "limit_high"});
+  add_answer_limits(figure, table, result.axes.size() - 1, result.axes[limit.along]);
+  if (question.between.empty()) return;
+  const std::size_t between = axis_between(result, question.between);
+  if (between == limit.along && question.differences.empty())
+    throw InputError("between " + question.between, "is the axis of the limit: expected another axis");
+  if (between == limit.along) return;
+  limit.rises = rises;
+  figure.tables.push_back(asked.limit_comparisons(limit, between, LimitComparison::difference));
+  if (are_above_0(result.axes[limit.along]))
+    figure.tables.push_back(asked.limit_comparisons(limit, between, LimitComparison::ratio));
+  figure.caption += "Differences of limits: from " + result.axes[between].name + " = " +
+                    axis_text(result.axes[between], 0) +
+                    "; the ends of their intervals do not belong to them, and a difference of less than two "
+                    "steps of the axis can rarely be shown. ";
 }
 
-void add_means(Figure& figure, const Asked& asked, const std::vector<std::string>& measures,
-               const TableAxes& axes) {
+void add_means(Figure& figure, const Asked& asked, const std::vector<std::string>& measures, const Axes& by) {
   const SweepResult& result = asked.result;
   for (const std::string& measure : measures) {
     number_of_column(result.measures, measure, "mean");
-    const Table table = asked.means(measure, axes);
+    const Table table = asked.means(measure, by);
     figure.tables.push_back(table);
-    add_answer_panel(figure, {table, axes.by.size(), "mean", "low", "high"});
+    add_answer_panel(figure, table, by.size());
   }
-  if (!measures.empty() && !result.round.empty() && axes.by.size() < result.axes.size())
+  if (!measures.empty() && !result.round.empty() && by.size() < result.axes.size())
     figure.caption += "The sweep was refined: a mean over several cells counts only those that have runs. ";
 }
 
-void add_differences(Figure& figure, const Asked& asked, const SweepQuestion& question, TableAxes axes) {
+void add_differences(Figure& figure, const Asked& asked, const SweepQuestion& question, Axes by) {
   const SweepResult& result = asked.result;
   const std::size_t between = axis_between(result, question.between);
-  std::erase(axes.by, between);
+  std::erase(by, between);
   const Column& axis = result.axes[between];
-  const bool common =
-      std::find(axes.common_noise.begin(), axes.common_noise.end(), between) != axes.common_noise.end();
+  std::vector<std::size_t> first_cells(2, 0), indices(result.axes.size(), 0);
+  indices[between] = 1, first_cells[1] = result.cell_at(indices);
+  const std::vector<std::size_t>& noise = asked.streams.noise_cell;
+  const bool common = noise[first_cells[0]] == noise[first_cells[1]];
+  const bool independent = asked.streams.are_independent(first_cells);
   figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) +
                     ", in pairs of runs with the same replicate" +
-                    (common ? " and the same noise" : ", whose noise is independent") +
-                    "; p is that of the sign test for an event, else of Student's t test with a "
-                    "correction for skewness; adjusted_p: after Holm, for the rows of a table. ";
+                    (common        ? " and the same noise. "
+                     : independent ? ", whose noise is independent. "
+                                   : ", which share some of their random numbers. ");
   for (const std::string& measure : question.differences) {
     number_of_column(result.measures, measure, "difference");
-    const Table table = asked.differences(measure, between, axes);
+    const Table table = asked.differences(measure, between, by);
     figure.tables.push_back(table);
-    add_answer_panel(figure, {table, axes.by.size() + 1, "mean", "low", "high"});
+    add_answer_panel(figure, table, by.size() + 1);
   }
 }
 
@@ -162,23 +192,14 @@ std::string event_of(const Asked& asked, const SweepQuestion& question) {
 }
 
 void refuse_options_without_effect(const SweepQuestion& question, bool has_limit) {
-  if (!question.between.empty() && question.differences.empty())
-    throw InputError("between " + printable(question.between), "without effect: expected also a difference");
-  if (!has_limit && (question.level != 0.5 || question.threshold != 0.5))
-    throw InputError("level and above", "without effect: expected also a limit");
+  if (!question.between.empty() && question.differences.empty() && question.limit.empty())
+    throw InputError("between " + printable(question.between),
+                     "without effect: expected also a difference or a limit");
+  if (!has_limit && (question.level != 0.5 || question.threshold != 0.5 || !question.direction.empty()))
+    throw InputError("level, above and direction", "without effect: expected also a limit");
   if (!question.by.empty() && question.means.empty() && question.differences.empty() &&
       !names_no_measure(question))
     throw InputError("by", "without effect: expected also a mean or a difference");
-}
-
-// Returns the numbers of the axes whose values have common noise, from the configuration of the sweep.
-std::vector<std::size_t> axes_with_common_noise(const Json& config, std::size_t count) {
-  std::vector<std::size_t> numbers;
-  const Json axes = config.is_object() ? config.value("axes", Json::array()) : Json::array();
-  for (std::size_t i = 0; axes.is_array() && i < std::min(axes.size(), count); ++i)
-    if (axes[i].is_object() && axes[i].value("common_noise", axes[i].contains("variants")))
-      numbers.push_back(i);
-  return numbers;
 }
 
 }  // namespace
@@ -213,9 +234,11 @@ Figure answer_of(const Asked& asked, const std::string& config, const SweepQuest
   const std::string event = event_of(asked, question);
   refuse_options_without_effect(question, !event.empty());
   if (!event.empty()) add_limits(figure, asked, question, event);
-  const TableAxes axes{axes_by(result, question.by), axes_with_common_noise(json, result.axes.size())};
-  add_means(figure, asked, names_no_measure(question) ? names_of(result.measures) : question.means, axes);
-  if (!question.differences.empty()) add_differences(figure, asked, question, axes);
+  const Axes by = axes_by(result, question.by);
+  add_means(figure, asked, names_no_measure(question) ? names_of(result.measures) : question.means, by);
+  if (!question.differences.empty()) add_differences(figure, asked, question, by);
+  figure.caption += adjust_together(figure.tables);
+  if (!asked.streams.doubt.empty()) figure.caption += asked.streams.doubt + " ";
   if (!figure.caption.empty()) figure.caption.pop_back();
   return figure;
 }
@@ -236,31 +259,21 @@ std::size_t number_of_event(const SweepTally& tally, const LimitQuestion& questi
   return measure;
 }
 
-void require_no_pooled_noise(const SweepTally& tally, const TableAxes& axes) {
-  for (const std::size_t axis : axes.common_noise)
-    if (std::find(axes.by.begin(), axes.by.end(), axis) == axes.by.end())
-      refuse_for_tally(
-          "by", "a tally does not know which runs had the same noise on the axis " + tally.axes[axis].name);
-}
-
 }  // namespace
 
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question) {
   if (result.runs_in(RunState::done).empty()) refuse_without_runs();
+  const CellStreams streams = streams_of(result, config);
   return answer_of(
-      {result, [&](const LimitQuestion& limit) { return event_limits(result, limit); },
-       [&](const std::string& measure, const TableAxes& axes) { return sweep_means(result, measure, axes); },
-       [&](const std::string& measure, std::size_t between, const TableAxes& axes) {
-         return sweep_differences(result, measure, between, axes);
+      {result, streams, [&](const LimitQuestion& limit) { return event_limits(result, limit, streams); },
+       [&](const LimitQuestion& limit, std::size_t between, LimitComparison comparison) {
+         return limit_comparisons(result, limit, between, streams, comparison);
        },
-       default_event(result),
-       [&](std::size_t measure) {
-         const std::vector<std::size_t> done = result.runs_in(RunState::done);
-         const auto& values = std::get<std::vector<double>>(result.measures[measure].values);
-         const auto is_unknown = [&](std::size_t place) { return std::isnan(values[place]); };
-         return std::pair<std::int64_t, std::int64_t>(done.size(),
-                                                      std::count_if(done.begin(), done.end(), is_unknown));
-       }},
+       [&](const std::string& measure, const Axes& by) { return sweep_means(result, measure, by, streams); },
+       [&](const std::string& measure, std::size_t between, const Axes& by) {
+         return sweep_differences(result, measure, between, by, streams);
+       },
+       default_event(result)},
       config, question);
 }
 
@@ -274,27 +287,22 @@ Figure sweep_answer(const SweepTally& tally, const std::string& config, const Sw
     refuse_without_runs();
   if (!question.differences.empty())
     refuse_for_tally("difference " + question.differences.front(), "a tally does not keep pairs of runs");
+  if (!question.between.empty()) refuse_for_tally("between", "a tally does not keep single runs");
   const SweepResult outline = outline_of(tally);
+  const CellStreams streams = streams_of(outline, config);
   const auto limits = [&](const LimitQuestion& limit) {
     const std::size_t measure = number_of_event(tally, limit);
-    return event_limits(outline, {[&](std::size_t cell) { return event_count(tally, measure, cell); }},
-                        limit);
+    return event_limits(outline, {[&](std::size_t cell) { return event_counts(tally, measure, cell); }},
+                        limit, streams);
   };
-  const auto means = [&](const std::string& measure, const TableAxes& axes) {
-    require_no_pooled_noise(tally, axes);
-    return tally_means(tally, outline, number_of_column(tally.measures, measure, "mean"), axes.by);
+  const auto means = [&](const std::string& measure, const Axes& by) {
+    return tally_means(tally, outline, number_of_column(tally.measures, measure, "mean"), by, streams);
   };
   const std::string event = first_event(tally.measures, [&](std::size_t measure) {
     return std::any_of(tally.tallies.begin(), tally.tallies.end(),
                        [&](const CellTally& cell) { return cell.measures[measure].values > 0; });
   });
-  const auto unknown = [&](std::size_t measure) {
-    std::pair<std::int64_t, std::int64_t> counts;
-    for (const CellTally& cell : tally.tallies)
-      counts.first += cell.done, counts.second += cell.measures[measure].unknown;
-    return counts;
-  };
-  return answer_of({outline, limits, means, {}, event, unknown}, config, question);
+  return answer_of({outline, streams, limits, {}, means, {}, event}, config, question);
 }
 
 }  // namespace remote_touch

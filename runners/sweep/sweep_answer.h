@@ -14,7 +14,9 @@ namespace remote_touch {
 // default_event() finds and for the means of all measures. Options without an effect are refused.
 struct SweepQuestion {
   // Where does an event become more probable than `level` along an axis? Empty `along`: the last axis of at
-  // least two numbers. See event_limits.h.
+  // least two numbers. direction: "rises" if the event becomes more probable along the axis, "falls" if less;
+  // empty: as the runs show it. With `between`, also: how do the limits differ between the first value of
+  // that axis and each other value? See event_limits.h.
   std::string limit;
   std::string along;
   double threshold = 0.5;
@@ -27,6 +29,7 @@ struct SweepQuestion {
   // combination of the axes `by`? Empty `between`: the first axis whose values are names.
   std::vector<std::string> differences;
   std::string between;
+  std::string direction = {};
 };
 
 // Returns popped_through, tool_popped_through or slave_touched if the sweep has it and it is known in a run;
@@ -36,16 +39,17 @@ std::string default_event(const SweepResult& result);
 // The name of such a figure.
 inline constexpr const char* kAnswerName = "analysis";
 
-// Returns a figure with the tables `limits`, `mean_MEASURE` and `difference_MEASURE`, and with a panel for
-// each of them whose rows fit into at most 8 curves over one axis of numbers. The caption states the
-// questions. config: the configuration of the sweep as JSON; its title is that of the figure, and it states
-// which axes have common noise. Throws InputError for a name that the sweep does not have, an axis that does
-// not fit, and a sweep without a finished run.
+// Returns a figure with the tables `limits`, `limit_difference`, `limit_ratio`, `mean_MEASURE` and
+// `difference_MEASURE`, and with a panel for each of them whose rows fit into at most 8 curves over one axis
+// of numbers. All p values are adjusted together. The caption states the questions. config: the configuration
+// of the sweep as JSON; its title is that of the figure, and it states which runs share random numbers
+// (sweep_streams.h). Throws InputError for a name that the sweep does not have, an axis that does not fit,
+// and a sweep without a finished run.
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question);
 
 // The same for a tally, which keeps neither single runs nor counts for other thresholds. Throws InputError
 // also for a difference, for a limit of a measure that is no event or with another threshold than 0.5, for
-// means over an axis with common noise, and for a sweep of more than 1e7 cells.
+// means over cells that share random numbers, and for a sweep of more than 1e7 cells.
 Figure sweep_answer(const SweepTally& tally, const std::string& config, const SweepQuestion& question);
 
 }  // namespace remote_touch

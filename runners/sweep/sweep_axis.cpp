@@ -232,10 +232,22 @@ SweepAxis read_axis(const Json& json, const std::string& label, int levels) {
   return axis;
 }
 
-Json thinned_axis(Json definition, std::size_t every) {
-  if (const auto count = definition.find("count"); count != definition.end()) {
-    *count = (count->get<std::size_t>() - 1) / every + 1;
-    return definition;
+Json thinned_axis(Json definition, std::size_t every, bool is_refined) {
+  if (definition.contains("count") && every > 1) {
+    Json range = definition;
+    range.erase("common_noise");
+    RangeAxis axis;
+    read_parameters(range, parameters(axis), "axis");
+    const auto count = static_cast<std::size_t>(axis.count);
+    Json values = Json::array();
+    for (std::size_t i = 0; i < count; i += every) values.push_back(value_of(axis, i, count));
+    if (is_refined) {  // only a range has values between those of the first round
+      definition["to"] = values.back(), definition["count"] = values.size();
+      return definition;
+    }
+    Json list = {{"parameter", axis.parameter}, {"values", values}};
+    if (definition.contains("common_noise")) list["common_noise"] = definition["common_noise"];
+    return list;
   }
   for (const char* const list : {"values", "labels", "variants"}) {
     const auto found = definition.find(list);

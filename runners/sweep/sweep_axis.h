@@ -40,9 +40,9 @@ struct SweepAxis {
 // Each form may have "common_noise": true or false.
 SweepAxis read_axis(const Json& json, const std::string& label, int levels);
 
-// Returns the definition of an axis with every every-th value; a range, whose steps may not divide evenly, is
-// thinned approximately.
-Json thinned_axis(Json definition, std::size_t every);
+// Returns the definition of an axis with every every-th value. A range becomes the list of these values, or,
+// in a sweep with refinement, the range from the first to the last of them.
+Json thinned_axis(Json definition, std::size_t every, bool is_refined);
 
 // Returns the dimension scale of values: numbers if each one can be stored as a number, else an enumeration
 // of their texts. Throws InputError, about label, for a value that appears twice or is empty.

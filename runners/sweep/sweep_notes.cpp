@@ -90,10 +90,10 @@ void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, 
     notes.push_back({"outcome unknown", text_of_unknown_outcome(trace)});
 }
 
-void NoteCounts::add_run(std::int32_t bits) {
+void NoteCounts::add_run(std::uint64_t bits) {
   const std::lock_guard lock(mutex_);
   ++runs_;
-  for (std::size_t kind = 0; bits >> kind != 0; ++kind)
+  for (std::size_t kind = 0; kind < note_kinds().size(); ++kind)
     if ((bits >> kind & 1) != 0) ++of_kind_[kind];
 }
 

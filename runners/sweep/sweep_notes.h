@@ -36,7 +36,7 @@ void refuse_notes(const SweepResult& result);
 void refuse_notes(const SweepTally& tally);
 
 // Adds the note "outcome unknown" if the distance to the true surface is known in some tick but a measure of
-// the outcome is NaN: an event is then counted as if it had not happened, see tally().
+// the outcome is NaN.
 void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes);
 
 // The notes on runs that are not stored as one sweep, such as those of a figure. Any thread may add some.
@@ -48,7 +48,7 @@ class NoteCounts {
   std::vector<std::string> lines() const;
 
  private:
-  void add_run(std::int32_t bits);
+  void add_run(std::uint64_t bits);
   mutable std::mutex mutex_;
   std::size_t runs_ = 0;
   std::map<std::size_t, std::size_t> of_kind_;  // by the number of the kind

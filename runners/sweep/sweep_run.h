@@ -25,7 +25,7 @@ struct SweepRunOptions {
 struct RunOutcome {
   RunState state = RunState::pending;
   std::vector<double> values = {};  // one for each measure; empty if the run failed
-  std::int32_t notes = 0;           // bits as in SweepResult::notes
+  std::uint64_t notes = 0;          // bits as in SweepResult::notes
   std::string error = {};
 };
 // Does one run. Throws std::bad_alloc, because lack of memory is not a result of the run, and Interrupted.

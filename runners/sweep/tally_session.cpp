@@ -39,7 +39,7 @@ void add(const SweepResult& batch, const TallyLayout& layout, SweepTally& tally)
     for (std::size_t m = 0; m < values.size(); ++m)
       values[m] = std::get<std::vector<double>>(batch.measures[m].values)[place];
     if (batch.state[place] == RunState::done)
-      tally.add_done(layout, batch.run_at(place), values, static_cast<std::uint32_t>(batch.notes[place]));
+      tally.add_done(layout, batch.run_at(place), values, batch.notes[place]);
     if (batch.state[place] == RunState::failed)
       tally.add_failed(layout, batch.run_at(place), batch.error[place]);
   }
@@ -129,8 +129,9 @@ bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& 
     }
     add(batch, layout, plan_.tally);
     progress(plan_.tally.held.count(), own_runs(), earlier);
-    if (seconds_since(start) < batch_s / 2) size = std::min(2 * size, kMostBatch);
-    if (seconds_since(start) > 1.5 * batch_s) size = std::max(size / 2, kLeastBatch);
+    const double took_s = seconds_since(start);
+    if (took_s < batch_s / 2) size = std::min((took_s < batch_s / 16 ? 8 : 2) * size, kMostBatch);
+    if (took_s > 1.5 * batch_s) size = std::max(size / 2, kLeastBatch);
     if (seconds_since(stored) < std::max(10.0, 20 * storing_s)) continue;
     const auto began = Clock::now();
     store();

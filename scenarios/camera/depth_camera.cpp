@@ -143,8 +143,9 @@ void DepthCamera::measure_row(const IdealView& view, const NoiseStream& stream, 
     z += settings_.noise_per_m * z * z * normal[u] * factor;
     // The sensor measures disparity, which is proportional to 1/z, in whole steps.
     if (steps > 0) z = steps / std::floor(steps / z + 0.5);
-    // A hole has no depth. Strong noise can move a depth behind the camera; such a depth is lost too.
-    if (view.hole[first + u] || !(z > 0)) z = std::numeric_limits<double>::quiet_NaN();
+    // A hole has no depth. Strong noise can move a depth behind the camera, and a step can be larger than the
+    // disparity, which then is rounded to 0; such depths are lost too.
+    if (view.hole[first + u] || !(z > 0 && std::isfinite(z))) z = std::numeric_limits<double>::quiet_NaN();
   }
 }
 

@@ -16,9 +16,10 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The sensors of depth_sensor.h: baseline, noise, step, window, lateral noise, range and angle.
-constexpr Triangulation kStructuredLight{0.075, 0.0625, 0.125, 1, 0.8, 108.75, 80};
-constexpr Triangulation kActiveStereo{0.05, 0.08, 1.0 / 32, 7, 0, 126, 80};
+// The sensors of depth_sensor.h: baseline, focal length (0: that of the image), noise, step, window, lateral
+// noise, range and angle.
+constexpr Triangulation kStructuredLight{0.075, 580, 0.0625, 0.125, 1, 0.8, 108.75, 80};
+constexpr Triangulation kActiveStereo{0.05, 0, 0.08, 1.0 / 32, 7, 0, 126, 80};
 
 // Nguyen et al. 2012; lateral noise grows by this share of its value for a surface seen head-on.
 constexpr double kAxialAtNearest_m = 0.0012, kAxialGrowth_per_m = 0.0019, kNearest_m = 0.4;
@@ -32,17 +33,19 @@ double grazing(double cosine) {
   return angle / (kQuarterTurn - angle);
 }
 
-// Returns the standard deviation of the disparity in px. focal_baseline: in px m. q: grazing() of the angle.
+// Returns the standard deviation of the disparity in px, before the rounding, which adds the rest of the
+// published value. focal_baseline: in px m. q: grazing() of the angle.
 double disparity_noise(const DepthSensorSettings& s, const Triangulation& t, double focal_baseline,
                        double z_m, double q) {
-  if (t.noise_px == 0 || s.sensor == DepthSensorKind::active_stereo) return t.noise_px;
-  const double px_per_m = focal_baseline / (z_m * z_m);
-  const double from_angle_m = kAxialGrazing / std::sqrt(z_m) * q * q;
-  const double beyond_m = z_m - kNearest_m;
-  const double head_on_px = s.axial_noise == AxialNoise::nguyen_2012
-                                ? (kAxialAtNearest_m + kAxialGrowth_per_m * beyond_m * beyond_m) * px_per_m
-                                : t.noise_px;
-  return head_on_px + from_angle_m * px_per_m;
+  if (t.noise_px == 0) return 0;
+  double published_px = t.noise_px;
+  if (s.sensor == DepthSensorKind::structured_light) {
+    const double px_per_m = focal_baseline / (z_m * z_m), beyond_m = z_m - kNearest_m;
+    if (s.axial_noise == AxialNoise::nguyen_2012)
+      published_px = (kAxialAtNearest_m + kAxialGrowth_per_m * beyond_m * beyond_m) * px_per_m;
+    published_px += kAxialGrazing / std::sqrt(z_m) * q * q * px_per_m;
+  }
+  return std::sqrt(std::max(0.0, published_px * published_px - t.step_px * t.step_px / 12));
 }
 
 }  // namespace
@@ -54,13 +57,17 @@ Parameters parameters(DepthSensorSettings& s) {
        "Kinect of 2010; active-stereo: RealSense D400; both measure disparities, f b / z in pixels"},
       {"max_depth_m", &s.max_depth_m, 0.01, 100, "largest depth that the sensor measures"},
       {"axial_noise", choice(s.axial_noise, {"disparity", "nguyen-2012"}), 0, 0,
-       "structured-light: noise of depth on a surface seen head-on: from noise_px, or "
-       "1.2 mm + 1.9 mm (z / m - 0.4)^2"},
+       "structured-light: standard deviation of depth on a surface seen head-on, rounding included: from noise_px, "
+       "or 1.2 mm + 1.9 mm (z / m - 0.4)^2"},
       {"baseline_m", &s.baseline_m, -1, 1,
        "distance of the projector or second camera, to the camera's right; below 0: that of the sensor, "
        "0.075 (structured-light) or 0.05 (active-stereo)"},
+      {"disparity_focal_px", &s.disparity_focal_px, -1, 1e5,
+       "focal length f of the camera that measures the disparity; 0: that of the image, focal_px; below 0: that of "
+       "the sensor, 580 (structured-light) or focal_px (active-stereo)"},
       {"noise_px", &s.noise_px, -1, 10,
-       "standard deviation of the disparity; 0: no noise; below 0: that of the sensor, 0.0625 or 0.08",
+       "standard deviation of the disparity, that of the rounding included; 0: no noise; below 0: that of the "
+       "sensor, 0.0625 or 0.08",
        kLive},
       {"disparity_step_px", &s.disparity_step_px, -1, 10,
        "disparity is rounded to multiples of this; 0: not rounded; below 0: that of the sensor, 1/8 or 1/32"},
@@ -87,10 +94,12 @@ Triangulation triangulation(const DepthSensorSettings& s) {
   const auto set = [](double& value, double setting) {
     if (setting >= 0) value = setting;
   };
-  set(t.baseline_m, s.baseline_m), set(t.noise_px, s.noise_px), set(t.step_px, s.disparity_step_px);
+  set(t.baseline_m, s.baseline_m), set(t.focal_px, s.disparity_focal_px), set(t.noise_px, s.noise_px);
+  set(t.step_px, s.disparity_step_px);
   set(t.lateral_noise_px, s.lateral_noise_px), set(t.max_disparity_px, s.max_disparity_px);
   set(t.max_angle_deg, s.max_angle_deg);
   if (s.window_px >= 1) t.window_px = s.window_px;
+  if (t.focal_px == 0) t.focal_px = s.camera.focal_px;
   return t;
 }
 
@@ -118,7 +127,7 @@ SceneView DepthSensor::view(DepthImage depth, const std::vector<double>& cosine,
   if (settings_.sensor == DepthSensorKind::simple)
     return {camera_.view(std::move(depth), std::move(colour)), {}, {}};
   SceneView view{{std::move(depth), {}, std::move(colour), {}}, {}, {}};
-  view.ideal.hole = baseline_shadow(view.ideal.depth, focal_baseline(), settings_.camera.edge_jump_m);
+  view.ideal.hole = baseline_shadow(view.ideal.depth, image_focal_baseline(), settings_.camera.edge_jump_m);
   add_noise(cosine, view);
   return view;
 }
@@ -145,9 +154,9 @@ void DepthSensor::add_noise(const std::vector<double>& cosine, SceneView& view) 
 
 // Returns true if the sensor cannot measure the surface, although its second device may see it.
 bool DepthSensor::is_out_of_range(double z_m, double cosine, int u) const {
-  const double disparity = focal_baseline() / z_m;
-  const bool is_beyond_second_image = settings_.sensor == DepthSensorKind::active_stereo && u < disparity;
-  return disparity > triangulation_.max_disparity_px || std::abs(cosine) < min_cosine_ ||
+  const bool is_beyond_second_image =
+      settings_.sensor == DepthSensorKind::active_stereo && u < image_focal_baseline() / z_m;
+  return focal_baseline() / z_m > triangulation_.max_disparity_px || std::abs(cosine) < min_cosine_ ||
          is_beyond_second_image;
 }
 

@@ -26,22 +26,26 @@ namespace remote_touch {
 //   3. Noise of the disparity, d + sigma n, which is correlated over the matching window (window_noise.h).
 //   4. Rounding to a multiple of the smallest step of disparity, s.
 //
-// So the depth has the standard deviation z^2 / (f b) sqrt(sigma^2 + s^2 / 12).
+// A published standard deviation is that of measured depths, so it contains the rounding. Here sigma is what
+// the rounding leaves of it: noise_px^2 = sigma^2 + s^2 / 12, and the depth has the standard deviation
+// z^2 noise_px / (f b). Where s / sqrt(12) exceeds noise_px, sigma is 0.
 //
-// Structured light is the Kinect of 2010 (IR camera f = 580 px, b = 75 mm):
+// Structured light is the Kinect of 2010 (IR camera f = 580 px, b = 75 mm). It measures the disparity with
+// that camera, whatever the focal length of the image is, so f is 580 px in 3 and 4, and in the range of the
+// search. In a stereo image f is that of the image.
 //   K. Khoshelham, S. Oude Elberink, "Accuracy and resolution of Kinect depth data for indoor mapping
 //   applications", Sensors 12 (2012) 1437-1454: depth noise 1.425e-3 z^2 (m), which is half of a step of
 //   disparity; 1 / (f b) per step of 2.85e-3 per m, which is a step of 1/8 px. Hence s = 1/8 px and
-//   sigma = 1/16 px. With both, the depth noise is 1.7 mm at 1 m and 6.6 mm at 2 m.
+//   noise_px = 1/16 px: the depth noise is 1.4 mm at 1 m and 5.7 mm at 2 m.
 //   C. V. Nguyen, S. Izadi, D. Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and
 //   tracking", 3DIMPVT 2012: axial noise 0.0012 + 0.0019 (z - 0.4)^2 + 0.0001 / sqrt(z) q^2 (m), lateral
 //   noise 0.8 + 0.035 q (px), q = theta / (pi / 2 - theta), theta the angle between the ray and the normal.
 //   The term with theta and the lateral noise are always used. The rest of the axial noise, 1.9 mm at 1 m and
-//   6.1 mm at 2 m, replaces sigma if axial_noise is nguyen_2012.
+//   6.1 mm at 2 m, replaces noise_px if axial_noise is nguyen_2012.
 //   The largest disparity is that of 0.4 m, the nearest depth of that sensor in its near mode.
 // Active stereo is the RealSense D400:
 //   A. Grunnet-Jepsen, J. N. Sweetser, J. Woodfill, "Best-known-methods for tuning Intel RealSense D400 depth
-//   cameras for best performance" (Intel, 2018): depth noise z^2 sigma / (f b), sigma below 0.1 px on a
+//   cameras for best performance" (Intel, 2018): depth noise z^2 noise_px / (f b), noise_px below 0.1 px on a
 //   textured wall, typically 0.05 to 0.1; b = 50 mm (D435) and 55 mm (D415). The nearest depths listed there
 //   for all resolutions are those of a disparity of 126 px.
 //   A. Grunnet-Jepsen et al., "Subpixel linearity improvement for Intel RealSense depth camera D400 series"
@@ -62,6 +66,7 @@ struct DepthSensorSettings {
   AxialNoise axial_noise = AxialNoise::disparity;
   // Below 0: the value of the sensor, see triangulation().
   double baseline_m = -1;
+  double disparity_focal_px = -1;
   double noise_px = -1;
   double disparity_step_px = -1;
   int window_px = -1;
@@ -76,7 +81,8 @@ std::string validate(const DepthSensorSettings& s);
 // The numbers with which a sensor triangulates.
 struct Triangulation {
   double baseline_m;
-  double noise_px;          // standard deviation of the disparity; 0: no axial noise
+  double focal_px;          // focal length of the camera that measures the disparity
+  double noise_px;          // standard deviation of the rounded disparity; 0: no axial noise
   double step_px;           // smallest step of disparity; 0: not rounded
   int window_px;            // width of the matching window
   double lateral_noise_px;  // standard deviation of a depth edge's position, for a surface seen head-on
@@ -88,8 +94,8 @@ Triangulation triangulation(const DepthSensorSettings& s);
 
 // A scene at one instant, and all of its measurement that does not change from frame to frame.
 struct SceneView {
-  IdealView ideal;                       // a hole is a pixel without a measurement
-  std::vector<double> noise_px;          // standard deviation of each pixel's disparity; empty: simple sensor
+  IdealView ideal;               // a hole is a pixel without a measurement
+  std::vector<double> noise_px;  // sigma of each pixel's disparity, before the rounding; empty: simple sensor
   std::vector<double> lateral_noise_px;  // empty: none
 };
 
@@ -114,7 +120,10 @@ class DepthSensor {
   DepthImage measured_depth(const SceneView& view, int frame) const;
 
  private:
-  double focal_baseline() const { return camera_.intrinsics().fx * triangulation_.baseline_m; }
+  // Focal length times baseline (px m), with the pixels in which the disparity is measured.
+  double focal_baseline() const { return triangulation_.focal_px * triangulation_.baseline_m; }
+  // The same with the pixels of the image, in which shadows and borders have their width.
+  double image_focal_baseline() const { return camera_.intrinsics().fx * triangulation_.baseline_m; }
   void add_noise(const std::vector<double>& cosine, SceneView& view) const;
   bool is_out_of_range(double z_m, double cosine, int u) const;
   std::size_t source(const SceneView& view, int u, int v, double across, double down) const;

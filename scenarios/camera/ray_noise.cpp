@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "core/parameters/input_error.h"
 
@@ -13,25 +14,42 @@ namespace remote_touch {
 
 namespace {
 
-constexpr int kMaxAge = 16;
 // Limit for the nodes of a lattice: their numbers and their noise need about 600 MB.
 constexpr std::int64_t kMaxNodes = std::int64_t{1} << 24;
 
-// Returns a standard normal for each number (of a point or a node), correlated with those of the previous
-// frames.
+// Returns a standard normal for each number (of a point or a node), correlated with those of other frames.
+// Frames that are `span` apart are independent but for kNegligible. Between two of them, each at the distance
+// h of the frame in their middle, that frame is m^h / (1 + m^(2 h)) times their sum, plus new noise; then the
+// same within the half that contains the wanted frame, until the wanted frame is in the middle.
 std::vector<double> remembered(const std::vector<std::uint32_t>& numbers, double memory, const NoiseKey& key,
                                int frame, const Kernels& kernels) {
-  std::vector<double> sum(numbers.size()), x(numbers.size()), y(numbers.size()), z(numbers.size());
-  double weight = 1, squares = 0;
-  for (int age = 0; age <= std::min(frame, kMaxAge) && weight > 0; ++age, weight *= memory) {
-    const NoiseStream stream =
-        noise_stream(key, NoiseUse::sensor_ray, static_cast<std::uint32_t>(frame - age));
-    kernels.noise.normals(stream, numbers.data(), numbers.size(), x.data(), y.data(), z.data());
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * x[i];
-    squares += weight * weight;
+  constexpr double kNegligible = 1e-8;
+  std::vector<double> unused(numbers.size());
+  const auto independent = [&](std::int64_t of_frame) {
+    std::vector<double> x(numbers.size());
+    const NoiseStream stream = noise_stream(key, NoiseUse::sensor_ray, static_cast<std::uint32_t>(of_frame));
+    kernels.noise.normals(stream, numbers.data(), numbers.size(), x.data(), unused.data(), unused.data());
+    return x;
+  };
+  std::vector<double> kept{memory};  // m, m^2, m^4, ...
+  while (kept.back() > kNegligible) kept.push_back(kept.back() * kept.back());
+  std::int64_t half = std::int64_t{1} << (kept.size() - 1), begin = frame / half * half;
+  std::vector<double> before = independent(begin);
+  if (begin == frame) return before;
+  std::vector<double> after = independent(begin + half);
+  for (std::size_t level = kept.size() - 1; level-- > 0;) {
+    half /= 2;
+    const double m = kept[level], share = m / (1 + m * m), rest = std::sqrt((1 - m * m) / (1 + m * m));
+    std::vector<double> middle = independent(begin + half);
+    for (std::size_t i = 0; i < middle.size(); ++i)
+      middle[i] = share * (before[i] + after[i]) + rest * middle[i];
+    if (begin + half == frame) return middle;
+    if (frame < begin + half)
+      after = std::move(middle);
+    else
+      before = std::move(middle), begin += half;
   }
-  for (double& value : sum) value /= std::sqrt(squares);
-  return sum;
+  return before;
 }
 
 // Nodes of a lattice around all points of a frame.

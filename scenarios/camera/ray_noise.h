@@ -25,8 +25,9 @@ struct RayNoise {
 // farther apart than two pitches along x or z is independent. Throws InputError if correlation_m is so small
 // against the cloud that the lattice would have more than 2^24 nodes.
 //
-// The noise of frame j with memory m is w_j + m w_{j-1} + m^2 w_{j-2} + ... with independent w. The sum is
-// cut off at frame j - 16 and scaled to standard deviation 1.
+// The noise x_j of frame j with memory m has the law of x_j = m x_(j-1) + (1 - m^2)^(1/2) w_j with
+// independent w: the correlation of two frames is m^|i - j|, from the first frame on (to 1e-8). It is not
+// computed by this recursion, so that a frame needs no other frames. pre: 0 <= m < 1.
 std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& positions, const NoiseKey& key,
                                    int frame, const Kernels& kernels);
 

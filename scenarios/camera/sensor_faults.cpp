@@ -73,7 +73,8 @@ Parameters parameters(SensorFaults& s) {
       {"ray_noise_correlation_m", &s.ray_noise.correlation_m, 0, 10,
        "noise is interpolated between the nodes of a lattice of this pitch across the view, in images at a depth of 1 m; 0: independent in each point"},
       {"ray_noise_memory_fraction", &s.ray_noise.memory, 0, 0.99,
-       "correlation of the noise of successive frames, as behind a filter in time; 0: new noise in every frame"},
+       "correlation m of the noise of successive frames, as behind a filter in time; frames that are n apart have m^n; "
+       "0: new noise in every frame"},
       {"sensor_distance_m", &s.sensor_distance_m, 0, 100,
        "distance of the sensor from the origin, against view_direction, for ray_noise_m; in images the distance of each point from the camera is used instead"},
       {"flying_probability", &s.flying_probability, 0, 1,
@@ -84,7 +85,9 @@ Parameters parameters(SensorFaults& s) {
        "probability that a point is an outlier anywhere along the viewing direction"},
       {"max_outlier_distance_m", &s.max_outlier_distance_m, 0, 100,
        "maximum distance of an outlier from its true position, uniformly distributed"},
-      {"quantisation_m", &s.quantisation_m, 0, 1, "depth is rounded to multiples of this; 0: not rounded"},
+      {"quantisation_m", &s.quantisation_m, 0, 1,
+       "depth is rounded to multiples of this: along view_direction from the origin, in images along the axis of the "
+       "camera from the camera; 0: not rounded"},
       {"hole_fraction", &s.hole_fraction, 0, 1,
        "fraction of the points that are lost in round holes, at new positions in each frame"},
       {"hole_radius_m", &s.hole_radius_m, 1e-4, 10,
@@ -114,7 +117,7 @@ FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const Senso
 int FaultySensor::frame_count() const {
   const SensorFaults& s = settings_;
   const bool change = s.repeat_probability > 0 || s.rolling_shutter_s > 0 || s.flying_probability > 0 ||
-                      s.outlier_probability > 0 || s.ray_noise.sigma_m > 0;
+                      s.outlier_probability > 0 || s.ray_noise.sigma_m > 0 || s.late_probability > 0;
   const bool continues = !ends() && (change || loses_points());
   return continues ? std::numeric_limits<int>::max() : scenario_->frame_count();
 }
@@ -236,7 +239,10 @@ void FaultySensor::displace(PointCloud& cloud, int frame) const {
       to += (2 * draw[how_far] - 1) * s.max_outlier_distance_m;
     else if (draw[flies] < s.flying_probability)
       to += (2 * draw[how_far] - 1) * s.max_flying_distance_m;
-    if (s.quantisation_m > 0) to = std::round(to / s.quantisation_m) * s.quantisation_m;
+    if (s.quantisation_m > 0) {
+      const double axial = cloud.image ? direction.dot(cloud.image->X_WC.linear().col(2)) : 1;
+      to = std::round(to * axial / s.quantisation_m) * s.quantisation_m / axial;
+    }
     if (cloud.image && to <= 0)
       lose(cloud, i);
     else if (to != depth_m)

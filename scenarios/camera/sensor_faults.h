@@ -14,8 +14,9 @@
 namespace remote_touch {
 
 // Faults are applied in this order. A point can get several faults, but an outlier is not also a flying
-// point. Depth is measured along view_direction. In a cloud with an image layout it is measured along each
-// point's own ray instead, as the distance from the camera.
+// point. Points move along view_direction, and their depth is measured along it. In a cloud with an image
+// layout points move along their own rays instead; noise grows with the distance from the camera, and the
+// rounded depth is that along the camera's axis, as in a depth image.
 struct SensorFaults {
   Vec3 view_direction{0, -1, 0};  // viewing direction of the sensor, world frame; any length
   double repeat_probability = 0;  // probability that a frame repeats the previous one
@@ -46,8 +47,8 @@ class FaultySensor final : public Scenario {
                const Kernels& kernels);
 
   double frame_rate_hz() const override { return scenario_->frame_rate_hz(); }
-  // If faults make frames of the same surface differ, the sensor delivers more frames after the scenario's
-  // last one, unless the scenario ends.
+  // If faults make frames of the same surface differ, in their points or in their delay, the sensor delivers
+  // more frames after the scenario's last one, unless the scenario ends.
   int frame_count() const override;
   double captured_s(int frame) const override;
   bool ends() const override { return scenario_->ends(); }

@@ -41,8 +41,11 @@ MeshObject checked_object(const std::string& name, const TriangleMesh& mesh, std
   if (!object.is_closed) return object;
   if (!object.shape->is_closed())
     refuse(names.subject, text(check), ": expected a closed mesh", names.if_open);
-  if (signed_volume(mesh) < 0)
-    refuse(names.subject, check.inverted() ? text(check) : "inside out",
+  if (object.shape->has_inverted_part())
+    refuse(names.subject,
+           check.inverted()          ? text(check)
+           : signed_volume(mesh) < 0 ? "inside out"
+                                     : "a part of the mesh is inside out",
            ": expected triangles counter-clockwise seen from outside", names.if_inverted);
   return object;
 }

@@ -21,7 +21,7 @@ struct MeshSubject {
 //
 // Throws InputError about the subject in these cases: the mesh has no triangle with an area, or an index or
 // vertex that cannot be used; its bounding box has a diagonal above 10 m; it should be closed and is not; or
-// it is closed and its triangles run clockwise seen from outside.
+// it is closed and the triangles of a part run clockwise seen from outside.
 MeshObject checked_object(const std::string& name, const TriangleMesh& mesh, std::optional<bool> closed,
                           const MeshSubject& names);
 

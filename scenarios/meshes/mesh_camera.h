@@ -29,6 +29,7 @@ class MeshCamera {
              const Kernels& kernels);
 
   const PosePath& path() const { return X_WC_; }
+  CameraIntrinsics intrinsics() const { return sensor_.intrinsics(); }
   bool noisy() const { return sensor_.noisy(); }
 
   // Returns what the sensor sees of the meshes at a time. The view has colours if any of the meshes has one;

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
+
+#include "scenarios/meshes/object_view.h"
+#include "scenarios/meshes/pose_file.h"
 
 namespace remote_touch {
 
@@ -34,10 +38,11 @@ Parameters parameters(MeshScene::Settings& s) {
 }
 
 MeshScene::MeshScene(const Settings& settings, std::vector<SceneMesh> meshes,
-                     std::optional<PosePath> camera_path, const NoiseKey& key, const Kernels& kernels)
+                     const std::optional<PosePath>& camera_path, const NoiseKey& key, const Kernels& kernels)
     : settings_(settings),
       meshes_(std::move(meshes)),
-      camera_(settings.sensor, std::move(camera_path), key, kernels),
+      camera_(settings.sensor, camera_path, key, kernels),
+      camera_has_path_(camera_path.has_value()),
       motion_ends_s_(end_of_motion(meshes_, camera_.path())) {
   if (settings.duration_s > 0) motion_ends_s_ = std::min(motion_ends_s_, settings.duration_s);
   for (const SceneMesh& mesh : meshes_) objects_.push_back(mesh.object);
@@ -59,6 +64,40 @@ std::vector<Phase> MeshScene::phases() const {
 // Objects and camera are where their paths are at this time.
 double MeshScene::moving_time_s(double time_s) const {
   return std::min(time_s, motion_ends_s_);
+}
+
+std::vector<Note> MeshScene::input_notes() const {
+  constexpr int kMoments = 30;
+  constexpr std::size_t kSamples = 200;
+  const int moments = motion_ends_s_ > 0 ? kMoments : 1;
+  std::vector<Note> notes;
+  for (const SceneMesh& mesh : meshes_) {
+    if (!mesh.object.is_closed) continue;
+    const std::vector<SampledPoint> samples = surface_samples(*mesh.object.shape, kSamples);
+    const auto samples_seen = [&](const auto& meant) {
+      std::size_t count = 0;
+      for (int i = 0; i < moments; ++i) {
+        const double time_s = motion_ends_s_ * i / std::max(1, moments - 1);
+        const RigidTransform X_CW = RigidTransform(meant(camera_.path().at(time_s))).inverse();
+        count += count_in_image(samples, X_CW * mesh.path.at(time_s), camera_.intrinsics());
+      }
+      return count;
+    };
+    if (samples_seen([](const RigidTransform& X) { return X; }) > 0) continue;
+    const Vec3 p_C = camera_.path().at(0).inverse() * (mesh.path.at(0) * samples.front().point);
+    char place[96];
+    std::snprintf(place, sizeof place, "at x %.3g, y %.3g, z %.3g m in the frame of the camera", p_C.x(),
+                  p_C.y(), p_C.z());
+    std::string text = mesh.object.name + " is at no time in the image: at the start it is " + place;
+    std::string others;
+    std::size_t most = 0;
+    for (const OtherMeaning& meaning : other_meanings())
+      if (const std::size_t count = camera_has_path_ ? samples_seen(meaning.of) : 0; count > most)
+        most = count, others = std::string("; with ") + meaning.text + " of the camera it is in the image";
+    text += others;
+    notes.push_back({"not in view", text});
+  }
+  return notes;
 }
 
 PointCloud MeshScene::made(int frame) const {

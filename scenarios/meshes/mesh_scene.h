@@ -27,8 +27,8 @@ class MeshScene : public Scenario {
 
   // camera_path: camera to world frame; empty: the camera rests where the settings place it. Keeps a
   // reference to the kernels. Pre: validate(settings) is empty.
-  MeshScene(const Settings& settings, std::vector<SceneMesh> meshes, std::optional<PosePath> camera_path,
-            const NoiseKey& key, const Kernels& kernels);
+  MeshScene(const Settings& settings, std::vector<SceneMesh> meshes,
+            const std::optional<PosePath>& camera_path, const NoiseKey& key, const Kernels& kernels);
 
   double frame_rate_hz() const override { return settings_.frame_rate_hz; }
   // Number of frames up to and including the first one in which all motion has ended; the largest int if the
@@ -48,6 +48,8 @@ class MeshScene : public Scenario {
   std::vector<PosedMesh> true_meshes(double time_s) const override {
     return posed_meshes(objects_, poses(time_s));
   }
+  // A note for each closed object that is at no time in the image, as far as 30 moments show.
+  std::vector<Note> input_notes() const override;
 
  private:
   PointCloud made(int frame) const;
@@ -59,6 +61,7 @@ class MeshScene : public Scenario {
   const std::vector<SceneMesh> meshes_;
   std::vector<MeshObject> objects_;  // the objects of meshes_
   MeshCamera camera_;
+  const bool camera_has_path_;
   double motion_ends_s_ = 0;             // 0: nothing moves
   std::optional<SceneView> still_view_;  // view of a scene in which nothing moves
   // 12 MB each. A hand uses a frame from its capture on, and the renderer when it arrives: up to 0.1 s later.

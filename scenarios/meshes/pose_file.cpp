@@ -1,14 +1,14 @@
 #include "scenarios/meshes/pose_file.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <string>
+#include <cstdio>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
 #include "core/geometry/near_origin.h"
+#include "scenarios/text_files/number_columns.h"
 #include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
@@ -16,106 +16,84 @@ namespace remote_touch {
 namespace {
 
 namespace fs = std::filesystem;
+using Words = std::vector<std::string_view>;
 
 constexpr const char* kMatrix = "expected 16 numbers, a 4 x 4 matrix row by row, or 16 nan";
 constexpr const char* kStamped = "expected lines 't tx ty tz qx qy qz qw'";
 
-std::vector<std::string_view> words_in(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t\r\v\f";
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(kBlanks); at != line.npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBlanks, end);
-  }
-  return words;
+// Indices of the quantities of a pose.
+enum : std::size_t { kTime, kFrame, kPosition, kQuaternion = kPosition + 3, kRotation = kQuaternion + 4 };
+
+std::vector<ColumnQuantity> made_quantities() {
+  std::vector<ColumnQuantity> quantities = {
+      {{"t", "time", "timestamp", "stamp"}, ColumnQuantity::Unit::time},
+      {{"frame"}},
+      {{"tx", "x", "px", "p_x", "t_x"}, ColumnQuantity::Unit::length},
+      {{"ty", "y", "py", "p_y", "t_y"}, ColumnQuantity::Unit::length},
+      {{"tz", "z", "pz", "p_z", "t_z"}, ColumnQuantity::Unit::length},
+      {{"qx", "q_x"}},
+      {{"qy", "q_y"}},
+      {{"qz", "q_z"}},
+      {{"qw", "q_w"}},
+  };
+  for (const char* element : {"r00", "r01", "r02", "r10", "r11", "r12", "r20", "r21", "r22"})
+    quantities.push_back({{element}});
+  return quantities;
 }
 
-// Calls use(where, words) for each line that is no comment, and comment(words) for each other one. `where` is
-// "file:line".
-template <class Use, class Comment>
-void for_each_line(const fs::path& file, const char* expected, Use&& use, Comment&& comment) {
-  const std::string text = read_input_text(file, expected);
-  std::string_view rest = without_byte_order_mark(text);
-  for (int number = 1; !rest.empty(); ++number) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::vector<std::string_view> words = words_in(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (!words.empty() && words.front().front() == '#')
-      comment(words);
-    else
-      use(file.string() + ":" + std::to_string(number), words);
-  }
+const std::vector<ColumnQuantity>& quantities() {
+  static const std::vector<ColumnQuantity> all = made_quantities();
+  return all;
 }
 
-double number_in(const std::string& where, std::string_view word) {
-  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // from_chars() takes no plus
-  const std::string_view digits = has_plus ? word.substr(1) : word;
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc() && end == digits.data() + digits.size()) return value;
-  refuse(where, "'", std::string(word.substr(0, 32)), "': expected a number");
+std::string text_of(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
 }
 
-template <std::size_t kCount>
-std::array<double, kCount> numbers_in(const std::string& where, const std::vector<std::string_view>& words,
-                                      const char* expected) {
-  if (words.empty()) refuse(where, "is empty: ", expected);
-  if (words.size() != kCount) refuse(where, "has ", words.size(), " words: ", expected);
-  std::array<double, kCount> numbers{};
-  for (std::size_t i = 0; i < kCount; ++i) numbers[i] = number_in(where, words[i]);
-  return numbers;
+bool has_all(const NumberColumns& columns, std::size_t first, std::size_t count) {
+  for (std::size_t i = first; i < first + count; ++i)
+    if (!columns.has(i)) return false;
+  return true;
 }
 
-// The columns of a file whose first comment names the elements of [R | t]: "# frame r00 r01 r02 tx r10 ...".
-class NamedColumns {
- public:
-  NamedColumns() = default;
-  // Has no columns unless the comment names all 12 elements.
-  explicit NamedColumns(std::vector<std::string_view> names) {
-    constexpr std::array<std::string_view, 12> kElements = {"r00", "r01", "r02", "tx",  "r10", "r11",
-                                                            "r12", "ty",  "r20", "r21", "r22", "tz"};
-    if (names.front() == "#")
-      names.erase(names.begin());
-    else
-      names.front().remove_prefix(1);
-    const auto place_of = [&](std::string_view name) {
-      return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-    };
-    for (std::size_t i = 0; i < kElements.size(); ++i) {
-      place_[i] = place_of(kElements[i]);
-      if (place_[i] == names.size()) return;
+// Returns the names in a comment or a line. "#timestamp [ns], tx [m]" names timestamp_ns and tx_m.
+std::vector<std::string> names_in(std::string_view line) {
+  std::string text;
+  for (const char c : line) {
+    if (c == '[' || c == '(') {
+      text.erase(text.find_last_not_of(' ') + 1);
+      text += '_';
+    } else if (c != ']' && c != ')') {
+      text += c == ',' || c == '#' ? ' ' : c;
     }
-    count_ = names.size(), frame_ = place_of("frame");
   }
-  explicit operator bool() const { return count_ > 0; }
+  const Words words = words_of_line(text);
+  return {words.begin(), words.end()};
+}
 
-  std::array<double, 16> matrix(const std::string& where, const std::vector<std::string_view>& words,
-                                std::size_t frame) const {
-    if (words.size() != count_)
-      refuse(where, "has ", words.size(), " words: expected ", count_, ", as the first comment names");
-    if (frame_ < count_ && number_in(where, words[frame_]) != static_cast<double>(frame))
-      refuse(where, "is for frame ", std::string(words[frame_]), ": expected frame ", frame,
-             ", one line for each frame in order");
-    std::array<double, 16> numbers{};
-    for (std::size_t i = 0; i < place_.size(); ++i) numbers[i] = number_in(where, words[place_[i]]);
-    const bool is_unknown =
-        std::all_of(numbers.begin(), numbers.begin() + 12, [](double x) { return std::isnan(x); });
-    for (std::size_t i = 12; i < 16; ++i) numbers[i] = is_unknown ? std::nan("") : i == 15 ? 1 : 0;
-    return numbers;
+// Returns the columns that a line names, or nothing if it does not name three elements of a pose.
+std::optional<NumberColumns> columns_named(const std::string& where, std::string_view line) {
+  constexpr std::size_t kFewest = 3;
+  const std::vector<std::string> names = names_in(line);
+  std::size_t elements = 0;
+  for (const std::string& name : names) {
+    const NumberColumns one(where, {name}, quantities());
+    for (std::size_t i = kPosition; i < quantities().size(); ++i) elements += one.has(i) ? 1 : 0;
   }
-
- private:
-  std::array<std::size_t, 12> place_{};
-  std::size_t count_ = 0, frame_ = 0;  // number of words in a line; column of the frame's number
-};
+  if (elements < kFewest) return {};
+  NumberColumns columns(where, names, quantities());
+  if (!has_all(columns, kPosition, 3) ||
+      !(has_all(columns, kQuaternion, 4) || has_all(columns, kRotation, 9)))
+    refuse(where,
+           "names some columns of a pose: expected tx ty tz with qx qy qz qw, or with r00 r01 r02 r10 "
+           "... r22, or no names");
+  return columns;
+}
 
 bool is_not_finite(double value) {
   return !std::isfinite(value);
-}
-
-bool is_nan(double value) {
-  return std::isnan(value);
 }
 
 void require_near_origin(const std::string& where, const Vec3& p) {
@@ -143,73 +121,348 @@ Eigen::Matrix3d rotation_in(const std::string& where, const Eigen::Matrix3d& R) 
   return nearest_rotation(R);
 }
 
-// Returns nothing for 16 nan.
-std::optional<RigidTransform> pose_in(const std::string& where, const std::array<double, 16>& numbers) {
-  if (std::all_of(numbers.begin(), numbers.end(), is_nan)) return {};
-  if (std::any_of(numbers.begin(), numbers.end(), is_nan)) refuse(where, "has nan beside numbers: ", kMatrix);
-  if (std::any_of(numbers.begin(), numbers.end(), is_not_finite))
-    refuse(where, "has a number that is not finite: ", kMatrix);
-  constexpr double kMaxOff = 1e-6;
-  using Matrix = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  const Matrix matrix = Eigen::Map<const Matrix>(numbers.data());
-  if (!((matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() <= kMaxOff))
-    refuse(where, "the last row is not 0 0 0 1: expected a 4 x 4 matrix row by row");
-  RigidTransform X = RigidTransform::Identity();
-  X.linear() = rotation_in(where, matrix.topLeftCorner<3, 3>());
-  X.translation() = matrix.topRightCorner<3, 1>();
-  require_near_origin(where, X.translation());
-  return X;
-}
-
-// numbers: t tx ty tz qx qy qz qw.
-StampedPose stamped_pose_in(const std::string& where, const std::array<double, 8>& numbers) {
-  if (std::any_of(numbers.begin(), numbers.end(), is_not_finite))
+// values: tx ty tz qx qy qz qw.
+std::optional<RigidTransform> pose_of_quaternion(const std::string& where,
+                                                 const std::array<double, 7>& values, bool may_be_unknown) {
+  constexpr double kMaxNormError = 1e-2;
+  if (may_be_unknown && std::all_of(values.begin(), values.end(), is_not_finite)) return {};
+  if (std::any_of(values.begin(), values.end(), is_not_finite))
     refuse(where, "has a number that is not finite: ", kStamped);
-  constexpr double kMaxStamp_s = 1e12, kMaxNormError = 1e-2;  // stamps as in lists of images: tum_layout.cpp
-  const auto [t, tx, ty, tz, qx, qy, qz, qw] = numbers;
-  if (std::abs(t) > kMaxStamp_s) refuse(where, "its time is above 1e12: expected seconds");
+  const auto [tx, ty, tz, qx, qy, qz, qw] = values;
   const Eigen::Quaterniond q(qw, qx, qy, qz);
   if (!(std::abs(q.norm() - 1) <= kMaxNormError))
     refuse(where, "its quaternion has the norm ", q.norm(), ": expected 1, within 0.01");
   require_near_origin(where, {tx, ty, tz});
-  StampedPose pose{t};
-  pose.X.linear() = q.normalized().toRotationMatrix();
-  pose.X.translation() = Vec3(tx, ty, tz);
-  return pose;
+  RigidTransform X = RigidTransform::Identity();
+  X.linear() = q.normalized().toRotationMatrix();
+  X.translation() = Vec3(tx, ty, tz);
+  return X;
+}
+
+// Returns the pose of the 16 numbers of a matrix.
+std::optional<RigidTransform> pose_of_matrix(const std::string& where,
+                                             const std::array<double, 16>& numbers) {
+  constexpr std::array<double, 4> kLastRow = {0, 0, 0, 1};
+  constexpr double kMaxOff = 1e-6;
+  std::array<double, 12> rows{};
+  std::copy_n(numbers.begin(), rows.size(), rows.begin());
+  const bool is_known = !std::all_of(rows.begin(), rows.end(), is_not_finite);
+  for (std::size_t i = 0; is_known && i < kLastRow.size(); ++i) {
+    if (is_not_finite(numbers[rows.size() + i])) refuse(where, "has a number that is not finite: ", kMatrix);
+    if (!(std::abs(numbers[rows.size() + i] - kLastRow[i]) <= kMaxOff))
+      refuse(where, "the last row is not 0 0 0 1: expected a 4 x 4 matrix row by row");
+  }
+  return pose_of_rows(where, rows);
+}
+
+std::array<double, 16> sixteen_numbers(const std::string& where, const Words& words) {
+  std::array<double, 16> numbers{};
+  if (words.size() != numbers.size()) refuse(where, "has ", words.size(), " words: ", kMatrix);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const std::optional<double> number = number_of_word(words[i]);
+    if (!number) refuse(where, "'", std::string(words[i].substr(0, 32)), "': expected a number");
+    numbers[i] = *number;
+  }
+  return numbers;
+}
+
+class PoseReader {
+ public:
+  PoseReader(const fs::path& file, PoseLines expected) : expected_(expected) { result_.file = file; }
+
+  void add(std::size_t number, std::string_view line) {
+    const std::string where = result_.file.string() + ":" + std::to_string(number);
+    const Words words = words_of_line(line);
+    const bool is_comment = !words.empty() && words.front().front() == '#';
+    const bool has_names = !words.empty() && !number_of_word(words.front());
+    if (result_.poses.empty() && columns_.count() == 0 && (is_comment || has_names))
+      if (std::optional<NumberColumns> named = columns_named(where, line)) {
+        columns_ = *std::move(named), is_named_ = true;
+        return;
+      }
+    if (is_comment && result_.poses.empty()) note_convention(where, words);
+    if (is_comment) return;
+    if (words.empty() && !may_skip()) refuse(where, "is empty: ", shape());
+    if (!words.empty()) add_pose(where, words);
+  }
+
+  PoseFile take() {
+    if (result_.poses.empty() && expected_ == PoseLines::stamped)
+      refuse(result_.file, "has no pose: ", kStamped);
+    if (equal_ > 0)
+      result_.notes.push_back(
+          {"unusual poses", result_.file.string() + ": " + std::to_string(equal_) +
+                                " line(s) have the time of the line before and are not used"});
+    return std::move(result_);
+  }
+
+ private:
+  const char* shape() const { return expected_ == PoseLines::stamped ? kStamped : kMatrix; }
+  bool may_skip() const { return expected_ == PoseLines::stamped || !result_.stamps_s.empty(); }
+
+  // A comment of free text is not read, but a user who wrote a unit or an order there expects that it is.
+  void note_convention(const std::string& where, const Words& words) {
+    constexpr std::array<std::string_view, 9> kConventions = {"mm",           "millimetres", "millimeters",
+                                                              "millimetre",   "millimeter",  "ms",
+                                                              "milliseconds", "wxyz",        "w-first"};
+    for (const std::string_view word : words)
+      for (const std::string_view convention : kConventions)
+        if (in_small_letters(word.substr(0, word.find_last_not_of(".,;:)]") + 1)) == convention)
+          result_.notes.push_back(
+              {"unusual poses", where + ": the comment says '" + std::string(convention) +
+                                    "', which is not read: a comment that names the columns "
+                                    "states units and order, such as # t_ms tx_mm ty_mm tz_mm "
+                                    "qw qx qy qz"});
+  }
+
+  void add_pose(const std::string& where, const Words& words) {
+    constexpr std::size_t kStampedWords = 8;
+    const bool may_be_stamped = expected_ != PoseLines::of_frames;
+    if (!is_named_ && columns_.count() == 0 && may_be_stamped &&
+        (expected_ == PoseLines::stamped || words.size() == kStampedWords))
+      columns_ = NumberColumns(where, {"t", "tx", "ty", "tz", "qx", "qy", "qz", "qw"}, quantities());
+    if (columns_.count() == 0) {
+      result_.poses.push_back(pose_of_matrix(where, sixteen_numbers(where, words)));
+      return;
+    }
+    if (words.size() != columns_.count())
+      refuse(where, "has ", words.size(), " words: ",
+             is_named_ ? "expected " + std::to_string(columns_.count()) + ", as the names of the columns say"
+                       : kStamped);
+    const bool is_stamped = columns_.has(kTime) && !columns_.has(kFrame);
+    if (is_stamped && !may_be_stamped)
+      refuse(where, "has a time: expected one pose for each frame, without times");
+    if (!is_stamped && expected_ == PoseLines::stamped) refuse(where, "has no time: ", kStamped);
+    if (is_stamped && !add_stamp(where, words)) return;
+    if (columns_.has(kFrame)) require_frame(where, words);
+    result_.poses.push_back(named_pose(where, words, !is_stamped));
+  }
+
+  // Returns false for a time that is that of the line before.
+  bool add_stamp(const std::string& where, const Words& words) {
+    constexpr double kMaxStamp_s = 1e12;  // the limit of tum_layout.cpp
+    std::vector<double>& stamps_s = result_.stamps_s;
+    const double stamp_s = columns_.value(where, words, kTime);
+    if (is_not_finite(stamp_s)) refuse(where, "has a number that is not finite: ", kStamped);
+    if (std::abs(stamp_s) > kMaxStamp_s) refuse(where, "its time is above 1e12: expected seconds");
+    if (!stamps_s.empty() && stamp_s == stamps_s.back()) {
+      ++equal_;
+      return false;
+    }
+    if (!stamps_s.empty() && !(stamp_s > stamps_s.back()))
+      refuse(where, "its time is below that of the line before: expected increasing times");
+    stamps_s.push_back(stamp_s);
+    return true;
+  }
+
+  void require_frame(const std::string& where, const Words& words) const {
+    const double frame = columns_.value(where, words, kFrame);
+    if (frame != static_cast<double>(result_.poses.size()))
+      refuse(where, text_of("is for frame %g: ", frame), "expected frame ", result_.poses.size(),
+             ", one line for each frame in order");
+  }
+
+  std::optional<RigidTransform> named_pose(const std::string& where, const Words& words,
+                                           bool may_be_unknown) {
+    const auto at = [&](std::size_t quantity) { return columns_.value(where, words, quantity); };
+    if (has_all(columns_, kRotation, 9)) {
+      std::array<double, 12> rows{};
+      for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 3; ++column)
+          rows[4 * row + column] = at(kRotation + 3 * row + column);
+        rows[4 * row + 3] = at(kPosition + row);
+      }
+      std::optional<RigidTransform> X = pose_of_rows(where, rows);
+      if (!X && !may_be_unknown) refuse(where, "has a number that is not finite: ", kStamped);
+      return X;
+    }
+    result_.has_unnamed_quaternions = !is_named_;
+    std::array<double, 7> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = at(kPosition + i);
+    return pose_of_quaternion(where, values, may_be_unknown);
+  }
+
+  const PoseLines expected_;
+  NumberColumns columns_;
+  bool is_named_ = false;
+  std::size_t equal_ = 0;
+  PoseFile result_;
+};
+
+// The largest speed between two poses, and the pose at its end.
+struct Fastest {
+  double speed_m_per_s = 0;
+  std::size_t pose = 0;
+};
+
+Fastest fastest(std::span<const StampedPose> poses) {
+  Fastest result;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const double way_m = (poses[i].X.translation() - poses[i - 1].X.translation()).norm();
+    const double speed = way_m / (poses[i].time_s - poses[i - 1].time_s);
+    if (speed > result.speed_m_per_s) result = {speed, i};
+  }
+  return result;
+}
+
+double rate_hz(std::span<const StampedPose> poses) {
+  return static_cast<double>(poses.size() - 1) / (poses.back().time_s - poses.front().time_s);
+}
+
+RigidTransform with_rotation(const RigidTransform& X, const Eigen::Matrix3d& R) {
+  RigidTransform changed = X;
+  changed.linear() = R;
+  return changed;
+}
+
+RigidTransform inverse_of(const RigidTransform& X) {
+  return X.inverse();
+}
+RigidTransform from_millimetres(const RigidTransform& X) {
+  RigidTransform changed = X;
+  changed.translation() /= 1000;
+  return changed;
+}
+RigidTransform with_transposed_rotation(const RigidTransform& X) {
+  return with_rotation(X, X.linear().transpose());
+}
+RigidTransform with_flipped_axes(const RigidTransform& X) {
+  return with_rotation(X, X.linear() * Vec3(1, -1, -1).asDiagonal());
+}
+RigidTransform with_flipped_parent(const RigidTransform& X) {
+  RigidTransform flip = RigidTransform::Identity();
+  flip.linear().diagonal() = Vec3(1, -1, -1);
+  return flip * X;
+}
+RigidTransform with_real_part_first(const RigidTransform& X) {
+  const Eigen::Quaterniond q(X.linear());
+  return with_rotation(X, Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix());
 }
 
 }  // namespace
 
-std::vector<std::optional<RigidTransform>> read_pose_matrices(const fs::path& file) {
-  std::vector<std::optional<RigidTransform>> poses;
-  NamedColumns columns;
-  const auto use = [&](const std::string& where, const std::vector<std::string_view>& words) {
-    poses.push_back(pose_in(
-        where, columns ? columns.matrix(where, words, poses.size()) : numbers_in<16>(where, words, kMatrix)));
-  };
-  for_each_line(file, kMatrix, use, [&](const std::vector<std::string_view>& words) {
-    if (poses.empty() && !columns) columns = NamedColumns(words);
-  });
+std::optional<RigidTransform> pose_of_rows(const std::string& where, const std::array<double, 12>& rows) {
+  if (std::all_of(rows.begin(), rows.end(), is_not_finite)) return {};
+  if (std::any_of(rows.begin(), rows.end(), [](double x) { return std::isnan(x); }))
+    refuse(where, "has nan beside numbers: ", kMatrix);
+  if (std::any_of(rows.begin(), rows.end(), is_not_finite))
+    refuse(where, "has a number that is not finite: ", kMatrix);
+  using Matrix = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
+  const Matrix matrix = Eigen::Map<const Matrix>(rows.data());
+  RigidTransform X = RigidTransform::Identity();
+  X.linear() = rotation_in(where, matrix.leftCols<3>());
+  X.translation() = matrix.col(3);
+  require_near_origin(where, X.translation());
+  return X;
+}
+
+PoseFile read_poses(const fs::path& file, PoseLines expected) {
+  const std::string text = read_input_text(file, expected == PoseLines::stamped ? kStamped : kMatrix);
+  PoseReader reader(file, expected);
+  for_each_line(without_byte_order_mark(text),
+                [&](std::size_t number, std::string_view line) { reader.add(number, line); });
+  return reader.take();
+}
+
+PoseFile read_pose_folder(const fs::path& folder, const std::vector<fs::path>& files) {
+  PoseFile poses;
+  poses.file = folder;
+  for (const fs::path& file : files) {
+    const std::string text = file.empty() ? "" : read_input_text(file, kMatrix);
+    const std::string where = file.string();
+    Words words;
+    for_each_line(without_byte_order_mark(text), [&](std::size_t, std::string_view line) {
+      for (const std::string_view word : words_of_line(line)) words.push_back(word);
+    });
+    poses.poses.push_back(file.empty() ? std::nullopt : pose_of_matrix(where, sixteen_numbers(where, words)));
+  }
   return poses;
 }
 
-PosePath read_stamped_poses(const fs::path& file) {
-  std::vector<StampedPose> poses;
-  double origin_s = 0;
-  for_each_line(
-      file, kStamped,
-      [&](const std::string& where, const auto& words) {
-        if (words.empty()) return;
-        StampedPose pose = stamped_pose_in(where, numbers_in<8>(where, words, kStamped));
-        if (poses.empty()) origin_s = pose.time_s;
-        pose.time_s -= origin_s;
-        if (!poses.empty() && !(pose.time_s > poses.back().time_s))
-          refuse(where, "its time is not above that of the line before: expected increasing times");
-        poses.push_back(pose);
-      },
-      [](const auto&) {});
-  if (poses.empty()) refuse(file, "has no pose: ", kStamped);
-  return PosePath(std::move(poses));
+PosePath path_of(const PoseFile& poses, double origin_s) {
+  std::vector<StampedPose> stamped;
+  for (std::size_t i = 0; i < poses.poses.size(); ++i)
+    stamped.push_back({poses.stamps_s[i] - origin_s, *poses.poses[i]});
+  return PosePath(std::move(stamped));
+}
+
+std::vector<double> origins_of_clocks(std::span<const PoseFile* const> files, std::vector<Note>& notes) {
+  std::vector<double> origins;
+  std::vector<std::pair<double, double>> ranges;  // first and last stamp of each file that moves
+  for (const PoseFile* poses : files) {
+    origins.push_back(poses->stamps_s.front());
+    if (poses->stamps_s.size() > 1) ranges.emplace_back(poses->stamps_s.front(), poses->stamps_s.back());
+  }
+  if (ranges.size() < 2) return origins;
+  std::sort(ranges.begin(), ranges.end());
+  double end_s = ranges.front().second;
+  for (const auto& [first_s, last_s] : ranges) {
+    if (first_s > end_s) {
+      notes.push_back({"unusual poses", "the times of the files of poses do not overlap: " +
+                                            text_of("one begins at %.6g s, ", ranges.front().first) +
+                                            text_of("another at %.6g s, ", first_s) +
+                                            text_of("after the end at %.6g s, ", end_s) +
+                                            "so that each file counts from its own first line"});
+      return origins;
+    }
+    end_s = std::max(end_s, last_s);
+  }
+  std::fill(origins.begin(), origins.end(), ranges.front().first);
+  return origins;
+}
+
+std::string motion_text(std::span<const StampedPose> poses) {
+  if (poses.size() == 1) return "1 pose";
+  double way_m = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i)
+    way_m += (poses[i].X.translation() - poses[i - 1].X.translation()).norm();
+  return std::to_string(poses.size()) +
+         text_of(" poses over %.3g s", poses.back().time_s - poses.front().time_s) +
+         text_of(" at %.3g Hz", rate_hz(poses)) + text_of(", %.3g m long", way_m) +
+         text_of(", at most %.3g m/s", fastest(poses).speed_m_per_s);
+}
+
+std::vector<Note> unusual_poses(const std::string& subject, std::span<const StampedPose> poses,
+                                bool has_unnamed_quaternions) {
+  constexpr double kFastest_m_per_s = 10, kFarthest_m = 10, kSlowest_hz = 1, kMostPoses_hz = 1000;
+  constexpr double kHalfTurn = 0.9;   // least |qx| of a turn by 180 degrees about x, within 52 degrees
+  constexpr std::size_t kSeries = 3;  // two poses far apart are a slow motion
+  std::vector<Note> notes;
+  const auto add = [&](const std::string& text) {
+    notes.push_back({"unusual poses", subject + ": " + text});
+  };
+  if (const Fastest most = fastest(poses); most.speed_m_per_s > kFastest_m_per_s)
+    add("pose " + std::to_string(most.pose) + text_of(" is reached at %.3g m/s: ", most.speed_m_per_s) +
+        "positions may be millimetres instead of metres, or the poses in another order");
+  const auto far = std::find_if(poses.begin(), poses.end(), [&](const StampedPose& pose) {
+    return pose.X.translation().norm() > kFarthest_m;
+  });
+  if (far != poses.end())
+    add("pose " + std::to_string(far - poses.begin()) +
+        text_of(" is %.4g m from the origin: ", far->X.translation().norm()) +
+        "positions may be millimetres instead of metres");
+  if (poses.size() >= kSeries && !(rate_hz(poses) >= kSlowest_hz && rate_hz(poses) <= kMostPoses_hz))
+    add("its poses have a rate of" + text_of(" %.3g Hz: ", rate_hz(poses)) +
+        "times are read as seconds, these may be milliseconds");
+  const auto is_half_turn = [&](const StampedPose& pose) {
+    return std::abs(Eigen::Quaterniond(pose.X.linear()).x()) > kHalfTurn;
+  };
+  if (has_unnamed_quaternions && std::all_of(poses.begin(), poses.end(), is_half_turn))
+    add("every pose is turned by about 180 degrees around x: the order of a quaternion is qx qy qz qw; if qw "
+        "comes first, a first line must name the columns: # t tx ty tz qw qx qy qz");
+  return notes;
+}
+
+std::span<const OtherMeaning> other_meanings() {
+  static constexpr OtherMeaning kMeanings[] = {
+      {"the inverse poses", inverse_of},
+      {"positions in millimetres", from_millimetres},
+      {"transposed rotations", with_transposed_rotation},
+      {"y and z of the body reversed (as in OpenGL)", with_flipped_axes},
+      {"y and z of the parent frame reversed (as in OpenGL)", with_flipped_parent},
+      {"quaternions with qw first", with_real_part_first},
+  };
+  return kMeanings;
 }
 
 }  // namespace remote_touch

@@ -1,10 +1,15 @@
 #include "scenarios/meshes/truth_folder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 
+#include "scenarios/meshes/pose_file.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/json_text.h"
@@ -131,13 +136,87 @@ TruthFolder truth_in(const fs::path& folder) {
   return truth;
 }
 
+// --- the layout of BOP ---
+
+// Returns `count` numbers of a list.
+template <std::size_t kCount>
+std::array<double, kCount> numbers_of(const fs::path& file, const std::string& where, const Json& json,
+                                      const char* key) {
+  const auto found = json.find(key);
+  const bool is_list = found != json.end() && found->is_array() && found->size() == kCount &&
+                       std::all_of(found->begin(), found->end(), [](const Json& x) { return x.is_number(); });
+  if (!is_list) refuse(file, where, "expected ", key, ", a list of ", kCount, " numbers");
+  std::array<double, kCount> numbers{};
+  std::transform(found->begin(), found->end(), numbers.begin(),
+                 [](const Json& x) { return x.get<double>(); });
+  return numbers;
+}
+
+RigidTransform pose_of_bop(const fs::path& file, const std::string& where, const Json& json) {
+  const std::array<double, 9> R = numbers_of<9>(file, where, json, "cam_R_m2c");
+  const std::array<double, 3> t_mm = numbers_of<3>(file, where, json, "cam_t_m2c");
+  std::array<double, 12> rows{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::copy_n(R.begin() + 3 * static_cast<std::ptrdiff_t>(row), 3,
+                rows.begin() + 4 * static_cast<std::ptrdiff_t>(row));
+    rows[4 * row + 3] = t_mm[row] / 1000;
+  }
+  const std::optional<RigidTransform> X = pose_of_rows(file.string() + ": " + where, rows);
+  if (!X) refuse(file, where, "expected a pose of finite numbers");
+  return *X;
+}
+
+// Returns the folder of the models of a scene; empty: there is none.
+fs::path models_of(const fs::path& scene) {
+  fs::path folder = fs::absolute(scene / "").lexically_normal().parent_path();
+  for (int level = 0; level < 3; ++level, folder = folder.parent_path())
+    if (fs::is_directory(folder / "models")) return folder / "models";
+  return {};
+}
+
+fs::path model_file(const fs::path& models, int number) {
+  char name[32];
+  std::snprintf(name, sizeof name, "obj_%06d.ply", number);
+  return models / name;
+}
+
+std::optional<TruthFolder> truth_of_bop(const fs::path& scene) {
+  const fs::path file = scene / "scene_gt.json", models = models_of(scene);
+  if (models.empty()) return {};
+  const Json json = parse_json(read_input_text(file, "expected the poses of BOP"), file.string());
+  if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
+  std::map<std::pair<int, int>, TruthObjectFiles> objects;  // key: number, and count in an image
+  for (const auto& image : json.items()) {
+    std::map<int, int> counts;
+    for (const Json& entry : image.value()) {
+      const std::string where = "image " + image.key() + ": ";
+      const auto number = entry.is_object() ? entry.find("obj_id") : entry.end();
+      if (number == entry.end() || !number->is_number_unsigned())
+        refuse(file, where, "expected entries with obj_id, a number");
+      const int id = number->get<int>(), count = ++counts[id];
+      TruthObjectFiles& object = objects[{id, count}];
+      object.name = "obj_" + std::to_string(id) + (count > 1 ? "_" + std::to_string(count) : "");
+      object.mesh = model_file(models, id), object.poses = file, object.metres_per_unit = 1e-3;
+      const std::vector<std::string> frame = numbers_in_name(image.key());
+      if (frame.size() != 1) refuse(file, "image ", image.key(), ": expected the number of an image");
+      object.X_CO.emplace(frame.front(), pose_of_bop(file, where, entry));
+    }
+  }
+  if (objects.empty()) refuse(file, "has no object: expected the poses of BOP");
+  TruthFolder truth;
+  truth.name = "scene_gt.json", truth.description = file;
+  for (auto& [place, object] : objects) truth.objects.push_back(std::move(object));
+  if (fs::is_directory(scene / "mask_visib")) truth.masks = scene / "mask_visib";
+  return truth;
+}
+
 }  // namespace
 
 std::optional<TruthFolder> find_truth(const fs::path& recording) {
   try {
     const fs::path folder = recording / "truth";
-    if (!fs::is_directory(folder)) return {};
-    return truth_in(folder);
+    if (fs::is_directory(folder)) return truth_in(folder);
+    return fs::exists(recording / "scene_gt.json") ? truth_of_bop(recording) : std::nullopt;
   } catch (const fs::filesystem_error& error) {  // a folder that may not be entered
     refuse(error.path1(), "cannot be read: ", error.code().message());
   }

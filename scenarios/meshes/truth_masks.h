@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/geometry/point_cloud.h"
@@ -16,12 +17,13 @@ namespace remote_touch {
 // last ones are kept, so that several threads must not use one object at the same time.
 class TruthMasks {
  public:
-  // If there are as many masks as frames, they belong to the frames in the order of sort_by_name(), as depth
-  // images do. If there are fewer, the only number in a mask's name is the number of its frame, counted from
-  // 0, and the truth holds nowhere in the other frames. Throws InputError about a mask for which neither is
-  // true, and about the folder if the camera has no pixels. Without a folder of masks the truth holds
-  // everywhere.
-  TruthMasks(const TruthFolder& truth, std::size_t frame_count, const CameraIntrinsics& camera);
+  // frames: the names of the frames' depth images. A mask belongs to the frame whose name has the same
+  // numbers, see numbers_in_name(): mask_0007.png to frame-000007.depth.png. It may have one more number,
+  // that of an object: the truth holds where one of the masks of the frame holds. It holds nowhere in a frame
+  // without a mask. Throws InputError about a mask whose frame is not clear, and about the folder if the
+  // camera has no pixels. Without a folder of masks the truth holds everywhere.
+  TruthMasks(const TruthFolder& truth, const std::vector<std::string>& frames,
+             const CameraIntrinsics& camera);
 
   // Returns true if the truth holds at the pixel nearest to the projection of p_C (camera frame), and false
   // for positions outside the image or not in front of the camera. Pre: frame < frame_count. Throws
@@ -36,7 +38,7 @@ class TruthMasks {
   const std::vector<bool>& mask_of(std::size_t frame) const;
   std::vector<bool> read(std::size_t frame) const;
 
-  std::vector<std::filesystem::path> files_;  // a path for each frame, or an empty path; empty: no masks
+  std::vector<std::vector<std::filesystem::path>> files_;  // the masks of each frame; empty: no masks
   CameraIntrinsics camera_;
   mutable std::vector<Mask> cache_;  // the masks that were used last, the newest in front
 };

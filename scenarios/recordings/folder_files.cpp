@@ -19,18 +19,8 @@ void require_target(const fs::path& file) {
     refuse(file.string(), "is a link to a file that does not exist: expected a file");
 }
 
-// Returns all numbers in a name, without leading zeros: 2 and 7 for img_2_0007.png.
 std::vector<std::string> numbers_in(const fs::path& file) {
-  constexpr const char* kDigits = "0123456789";
-  const std::string name = file.stem().string();
-  std::vector<std::string> numbers;
-  for (std::size_t at = name.find_first_of(kDigits); at != name.npos;) {
-    const std::size_t end = std::min(name.find_first_not_of(kDigits, at), name.size());
-    const std::size_t first = std::min(name.find_first_not_of('0', at), end);
-    numbers.push_back(name.substr(first, end - first));
-    at = name.find_first_of(kDigits, end);
-  }
-  return numbers;
+  return numbers_in_name(file.stem().string());
 }
 
 [[noreturn]] void refuse_pair(const fs::path& colour, const fs::path& depth) {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "scenarios/meshes/object_view.h"
 
 namespace remote_touch {
 
@@ -45,14 +48,13 @@ double distance_to_measured(const PointCloud& cloud, const Vec3& p_W, double rad
   if (!p_W.allFinite() || !cloud.image) return unknown;
   const RigidTransform X_CW = cloud.image->X_WC.inverse();
   const Vec3 p_C = X_CW * p_W;
-  if (!p_C.allFinite() || !(p_C.z() > 0)) return unknown;
   const CameraIntrinsics& camera = cloud.image->camera;
-  const double u = std::floor(camera.fx * p_C.x() / p_C.z() + camera.cx + 0.5);
-  const double v = std::floor(camera.fy * p_C.y() / p_C.z() + camera.cy + 0.5);
-  if (!(u >= 0 && v >= 0 && u < camera.width && v < camera.height)) return unknown;
+  const std::optional<std::size_t> pixel = pixel_of(camera, p_C);
+  if (!pixel) return unknown;
   const double half = std::clamp(camera.fx * radius_m / p_C.z(), 1.0, 1.0 * camera.width);
-  const Patch patch = patch_around(cloud, X_CW, static_cast<int>(u), static_cast<int>(v),
-                                   static_cast<int>(half), 4 * radius_m);
+  const Patch patch =
+      patch_around(cloud, X_CW, static_cast<int>(*pixel) % camera.width,
+                   static_cast<int>(*pixel) / camera.width, static_cast<int>(half), 4 * radius_m);
   return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;
 }
 

@@ -32,8 +32,9 @@ RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingInde
 Parameters parameters(RecordedScene::Settings& s) {
   return {
       {"path", &s.path, 0, 0,
-       "recording folder, TUM folder, folder of PCD files, one PCD file, or a bag of ROS: .bag, .mcap, .db3, "
-       "or the folder of a bag; coordinates up to 1000 m from the origin along each axis"},
+       "recording folder, also in the layout of TUM, 7-Scenes, ScanNet or BOP; folder of PCD files, one PCD file, "
+       "or a bag of ROS: .bag, .mcap, .db3, or the folder of a bag; coordinates up to 1000 m from the origin along "
+       "each axis"},
       {"first_frame", &s.first_frame, 0, 1e6, "first frame used"},
       {"last_frame", &s.last_frame, -1, 1e6, "last frame used; -1: the last frame of the recording"},
       {"playback", choice(s.playback, {"hold", "loop", "ping-pong"}), 0, 0,
@@ -51,8 +52,10 @@ Parameters parameters(RecordedScene::Settings& s) {
       {"truth_reach_m", &s.truth_reach_m, 1e-3, 10,
        "distance from the true meshes up to which the truth is known"},
       {"camera_poses", &s.camera_poses, 0, 0,
-       "file in the recording's folder with the poses of a moving camera, base frame to camera frame, one for "
-       "each frame; empty: the camera does not move"},
+       "poses of a moving camera: a file in the recording's folder, one pose for each frame or with stamps, or a "
+       "folder with a file for each frame; empty: the camera does not move"},
+      {"pose_direction", choice(s.pose_direction, {"camera-to-world", "world-to-camera"}), 0, 0,
+       "what the poses of camera_poses transform, the world being their base frame"},
       {"camera_position_m", &s.camera_position_m, -100, 100,
        "position of the camera in the base frame (registration, 6.2.1); with camera_poses: of the frame of "
        "these poses"},
@@ -89,7 +92,7 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
                              const MeshReader& read_mesh)
     : settings_(settings),
       recording_(index_recording(find_recording(settings.path), settings.bag)),
-      camera_(camera_pose(settings, recording_), settings.camera_poses, recording_,
+      camera_(camera_pose(settings, recording_), settings.camera_poses, settings.pose_direction, recording_,
               find_recording(settings.path)),
       times_(recording_, input_files(settings), settings.playback, settings.frame_rate_hz),
       statistics_(recording_.frames.size()) {
@@ -100,6 +103,7 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
            "its points form no camera image and have no depth: expected scenario.max_depth_m = ",
            Settings{}.max_depth_m, ", the default, which does not apply to them");
   read_truth(read_mesh);
+  if (truth_) fit_.add_truth(times_.source(0), cloud(0), *truth_);
 }
 
 void RecordedScene::read_truth(const MeshReader& read_mesh) {
@@ -107,7 +111,7 @@ void RecordedScene::read_truth(const MeshReader& read_mesh) {
   const std::optional<TruthFolder> folder =
       read_mesh ? find_truth(find_recording(settings_.path)) : std::nullopt;
   if (folder)
-    truth_ = std::make_unique<const RecordedTruth>(*folder, recording_.frames.size(), settings_.truth_reach_m,
+    truth_ = std::make_unique<const RecordedTruth>(*folder, frame_names(recording_), settings_.truth_reach_m,
                                                    read_mesh, recording_.camera);
   else if (settings_.truth == Truth::mesh)
     refuse(settings_.path, "has no folder truth/: expected one for scenario.truth = mesh");
@@ -133,10 +137,7 @@ int RecordedScene::frame_count() const {
 
 std::string RecordedScene::truth_text() const {
   if (!truth_) return "the measured surface";
-  std::string names;
-  for (const MeshObject& object : truth_->objects())
-    names.append(names.empty() ? "" : ", ").append(object.name);
-  const std::string text = "meshes of truth/ (" + names + "), uncertainty ";
+  const std::string text = "meshes of " + truth_->name() + ", uncertainty ";
   if (std::isnan(truth_->uncertainty_m())) return text + "not stated";
   char uncertainty[32];
   std::snprintf(uncertainty, sizeof uncertainty, "%.3g mm", 1e3 * truth_->uncertainty_m());
@@ -148,7 +149,7 @@ std::string RecordedScene::input() const {
   const bool states_truth = truth_ || settings_.truth == Truth::measured;
   return description(recording_, times_.text()) + "; " + statistics_.text() +
          (layout_->camera ? "" : "; no camera, so that scenario.max_depth_m does not apply") +
-         (states_truth ? "; truth: " + truth_text() : "");
+         (camera_.moves() ? "; " + camera_.text() : "") + (states_truth ? "; truth: " + truth_text() : "");
 }
 
 // A camera usually has a rate between these limits; outside them the stamps are probably not in seconds. The
@@ -180,7 +181,9 @@ std::vector<Note> RecordedScene::input_notes() const {
   std::vector<bool> is_used;
   for (int i = 0; i < times_.count(); ++i)
     is_used.push_back(statistics_.has(static_cast<std::size_t>(times_.first() + i)));
-  for (const std::vector<Note>& more : {unused_frames(is_used), unusual_rate()})
+  const std::vector<Note> of_truth = truth_ ? fit_.truth_notes(*truth_) : std::vector<Note>();
+  for (const std::vector<Note>& more : {recording_.notes, unused_frames(is_used), unusual_rate(),
+                                        camera_.notes(), fit_.motion_notes(camera_), of_truth})
     notes.insert(notes.end(), more.begin(), more.end());
   for (Note& note : notes) note.text = settings_.path + ": " + note.text;
   return notes;
@@ -212,13 +215,21 @@ PointCloud RecordedScene::registered(std::size_t source) const {
     refuse(settings_.path, far_from_origin("frame " + std::to_string(source) + " has its VIEWPOINT"));
   const RigidTransform X_WF = camera_.pose(source);
   const RigidTransform X_WC = X_FC.matrix().isIdentity(0) ? X_WF : X_WF * X_FC;
-  if (X_WC.matrix().isIdentity(0)) return cloud;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
+  const bool is_moved = !X_WC.matrix().isIdentity(0);
+  for (std::size_t i = 0; is_moved && i < cloud.size(); ++i) {
     const Vec3 p_W = X_WC * cloud.point(i);
     cloud.x[i] = p_W.x(), cloud.y[i] = p_W.y(), cloud.z[i] = p_W.z();
   }
-  if (cloud.image) cloud.image->X_WC = X_WC * cloud.image->X_WC;
+  if (is_moved && cloud.image) cloud.image->X_WC = X_WC * cloud.image->X_WC;
+  compare(source, cloud);
   return cloud;
+}
+
+// Compares a frame with the poses of the recording's files when it is read for the first time.
+void RecordedScene::compare(std::size_t source, const PointCloud& cloud) const {
+  if (!is_compared_.insert(source).second) return;
+  fit_.add_motion(source, cloud, camera_);
+  if (truth_) fit_.add_truth(source, cloud, *truth_);
 }
 
 std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "scenarios/recordings/frame_layout.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/recordings/frame_times.h"
+#include "scenarios/recordings/pose_fit.h"
 #include "scenarios/recordings/recording.h"
 #include "scenarios/recordings/recording_part.h"
 
@@ -36,7 +38,8 @@ class RecordedScene : public Scenario {
     Truth truth = Truth::automatic;
     double truth_radius_m = 0.006;
     double truth_reach_m = 0.03;
-    std::string camera_poses;               // file in the folder of the recording
+    std::string camera_poses;  // file or folder in the folder of the recording
+    PoseDirection pose_direction = PoseDirection::camera_to_world;
     Vec3 camera_position_m = Vec3::Zero();  // position and rotation vector of the camera, base frame
     Vec3 camera_rotation_deg = Vec3::Zero();
     BagChoice bag;  // used if the path is a bag of ROS
@@ -52,7 +55,7 @@ class RecordedScene : public Scenario {
   double frame_rate_hz() const override { return times_.rate_hz(); }
   int frame_count() const override;
   double captured_s(int frame) const override { return times_.captured_s(frame); }
-  // "office: 71 frame(s) from depth PNG at 29.9 Hz, 640 x 480 pixels; 12 read: ..."
+  // "office: 71 frame(s) from depth PNG at 29.9 Hz, 640 x 480 pixels, f = ...; 12 read: ..."
   std::string input() const override;
   std::vector<Note> input_notes() const override;
   // The pose at the first frame, if the camera moves.
@@ -87,6 +90,7 @@ class RecordedScene : public Scenario {
   PointCloud as_recorded(std::size_t source, RigidTransform& X_FC) const;
   std::vector<Note> unusual_rate() const;
   PointCloud registered(std::size_t source) const;
+  void compare(std::size_t source, const PointCloud& cloud) const;
   const PointCloud& newest_cloud(double time_s) const;
 
   const Settings settings_;
@@ -102,6 +106,8 @@ class RecordedScene : public Scenario {
   };
   mutable std::vector<CachedFrame> cache_;
   mutable FrameStatistics statistics_;
+  mutable PoseFit fit_;
+  mutable std::set<std::size_t> is_compared_;  // the frames in fit_
   mutable std::size_t unused_viewpoints_ = 0;  // number of files read whose VIEWPOINT is not used
   mutable std::optional<FrameLayout> layout_;  // layout of frame 0, which the constructor reads
 };

@@ -8,6 +8,7 @@
 
 #include "scenarios/meshes/truth_folder.h"
 #include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/camera_path.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
@@ -105,7 +106,12 @@ std::vector<InputFile> listed_files(const RecordingPart& part) {
     add(frame.depth);
     if (!frame.colour.empty()) add(frame.colour);
   }
-  if (!part.camera_poses.empty()) add(folder / part.camera_poses);
+  if (const fs::path poses = (folder / part.camera_poses).lexically_normal(); !part.camera_poses.empty()) {
+    if (!fs::is_directory(poses)) add(poses);
+    for (const fs::path& file :
+         fs::is_directory(poses) ? pose_files(poses, recording) : std::vector<fs::path>())
+      if (!file.empty()) add(file);
+  }
   if (const std::optional<TruthFolder> truth = part.with_truth ? find_truth(folder) : std::nullopt)
     for (const fs::path& file : files_of(*truth)) add(file);
   std::vector<InputFile> list;

@@ -19,7 +19,7 @@ struct RecordingPart {
   int first_frame = 0;
   int last_frame = -1;            // -1: the last frame of the recording
   bool with_truth = false;        // the run also reads the folder truth/, if the recording has one
-  std::string camera_poses = {};  // a file in the recording's folder that the run also reads; empty: none
+  std::string camera_poses = {};  // a file or folder of poses in it that the run also reads; empty: none
   auto operator<=>(const RecordingPart&) const = default;
 };
 

@@ -1,7 +1,5 @@
 #include "scenarios/synthetic/flat_grid.h"
 
-#include <limits>
-
 namespace remote_touch {
 
 Parameters parameters(FlatGrid::Settings& s) {
@@ -11,11 +9,6 @@ Parameters parameters(FlatGrid::Settings& s) {
        {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
        {"redraw_noise", &s.redraw_noise, 0, 1,
         "true: new noise in every frame; false: the same noise in all"}});
-}
-
-// One frame suffices without fresh noise: every frame would repeat the first.
-int FlatGrid::frame_count() const {
-  return noise_sigma_m_ > 0 && redraw_noise_ ? std::numeric_limits<int>::max() : 1;
 }
 
 PointCloud FlatGrid::cloud(int frame) const {

@@ -19,7 +19,7 @@ class FlatGrid final : public GridScene {
   FlatGrid(const Settings& settings, const NoiseKey& key, const Kernels& kernels)
       : GridScene(settings, key, kernels), redraw_noise_(settings.redraw_noise) {}
 
-  int frame_count() const override;
+  int frame_count() const override { return frames_of(1, redraw_noise_); }
   PointCloud cloud(int frame) const override;
   // Height over the plane; NaN for a position that is below the plane and beyond the grid.
   double signed_distance(const Vec3& p_W, double) const override { return grid_.signed_distance(p_W, 0); }

@@ -1,6 +1,8 @@
 // A scene whose points are at the nodes of a grid, with noise.
 #pragma once
 
+#include <limits>
+
 #include "scenarios/interface/scenario.h"
 #include "scenarios/interface/surface_time.h"
 #include "scenarios/synthetic/grid.h"
@@ -30,6 +32,11 @@ class GridScene : public Scenario {
         key_(key),
         kernels_(kernels) {}
 
+  // Returns the number of frames of a scene whose surface moves in the first `moving` frames only. Frames
+  // never end if noise is drawn anew in each, because each then differs from the one before.
+  int frames_of(int moving, bool redraws_noise = true) const {
+    return noise_sigma_m_ > 0 && redraws_noise ? std::numeric_limits<int>::max() : moving;
+  }
   NoiseStream noise(int frame) const {
     return noise_stream(key_, NoiseUse::point_position, static_cast<std::uint32_t>(frame));
   }

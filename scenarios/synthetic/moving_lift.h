@@ -26,7 +26,7 @@ class MovingLift final : public GridScene {
 
   MovingLift(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
-  int frame_count() const override { return lift_.frame_count(frame_rate_hz()); }
+  int frame_count() const override { return frames_of(lift_.frame_count(frame_rate_hz())); }
   std::vector<Phase> phases() const override { return lift_.phases(); }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;

@@ -35,7 +35,7 @@ MovingPlane::MovingPlane(const Settings& settings, const NoiseKey& key, const Ke
   rising_s_ = 2 * settings.rise_height_m / (v + std::sqrt(v * v + 2 * a * settings.rise_height_m));
   constexpr double kMaxFrames = std::numeric_limits<int>::max() - 1;
   const double moving_frames = std::ceil((settings.wait_s + rising_s_) * settings.frame_rate_hz - 1e-6);
-  frame_count_ += static_cast<int>(std::min(moving_frames, kMaxFrames));
+  moving_frames_ += static_cast<int>(std::min(moving_frames, kMaxFrames));
 }
 
 double MovingPlane::height(double time_s) const {

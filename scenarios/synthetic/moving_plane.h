@@ -23,8 +23,8 @@ class MovingPlane final : public GridScene {
   MovingPlane(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
   // Number of frames up to and including the first one in which the plane has come to rest for good, limited
-  // to the largest int.
-  int frame_count() const override { return frame_count_; }
+  // to the largest int. With noise the frames never end.
+  int frame_count() const override { return frames_of(moving_frames_); }
   std::vector<Phase> phases() const override {
     if (settings_.rise_height_m == 0) return {};
     return {{"the rise of the plane", settings_.wait_s, settings_.wait_s + rising_s_}};
@@ -43,7 +43,7 @@ class MovingPlane final : public GridScene {
 
   const Settings settings_;
   double rising_s_ = 0;  // duration of the rise
-  int frame_count_ = 1;
+  int moving_frames_ = 1;
 };
 
 Parameters parameters(MovingPlane::Settings& s);

@@ -77,7 +77,7 @@ MovingShape::MovingShape(const Settings& settings, const NoiseKey& key, const Ke
 int MovingShape::frame_count() const {
   if (vanish_frame_ >= 0) return vanish_frame_ + 1;
   if (!motion_.ever_rests()) return std::numeric_limits<int>::max();
-  return std::max(motion_.lift_frames(), empty_frame_ + 2);
+  return frames_of(std::max(motion_.lift_frames(), empty_frame_ + 2), settings_.redraw_noise);
 }
 
 std::vector<Phase> MovingShape::phases() const {

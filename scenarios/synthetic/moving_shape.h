@@ -33,8 +33,8 @@ class MovingShape final : public GridScene {
 
   MovingShape(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
-  // Number of frames up to the last one that differs from its predecessor. Noise is redrawn in these frames
-  // only.
+  // Number of frames up to the last one that differs from its predecessor. With noise that is drawn anew in
+  // each frame, they end only if the surface vanishes.
   int frame_count() const override;
   // Returns the loss of the points and the empty frame, then the motion. The motion is last because a press
   // may come after it.

@@ -151,8 +151,12 @@ double Shape::distance_to_flanks(const Vec3& p_S) const {
 double Shape::distance_to_dome(const Vec3& p_S) const {
   const double r = settings_.radius_m, y = p_S.y() + r;
   const double beside = std::sqrt(p_S.x() * p_S.x() + p_S.z() * p_S.z());
-  if (y >= 0) return std::sqrt(beside * beside + y * y) - r;
-  return beside <= r + kSame_m ? -std::sqrt((beside - r) * (beside - r) + y * y) : kUnknown;
+  const double from_centre = std::sqrt(beside * beside + std::max(0.0, y) * std::max(0.0, y));
+  if (y >= 0 && from_centre >= r) return from_centre - r;
+  if (y < 0 && beside > r + kSame_m) return kUnknown;
+  const Vec3 nearest = from_centre > 0 ? Vec3(r / from_centre * p_S) : Vec3(p_S);  // only x and z are used
+  if (!covers(p_S) && !covers(nearest)) return kUnknown;
+  return y >= 0 ? from_centre - r : -std::sqrt((beside - r) * (beside - r) + y * y);
 }
 
 // The solid lies below all three planes. Inside it, the distance is that to the nearest plane. Outside, the

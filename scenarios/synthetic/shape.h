@@ -12,8 +12,8 @@ namespace remote_touch {
 
 // y = height(x, z) in S, metres, y up. The top of a ridge, corner or sphere, the bottom of a valley and a
 // zero of the ripple lie at the origin. Only sphere and corner vary along z. The surface extends from the
-// first to the last point of a grid, with two exceptions for any grid: a sphere is the upper half of a ball,
-// and the three faces of a corner are unbounded.
+// first to the last point of a grid, with two exceptions: a sphere is the whole upper half of a ball, and the
+// three faces of a corner are unbounded. Where a grid does not reach, both have a front but no back.
 class Shape {
  public:
   enum class Kind { flat, ridge, valley, sphere, ripple, corner };
@@ -38,9 +38,10 @@ class Shape {
   // Distance to the surface, positive above it. Beyond the border it is the distance to the border, positive
   // above the plane that ends there (sphere: the plane through its centre; ripple: the height at the border).
   // NaN below that plane if p is not below the surface and the border is the nearest part of it: p is then
-  // neither in front of the surface nor behind it. The corner has no border: inside it the distance is NaN if
-  // neither p nor the nearest point is within the grid. The distance is exact. For the ripple it is found by
-  // a search along x, within 1e-6 m where the ripple's curvature is about that of a circle around p.
+  // neither in front of the surface nor behind it. Inside a corner or a sphere that is larger than the grid,
+  // the distance is NaN if neither p nor the nearest point is within the grid. The distance is exact. For the
+  // ripple it is found by a search along x, within 1e-6 m where the ripple's curvature is about that of a
+  // circle around p.
   double signed_distance(const Vec3& p_S) const;
 
  private:

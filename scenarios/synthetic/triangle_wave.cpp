@@ -11,7 +11,8 @@ Parameters parameters(TriangleWave::Settings& s) {
       {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
       {"period_m", &s.period_m, 1e-3, 10, "length of one wave along x"},
       {"max_height_m", &s.max_height_m, 0, 10, "peak-to-peak height at the end of the grid; 0 at its start"},
-      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
+      {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1,
+       "standard deviation of the noise on x, y and z, the same in all frames", kLive},
   };
   return appended(parameters(s.grid), more);
 }

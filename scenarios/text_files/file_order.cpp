@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "scenarios/text_files/refuse.h"
+
 namespace remote_touch {
 
 namespace {
@@ -29,7 +31,8 @@ int compare_numbers(std::string_view a, std::string_view b) {
   return a.compare(b);
 }
 
-bool is_before(const std::string& x, const std::string& y) {
+// Compares names, numbers as numbers. Returns a value below 0, 0 or above 0.
+int compare_names(const std::string& x, const std::string& y) {
   constexpr std::size_t kClockDigits = 9;  // seconds since 1970, from 1973 on
   std::string_view a = x, b = y;
   bool decimals = false;
@@ -37,25 +40,65 @@ bool is_before(const std::string& x, const std::string& y) {
     const std::string_view m = digits_of(a), n = digits_of(b);
     if (m.empty() || n.empty()) {
       if (a.front() != b.front())
-        return static_cast<unsigned char>(a.front()) < static_cast<unsigned char>(b.front());
+        return static_cast<unsigned char>(a.front()) < static_cast<unsigned char>(b.front()) ? -1 : 1;
       decimals = decimals && a.front() == '.';
       a.remove_prefix(1), b.remove_prefix(1);
       continue;
     }
     const int order = decimals ? m.compare(n) : compare_numbers(m, n);
-    if (order != 0) return order < 0;
+    if (order != 0) return order;
     decimals = !decimals && without_zeros(m).size() >= kClockDigits;
     a.remove_prefix(m.size()), b.remove_prefix(n.size());
   }
-  return a.empty() == b.empty() ? x < y : a.empty();
+  return static_cast<int>(!a.empty()) - static_cast<int>(!b.empty());
 }
 
 }  // namespace
 
 void sort_by_name(std::vector<std::filesystem::path>& files) {
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
-    return is_before(a.filename().string(), b.filename().string());
+    const std::string x = a.filename().string(), y = b.filename().string();
+    const int order = compare_names(x, y);
+    return order != 0 ? order < 0 : x < y;
   });
+}
+
+std::string equal_numbers(const std::vector<std::filesystem::path>& files) {
+  std::size_t count = 0, first = 0;
+  for (std::size_t i = 1; i < files.size(); ++i)
+    if (compare_names(files[i - 1].stem().string(), files[i].stem().string()) == 0 && count++ == 0) first = i;
+  if (count == 0) return {};
+  return files[first - 1].filename().string() + " and " + files[first].filename().string() +
+         " have equal numbers" +
+         (count > 1 ? ", and so have " + std::to_string(count - 1) + " more pair(s)" : "") +
+         ": all are frames";
+}
+
+std::vector<std::string> numbers_in_name(const std::string& name) {
+  std::vector<std::string> numbers;
+  for (std::string_view rest = name; !rest.empty();) {
+    const std::string_view digits = digits_of(rest);
+    if (!digits.empty()) {
+      const std::string_view number = without_zeros(digits);
+      numbers.emplace_back(number.empty() ? "0" : number);
+    }
+    rest.remove_prefix(std::max<std::size_t>(digits.size(), 1));
+  }
+  return numbers;
+}
+
+std::map<std::vector<std::string>, std::size_t> frames_by_numbers(const std::filesystem::path& subject,
+                                                                  const std::vector<std::string>& names) {
+  std::map<std::vector<std::string>, std::size_t> index;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::vector<std::string> numbers = numbers_in_name(std::filesystem::path(names[i]).stem().string());
+    if (numbers.empty()) numbers = {std::to_string(i)};
+    const auto [found, is_new] = index.emplace(std::move(numbers), i);
+    if (!is_new)
+      refuse(subject, "it is not clear which of its files belong to ", names[found->second], " and which to ",
+             names[i], ": expected frames with different numbers in their names");
+  }
+  return index;
 }
 
 }  // namespace remote_touch

@@ -30,7 +30,8 @@ class Watch {
   std::vector<std::set<std::string>> keys_;  // keys so far of each open object
 };
 
-// Throws Json::exception if the text is not JSON.
+// Throws Json::exception if the text is not JSON. The library takes the byte 0 as the end of the text, so the
+// callers refuse it.
 Json parse_watched(const std::string& text, const std::string& label) {
   Watch watch(label);
   return Json::parse(text, [&](int depth, Json::parse_event_t event, Json& parsed) {
@@ -42,6 +43,8 @@ Json parse_watched(const std::string& text, const std::string& label) {
 }  // namespace
 
 Json parse_json(const std::string& text, const std::string& label) {
+  if (const std::size_t at = text.find('\0'); at != std::string::npos)
+    refuse(label, "has the byte 0 at byte ", at, ": expected JSON, which is text");
   try {
     return parse_watched(text, label);
   } catch (const Json::exception& error) {
@@ -53,6 +56,7 @@ Json parse_json(const std::string& text, const std::string& label) {
 }
 
 std::optional<Json> json_or_none(const std::string& text, const std::string& label) {
+  if (text.find('\0') != std::string::npos) return {};
   try {
     return parse_watched(text, label);
   } catch (const Json::exception&) {

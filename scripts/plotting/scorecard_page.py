@@ -87,6 +87,14 @@ def tuned_text(card):
             "uses. ")
 
 
+def family_text(card):
+    """The number of tests that are corrected together; cards of earlier versions do not state it."""
+    if "tests" not in card:
+        return "The p values of all pairs of methods in all scenes and measures of this page are corrected together (Holm), "
+    return (f'The p values of all {card["tests"]:d} comparisons of two methods, in all scenes and measures of this page, are corrected '
+            f'together (Holm; {card["least_pairs"]:d} pairs are the fewest that can show a difference), ')
+
+
 def how_to_read(card):
     """What the reader of the tables must know."""
     return f"""<h2 id="reading">How to read the tables</h2>
@@ -94,13 +102,13 @@ def how_to_read(card):
 noise as often as others at all levels with noise. Noise is given in units of the contact radius \
 r_c = {1e3 * card["contact_radius_m"]:g} mm ("own": the scene's own). It depends on \
 the seed {card["seed"]:d}, the level and the number of the run, not on the method: all methods got the same points in \
-the same frames. {tuned_text(card)}Lines are fractions of successful runs with Wilson's 95 % intervals. Where there is no noise and all \
-runs of a method have the same numbers to the last bit, they count as one run. Runs without noise are never mixed with \
-the others.</p>
+the same frames. {tuned_text(card)}Lines are fractions of successful runs with their 95 % intervals (Clopper and Pearson). Where there is no noise and all \
+runs of a method have the same numbers to the last bit, they count as one run; if noise changes no run of a method at all, all its runs in \
+the scene are one. Runs without noise are never mixed with the others.</p>
 {rule_text(card)}
 <p><b>Best and worst</b> are marked only where one method differs from all others by more than chance: fractions by the \
-exact sign test, other measures by Student's t with a correction for skewness, run by run over all levels with noise. \
-The p values of all pairs of methods in all scenes and measures of this page are corrected together (Holm), so that \
+exact sign test, other measures by sign flips up to 16 pairs and by Student's t beyond, run by run over all levels with \
+noise. Where few large differences decide, there is no verdict. {family_text(card)}so that \
 the probability of any false verdict on the page is at most {card["significance"]:g}. Fewer than {card["min_pairs"]:d} \
 pairs give no verdict. A measure that is judged is compared over the pairs of runs in which both methods succeeded. \
 Its means are over the successful runs of each method, so a method that succeeds only where it is easy has the mean of \

@@ -31,9 +31,21 @@ def student_t(freedom):
     return z + (z**3 + z) / (4 * freedom) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * freedom**2)
 
 
-def wilson(successes, runs):
-    middle, half = successes + Z95**2 / 2, Z95 * math.sqrt(successes * (runs - successes) / runs + Z95**2 / 4)
-    return (middle - half) / (runs + Z95**2), (middle + half) / (runs + Z95**2)
+def exact_low(events, runs):
+    """The low end of the exact interval of a fraction: there, so many events or more have a probability of 2.5 %."""
+    def log_chance(k, p):
+        return (math.lgamma(runs + 1) - math.lgamma(k + 1) - math.lgamma(runs - k + 1) + k * math.log(p)
+                + (runs - k) * math.log1p(-p))
+    low, high = 0.0, events / runs
+    for _ in range(50 if events else 0):
+        p = (low + high) / 2
+        is_above = math.fsum(math.exp(log_chance(k, p)) for k in range(events, runs + 1)) > 0.025
+        low, high = (low, p) if is_above else (p, high)
+    return low
+
+
+def exact_interval(events, runs):
+    return exact_low(events, runs), 1 - exact_low(runs - events, runs)
 
 
 def interval(values, is_event):
@@ -42,7 +54,7 @@ def interval(values, is_event):
     if not known.size:
         return math.nan, math.nan, math.nan
     if is_event:
-        return known.mean(), *wilson(known.sum(), known.size)
+        return known.mean(), *exact_interval(int(known.sum()), known.size)
     half = student_t(known.size - 1) * known.std(ddof=1) / math.sqrt(known.size) if known.size > 1 else math.nan
     return known.mean(), known.mean() - half, known.mean() + half
 

@@ -31,6 +31,9 @@ OF_THE_PROGRAM = [
     (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "plot_style", "scorecard_page", "figures_quick"]),
     (r"scripts/benchmark|data/benchmarks/|tests/benchmarks/README\.md$", ["benchmark_page", "benchmark_tables"]),
     (r".*\.md$", ["page_links", "reference"]),
+    (r"scripts/testing/|tests/(system/(run|evidence)_\w+|allowed_skips)$", ["run_ctest", "run_changed", "evidence"]),
+    (r"data/sweeps/", ["figures_quick", "page_commands"]),
+    (r"tests/system/page_commands$|scripts/example_recording$", ["page_commands"]),
     (r".*/(.*_settings|.*parameters?|settings)\.(h|cpp)$", ["reference", "page_links"]),
 ]
 
@@ -74,6 +77,9 @@ def rooms_to_test(files):
             changed.add("/".join(parts[:-1]))
         elif parts[0] == "tests" and len(parts) > 2 and parts[1] in TOPS:
             tests_changed.add("/".join(parts[1:-1]))
+        elif name.startswith("tests/support/") and name.endswith(".h"):
+            tests_changed |= {str(test.parent.relative_to(ROOT / "tests")) for top in TOPS
+                              for test in (ROOT / "tests" / top).rglob("*_test.cpp") if f'"{name}"' in test.read_text()}
     tested = changed | tests_changed | {user for room in changed for user in users.get(room, ())}
     return tested, with_further_users(changed, users) - tested
 

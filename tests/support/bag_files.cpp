@@ -146,11 +146,12 @@ class McapText {
     const bool is_new = ids_.count(message.topic) == 0;
     const auto id = is_new ? static_cast<std::uint16_t>(ids_.size() + 1) : ids_[message.topic];
     if (is_new) {
-      const std::string both =
-          record(3, little(id) + with_length(message.type) + with_length("ros2msg") + with_length("")) +
-          record(4,
-                 little(id) + little(id) + with_length(message.topic) + with_length("cdr") + with_length(""));
-      ids_[message.topic] = id, to += both, names_ += both;
+      const std::string schema =
+          record(3, little(id) + with_length(message.type) + with_length("ros2msg") + with_length(""));
+      const std::string channel = record(
+          4, little(id) + little(id) + with_length(message.topic) + with_length("cdr") + with_length(""));
+      to += layout_.channels_first && !layout_.index ? channel + schema : schema + channel;
+      ids_[message.topic] = id, schemas_ += schema, channels_ += channel;
     }
     ++counts_[id], ++messages_;
     lists_[id] += little(message.logged_ns) + little(static_cast<std::uint64_t>(to.size()));
@@ -163,7 +164,9 @@ class McapText {
     if (in_chunk_ > 0) end_chunk();
     file_ += record(15, little(std::uint32_t{0}));
     const std::uint64_t summary_at = file_.size();
-    if (layout_.index) file_ += names_ + indexes_ + statistics();
+    const std::string schemas = layout_.repeats_schemas ? schemas_ : "";
+    const std::string names = layout_.channels_first ? channels_ + schemas : schemas + channels_;
+    if (layout_.index) file_ += names + indexes_ + statistics();
     const std::string footer = std::string(1, 2) + little(std::uint64_t{20}) +
                                little(layout_.index ? summary_at : std::uint64_t{0}) +
                                little(std::uint64_t{0});
@@ -202,7 +205,7 @@ class McapText {
 
   const std::string kMagic{"\x89MCAP0\r\n", 8};
   const McapLayout layout_;
-  std::string file_, names_, chunk_, indexes_;
+  std::string file_, schemas_, channels_, chunk_, indexes_;
   std::map<std::string, std::uint16_t> ids_;
   std::map<std::uint16_t, std::uint64_t> counts_;
   std::map<std::uint16_t, std::string> lists_;  // index of this chunk's messages, per channel

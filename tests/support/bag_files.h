@@ -49,6 +49,9 @@ struct McapLayout {
   bool chunks = true, index = true, crc = true;
   std::string compression = "";  // empty, lz4 or zstd
   std::size_t messages_per_chunk = 2;
+  bool repeats_schemas = true;  // copies in the summary
+  bool channels_first =
+      false;  // copies in the summary; without a summary also before the schemas of the data
 };
 std::string mcap_file(const std::vector<BagMessage>& messages, const McapLayout& layout = {});
 // compression is none, lz4 or bz2. Types are written without "/msg". A file that is not closed has no index

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/geometry/limited_length.h"
+
 namespace remote_touch {
 
 namespace {
@@ -189,6 +191,7 @@ void GuidedRenderer::advance(double time_s, RenderOutput& out) {
 // that of the active fixture, or of a fixture whose force falls if none is active.
 void GuidedRenderer::pull(const std::optional<ToolPose>& device, double time_s, RenderOutput& out) {
   bool has_active_goal = false;
+  int pulling = 0;
   for (Guide& guide : guides_) {
     const std::optional<ToolPose> there = guide.active && device ? goal(guide, time_s) : std::nullopt;
     if (there) guide.goal = *there, guide.strength = guide.presence.target(time_s)->strength;
@@ -196,11 +199,16 @@ void GuidedRenderer::pull(const std::optional<ToolPose>& device, double time_s, 
     if (level == 0 || !device) continue;
     const Wrench wrench = guidance_wrench(settings_, guide.stiffness_N_per_m, guide.goal, *device);
     out.guidance->active = true;
+    ++pulling;
     if (there || !has_active_goal)
       out.guidance->goal_W = guide.goal.p_W, out.guidance->goal_orientation_W = guide.goal.q_WT;
     has_active_goal = has_active_goal || there.has_value();
     out.guidance->force_N += level * guide.strength * wrench.force_N;
     if (out.tool) out.guidance->torque_Nm += level * guide.strength * wrench.torque_Nm;
+  }
+  if (pulling > 1) {  // the wrench of each is limited already
+    out.guidance->force_N = limited_length(out.guidance->force_N, settings_.max_force_N);
+    out.guidance->torque_Nm = limited_length(out.guidance->torque_Nm, settings_.max_torque_Nm);
   }
   out.force_N += out.guidance->force_N;
   if (out.tool) out.tool->torque_Nm += out.guidance->torque_Nm;

@@ -1,5 +1,7 @@
 // Guidance on top of any renderer, 7.4. The wrench towards the active fixture's goal is added to the
-// renderer's own wrench, and the steps of a task switch fixtures on and off.
+// renderer's own wrench, and the steps of a task switch fixtures on and off. In 7.5 one fixture is active at
+// a time: activating one stops the others. Several pull only while one falls and another rises (fade_s), or
+// if several start enabled because their first step releases them. Their summed wrench has the limits of one.
 #pragma once
 
 #include <memory>

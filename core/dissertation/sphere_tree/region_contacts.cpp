@@ -10,7 +10,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-// Number of contacts that ContactThinning can sort without losing any.
+// Number of pairs from which the contacts are chosen when the tool is deep in regions.
 constexpr std::size_t kMaxToThin = ContactThinning::kSlots / 2;
 
 }  // namespace

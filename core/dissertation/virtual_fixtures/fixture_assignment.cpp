@@ -16,7 +16,13 @@ double drawn(double from, double to, double weight) {
   return weight == 1 ? to : from + weight * (to - from);
 }
 
-void apply(const FixtureRule& rule, double strength, PointCloud& cloud) {
+// Returns the stiffness from which a rule fades in where a point has none: the renderer's own, or that of the
+// rule if the renderer's is not known.
+double first_stiffness(double own_N_per_m, const FixtureValues& values) {
+  return std::isnan(own_N_per_m) ? values.stiffness_N_per_m : own_N_per_m;
+}
+
+void apply(const FixtureRule& rule, double strength, double own_stiffness_N_per_m, PointCloud& cloud) {
   const FixtureValues& values = rule.values();
   const std::vector<double> weights = rule.weights(cloud);
   const bool stiff = values.stiffness_N_per_m >= 0;
@@ -29,8 +35,8 @@ void apply(const FixtureRule& rule, double strength, PointCloud& cloud) {
       cloud.fixture_radius_m[i] = drawn(cloud.fixture_radius_m[i], values.radius_m, weight);
     if (!stiff) continue;
     double& stiffness = cloud.stiffness_N_per_m[i];
-    stiffness =
-        std::isnan(stiffness) ? values.stiffness_N_per_m : drawn(stiffness, values.stiffness_N_per_m, weight);
+    const double from = std::isnan(stiffness) ? first_stiffness(own_stiffness_N_per_m, values) : stiffness;
+    stiffness = drawn(from, values.stiffness_N_per_m, weight);
   }
 }
 
@@ -55,7 +61,7 @@ void FixtureAssignment::assign(PointCloud& cloud, double captured_s, std::uint64
   if (cloud.fixture_radius_m.empty()) cloud.fixture_radius_m.assign(cloud.size(), 0);
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     if (rules_[i]->values().role != FixtureRole::forbidden || !FixtureSwitches::is_on(off, i)) continue;
-    about_rule(i, [&] { apply(*rules_[i], rules_[i]->strength(captured_s), cloud); });
+    about_rule(i, [&] { apply(*rules_[i], rules_[i]->strength(captured_s), own_stiffness_N_per_m_, cloud); });
   }
 }
 
@@ -65,7 +71,9 @@ std::optional<HueSteps> FixtureAssignment::hue_steps(double captured_s, std::uin
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const auto* const range = dynamic_cast<const HueRange*>(rules_[i].get());
     if (range == nullptr || range->values().role != FixtureRole::forbidden) return std::nullopt;
-    if (FixtureSwitches::is_on(off, i)) steps.push_back({range->settings(), range->strength(captured_s)});
+    if (FixtureSwitches::is_on(off, i))
+      steps.push_back({range->settings(), range->strength(captured_s),
+                       first_stiffness(own_stiffness_N_per_m_, range->values())});
   }
   return steps;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -18,10 +19,14 @@ namespace remote_touch {
 class FixtureAssignment {
  public:
   FixtureAssignment() = default;
-  // switches: forbidden rules that are off are skipped; null: all are on.
+  // switches: forbidden rules that are off are skipped; null: all are on. own_stiffness_N_per_m: k_s of the
+  // renderer, which points without a stiffness have; NaN: not known.
   explicit FixtureAssignment(std::vector<std::unique_ptr<const FixtureRule>> rules,
-                             std::shared_ptr<const FixtureSwitches> switches = nullptr)
-      : rules_(std::move(rules)), switches_(std::move(switches)) {}
+                             std::shared_ptr<const FixtureSwitches> switches = nullptr,
+                             double own_stiffness_N_per_m = std::numeric_limits<double>::quiet_NaN())
+      : rules_(std::move(rules)),
+        switches_(std::move(switches)),
+        own_stiffness_N_per_m_(own_stiffness_N_per_m) {}
 
   // Throws InputError if the cloud lacks data that a rule needs, even if that rule is off or has strength 0.
   void require(const PointCloud& cloud) const;
@@ -29,9 +34,9 @@ class FixtureAssignment {
   // Writes the columns of r_f and k_s. They start with the cloud's own values; if the cloud lacks a column,
   // r_f starts at 0 and k_s at the renderer's own. Then each forbidden rule in turn changes the values of the
   // points that it selects: it interpolates between the present value and its own by the weight of the point
-  // times the strength of the rule at captured_s. So a later rule overrides an earlier one. A point that has
-  // no stiffness yet receives that of the rule without interpolation. If there are no rules, the cloud is not
-  // changed. Throws InputError like FixtureRule::weights().
+  // times the strength of the rule at captured_s. So a later rule overrides an earlier one. If the renderer's
+  // own stiffness is not known, a point that has none yet receives that of the rule at once. If there are no
+  // rules, the cloud is not changed. Throws InputError like FixtureRule::weights().
   void assign(PointCloud& cloud, double captured_s) const { assign(cloud, captured_s, off()); }
   // Does the same with these forbidden rules off, as off() returned them earlier.
   void assign(PointCloud& cloud, double captured_s, std::uint64_t off) const;
@@ -56,6 +61,7 @@ class FixtureAssignment {
  private:
   std::vector<std::unique_ptr<const FixtureRule>> rules_;
   std::shared_ptr<const FixtureSwitches> switches_;
+  double own_stiffness_N_per_m_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace remote_touch

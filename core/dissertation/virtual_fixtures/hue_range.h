@@ -34,6 +34,7 @@ class HueRange final : public FixtureRule {
 struct HueStep {
   HueRange::Settings range;
   double strength = 1;
+  double first_stiffness_N_per_m = 0;  // k_s from which the rule fades in at a point that has none
 };
 using HueSteps = std::vector<HueStep>;
 

@@ -104,7 +104,7 @@ Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table&
     number.push_back(static_cast<std::int32_t>(number.size()));
     names.value_names.push_back(bound.name);
     const Agreement all = agreement_of(bound, map), inside = agreement_of(bound, map, kFittedNoise);
-    const auto [low, high] = wilson_interval(all.agree, all.cells);
+    const auto [low, high] = exact_interval(all.agree, all.cells);
     rows.push_back({all.fraction(), low, high, all.safe_popped, all.unsafe_survived, inside.fraction(),
                     inside.safe_popped});
   }
@@ -112,8 +112,8 @@ Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table&
   Table table =
       table_of("agreement", "bounds against the outcome of 5396 lifts",
                {{"cells", "1", "share of cells in which bound and outcome agree"},
-                {"cells_low", "1", "lower end of its 95 % Wilson interval"},
-                {"cells_high", "1", "upper end of its 95 % Wilson interval"},
+                {"cells_low", "1", "lower end of its 95 % interval"},
+                {"cells_high", "1", "upper end of its 95 % interval"},
                 {"safe_popped", "1", "share of the bound's safe cells that popped through"},
                 {"unsafe_survived", "1", "share of the bound's unsafe cells that survived"},
                 {"fitted_cells", "1", "share that agrees up to 2 r_c of noise, where the fits are meant"},
@@ -145,15 +145,15 @@ Table calibration_table(const MeasuredNoise& noise, const Table& map) {
       mean_predicted.push_back(predicted[slot] / cells[slot]);  // NaN for a bin without cells
       mean_observed.push_back(observed[slot] / cells[slot]);
       const bool is_empty = cells[slot] == 0;
-      const auto ends = wilson_interval(static_cast<int>(observed[slot]), static_cast<int>(cells[slot]));
+      const auto ends = exact_interval(observed[slot], cells[slot]);
       low.push_back(is_empty ? kNoValue : ends.first), high.push_back(is_empty ? kNoValue : ends.second);
       count.push_back(cells[slot]);
     }
     const std::string name = kNoiseRanges[range].first;
     table.add("predicted_" + name, "1", "mean prediction of the cells", mean_predicted);
     table.add("observed_" + name, "1", "share of them that survived", mean_observed);
-    table.add("observed_low_" + name, "1", "lower end of its 95 % Wilson interval", low);
-    table.add("observed_high_" + name, "1", "upper end of its 95 % Wilson interval", high);
+    table.add("observed_low_" + name, "1", "lower end of its 95 % interval", low);
+    table.add("observed_high_" + name, "1", "upper end of its 95 % interval", high);
     table.add("cells_" + name, "1", "cells", count);
   }
   return table;

@@ -48,7 +48,7 @@ double peak_to_peak(const std::vector<double>& values) {
 double steps_to_contact(const Trace& single) {
   const std::size_t jump = jump_tick(single);
   std::size_t i = jump;
-  while (i < single.length() && std::abs(single.nearest_distance_m[i] - kContactRadius_m) > kShell_m) ++i;
+  while (i < single.length() && !(std::abs(single.nearest_distance_m[i] - kContactRadius_m) <= kShell_m)) ++i;
   return static_cast<double>(i - jump + 1);
 }
 

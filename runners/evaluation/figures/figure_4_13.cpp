@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/isotonic_regression.h"
+#include "analysis/statistics/limit.h"
 #include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 #include "runners/experiment/settings/second_implementation.h"
@@ -28,29 +28,29 @@ Table with_second_implementation(Table regions) {
   return regions;
 }
 
-// Returns, for each noise strength, the acceleration at which half of the lifts survive: there the falling
-// curve that is nearest to the measured shares crosses one half. Columns `low` and `high` are the
-// accelerations at which the lower and the upper ends of the Wilson intervals cross one half.
-Table contour(const std::string& name, const Table& map, std::size_t columns) {
-  const auto &noise = numbers(map, "noise"), &acceleration = numbers(map, "acceleration"),
-             &runs = numbers(map, "runs");
-  std::vector<std::size_t> firsts;  // the map runs through the accelerations first
-  for (std::size_t first = 0; first < noise.size(); first += columns) firsts.push_back(first);
-  const auto crossing_of = [&](const std::string& column) {
-    return [&, column](std::size_t first) {
-      const auto part = [&](const std::vector<double>& values) {
-        const auto from = values.begin() + static_cast<std::ptrdiff_t>(first);
-        return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(columns));
-      };
-      return crossing(part(acceleration), isotonic_falling(part(numbers(map, column)), part(runs)), 0.5);
-    };
-  };
-  Table table = table_over<std::size_t>(
-      name, "acceleration at which half of the lifts survive", firsts,
-      {{"noise", "r_c", "standard deviation of the noise", [&](std::size_t first) { return noise[first]; }},
-       {"acceleration", "r_c/s^2", "half of the lifts survive", crossing_of("survived")},
-       {"low", "r_c/s^2", "lower end of the intervals crosses one half", crossing_of("survived_low")},
-       {"high", "r_c/s^2", "upper end of the intervals crosses one half", crossing_of("survived_high")}});
+// Returns, for each noise strength, the acceleration at which half of the lifts pop through, with its
+// interval (limit.h); the end of the map if that is beyond it.
+Table contour(const std::string& name, const SweepResult& result) {
+  const std::vector<double>& popped = result.measure("popped_through");
+  TableRows rows;
+  for (std::size_t noise = 0; noise < result.axes.at(0).length(); ++noise) {
+    std::vector<RunsAtValue> values;
+    for (std::size_t i = 0; i < result.axes.at(1).length(); ++i) {
+      const std::size_t cell = result.cell_at({noise, i});
+      values.push_back({axis_value(result, 1, cell) / kContactRadius_m, event_counts(result, popped, cell)});
+    }
+    const Limit limit = estimated_limit(values, {});
+    const double end = limit.place == LimitPlace::below_the_first ? values.front().x : values.back().x;
+    const Estimate& e = limit.estimate;
+    rows.push_back({axis_value(result, 0, result.cell_at({noise, 0})) / kContactRadius_m,
+                    limit.place == LimitPlace::inside ? e.value : end, e.low, e.high});
+  }
+  Table table = table_of(name, "acceleration at which half of the lifts survive",
+                         {kNoiseColumn,
+                          {"acceleration", "r_c/s^2", "half of the lifts survive"},
+                          {"low", "r_c/s^2", "lower end of its 95 % interval; NaN: open"},
+                          {"high", "r_c/s^2", "upper end of its 95 % interval; NaN: open"}},
+                         rows);
   add_bound(table, "printed_bound", "(4.25) as printed", printed_bound);
   return table;
 }
@@ -80,12 +80,11 @@ Table second_table(const Table& contour) {
 }
 
 Panel probability_panel(const std::string& title, const std::string& map, const std::string& contour) {
-  return map_panel(title,
-                   {{map, "noise", "acceleration", CurveStyle::map, "", 0, "survived"},
-                    {contour, "noise", "acceleration", CurveStyle::line, "half survive"},
-                    {contour, "noise", "low", CurveStyle::dashed, "ends of the 95 % intervals cross 1/2"},
-                    {contour, "noise", "high", CurveStyle::dashed, "ends of the 95 % intervals cross 1/2"},
-                    {"bound", "noise", "printed", CurveStyle::line, "bound (4.25) as printed"}});
+  return map_panel(title, {{map, "noise", "acceleration", CurveStyle::map, "", 0, "survived"},
+                           {contour, "noise", "acceleration", CurveStyle::line, "half survive"},
+                           {contour, "noise", "low", CurveStyle::dashed, "ends of its 95 % interval"},
+                           {contour, "noise", "high", CurveStyle::dashed, "ends of its 95 % interval"},
+                           {"bound", "noise", "printed", CurveStyle::line, "bound (4.25) as printed"}});
 }
 
 }  // namespace
@@ -122,17 +121,16 @@ Figure figure_4_13(FigureContext& context) {
 
 Figure figure_4_13_replicated(FigureContext& context) {
   const SweepResult result = context.sweep(context.map("fig4.13-replicated"));
-  const std::size_t columns = result.axes.at(1).length();
   const Table map = map_table("map", result);
-  const Table without =
-      map_table("map_without_estimate",
-                context.sweep(context.map("fig4.13-replicated", {"renderer.velocity_estimate=false"})));
-  const Table half = contour("contour", map, columns), second = second_table(half);
+  const SweepResult without_estimate =
+      context.sweep(context.map("fig4.13-replicated", {"renderer.velocity_estimate=false"}));
+  const Table without = map_table("map_without_estimate", without_estimate);
+  const Table half = contour("contour", result), second = second_table(half);
   Figure figure{
       "4.13-replicated", "Probability of pop-through",
       "Every third noise and second acceleration of Fig 4.13, 20 lifts each, 1000 proxy steps per frame: "
-      "share of lifts that did not pop through, and where it crosses one half, with 95 % Wilson intervals."};
-  figure.tables = {map,    without,      half, contour("contour_without_estimate", without, columns),
+      "share of lifts that did not pop through, and where it crosses one half, with 95 % intervals."};
+  figure.tables = {map,    without,      half, contour("contour_without_estimate", without_estimate),
                    second, bound_table()};
   figure.panels = {
       probability_panel("With the velocity estimate", "map", "contour"),

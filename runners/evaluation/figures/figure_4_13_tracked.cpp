@@ -74,8 +74,9 @@ Slide slide_of(const Trace& trace) {
     jumps += (trace.force_N[i] - trace.force_N[i - 1]).squaredNorm(), updates += 1;
   }
   const double mean_height = sum / n;
+  const double variance = squares / n - mean_height * mean_height;
   const Trace judged = with_true_normals(trace);
-  return {mean_height, std::sqrt(std::max(0.0, squares / n - mean_height * mean_height)),
+  return {mean_height, std::sqrt(variance < 0 ? 0 : variance),
           updates > 0 ? std::sqrt(jumps / updates) : kNoValue, mean_lateral_force(judged),
           lateral_force_95(judged)};
 }

@@ -149,7 +149,8 @@ Table deviation_table(const Summary& a, const Summary& b) {
   const std::string beyond = " of distance - r_f - r_c, ";
   using S = const Summary&;
   return quantity_table<Summary>(
-      "deviations", "how far the proxy is from where r_f and r_c put it, from 1 s on",
+      "deviations",
+      "how far the proxy is from where r_f and r_c put it, from 1 s on; smallest distances: in all ticks",
       {"noise_free", "with_noise"}, {a, b},
       {{"rms" + beyond + "surface as the newest frame shows it, all ticks", "m",
         [](S s) { return s.seen.rms_m; }},
@@ -254,7 +255,8 @@ Figure figure_5_8(FigureContext& context) {
       "is in that tick, or as it was when the frame in use was captured. The renderer knows only the "
       "second; since then the organ has moved for up to one frame interval. r_f is that of the frame in "
       "use. The last panel shows one second, because the distance goes up and down once in a frame (33 ms). "
-      "Curves show every fifth tick; measures use all ticks, from 1 s on."};
+      "Curves show every fifth tick; measures use all ticks from 1 s on, and the smallest distances "
+      "those before, too."};
   figure.tables = {path_table("noise_free", "every fifth tick, noise-free camera", runs[0]),
                    path_table("with_noise", "every fifth tick, with the sensor's noise", runs[1]),
                    deviation_table(clean, noisy)};

@@ -151,8 +151,7 @@ void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& n
   const std::string object = kNames[k];
   const auto empty = [](const MaskNumbers& m) { return !(m.picked > 0); };
   if (std::any_of(numbers.begin(), numbers.end(), empty)) {
-    figure.claims.push_back(claim_not_run(figure.name, object + ": the mask shows the object",
-                                          "a frame in which nothing is picked"));
+    Claims(figure, object + ": ").at_least("the mask shows the object in every frame", 0, 1, "1");
     return;
   }
   const auto min = [&](auto&& of) {

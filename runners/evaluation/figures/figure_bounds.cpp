@@ -187,8 +187,8 @@ Figure figure_bounds(FigureContext& context) {
       "range from 1.2 r_c to 2 r_c, where its fits end. Less one deviation of v_hat: h is reduced by the "
       "distance that one standard deviation of v_hat makes in a frame. With scatter, ten updates: the "
       "acceleration at which half of the lifts are predicted to survive all ten updates, from the scatter "
-      "that was measured without acceleration. Last panel: the share of the lifts that survived, with 95 % "
-      "Wilson intervals, over the share that the bound with scatter predicts."};
+      "that was measured without acceleration. Last panel: the share of the lifts that survived, with exact "
+      "95 % intervals, over the share that the bound with scatter predicts."};
   figure.tables = {phases.table,
                    effect_table(noise),
                    thickness,

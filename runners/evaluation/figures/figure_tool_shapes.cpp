@@ -47,15 +47,15 @@ struct Family {
 class Pool {
  public:
   static constexpr int kBins = 15;
-  void add(Carrier rule, double strength, const Jump& jump, double per_jump, const Tally& lost) {
+  void add(Carrier rule, double strength, const Jump& jump, double per_jump, const EventCounts& lost) {
     OfRule& of = rules_[static_cast<std::size_t>(rule)];
     const int bin = static_cast<int>(strength / (jump.bound_m * per_jump) / kWidth);
-    if (bin < kBins) count(of.bins[bin], lost);
-    if (strength < jump.least_m * per_jump) count(of.below, lost);
-    if (strength > jump.most_m * per_jump) count(of.above, lost);
+    if (bin < kBins) of.bins[bin].add(lost);
+    if (strength < jump.least_m * per_jump) of.below.add(lost);
+    if (strength > jump.most_m * per_jump) of.above.add(lost);
   }
-  const Tally& below(Carrier rule) const { return rules_[static_cast<std::size_t>(rule)].below; }
-  const Tally& above(Carrier rule) const { return rules_[static_cast<std::size_t>(rule)].above; }
+  const EventCounts& below(Carrier rule) const { return rules_[static_cast<std::size_t>(rule)].below; }
+  const EventCounts& above(Carrier rule) const { return rules_[static_cast<std::size_t>(rule)].above; }
   Table table() const {
     Table table{"pooled", "All without noise"};
     std::vector<double> ratio;
@@ -63,16 +63,15 @@ class Pool {
     table.add("ratio", "1", "speed divided by the derived bound, middle of a bin", ratio);
     for (const CarrierName& carrier : kCarriers) {
       TableRows rows;
-      for (const Tally& bin : rules_[static_cast<std::size_t>(carrier.rule)].bins) {
-        const auto [low, high] = wilson_interval(bin.runs - bin.events, bin.runs);
-        rows.push_back({bin.runs > 0 ? 1 - static_cast<double>(bin.events) / bin.runs : std::nan(""), low,
-                        high, static_cast<double>(bin.runs)});
+      for (const EventCounts& bin : rules_[static_cast<std::size_t>(carrier.rule)].bins) {
+        const Estimate carried = estimated_fraction(EventCounts{bin.without, bin.events, bin.unknown});
+        rows.push_back({carried.value, carried.low, carried.high, static_cast<double>(bin.runs())});
       }
       const std::string column = carrier.column;
       add_rows(table,
                {{column + "_carried", "1", "fraction of runs that are carried"},
-                {column + "_low", "1", "lower end of its 95 % Wilson interval"},
-                {column + "_high", "1", "upper end of its 95 % Wilson interval"},
+                {column + "_low", "1", "lower end of its 95 % interval"},
+                {column + "_high", "1", "upper end of its 95 % interval"},
                 {column + "_runs", "1", "number of runs"}},
                rows);
     }
@@ -82,9 +81,8 @@ class Pool {
  private:
   static constexpr double kWidth = 0.1;
   struct OfRule {
-    Tally bins[kBins], below, above;
+    EventCounts bins[kBins], below, above;
   };
-  static void count(Tally& to, const Tally& more) { to.events += more.events, to.runs += more.runs; }
   OfRule rules_[std::size(kCarriers)];
 };
 
@@ -224,9 +222,8 @@ void claim_bounded(const Claims& claims, const std::vector<Table>& tables, Carri
   claims.at_most(claim + ": number of settings in which this is false", apart, 0, "1", paper);
 }
 
-// A row counts if all four runs are carried above the derived speed (the Wilson interval of 4 of 4 begins at
-// 0.51), or if all four are lost below it. By chance that happens in at most 1 of 8 rows, so 3 or more of 12
-// rows count at most once in five figures.
+// A row counts if all four runs are carried above the derived speed, or if all four are lost below it. By
+// chance that happens in at most 1 of 8 rows, so 3 or more of 12 rows count at most once in five figures.
 void claim_bounded_noise(const Claims& claims, const std::vector<Table>& tables, Carrier rule,
                          const std::string& label) {
   const std::string column = column_of(rule);
@@ -257,15 +254,15 @@ void add_claims(Figure& figure, const std::vector<Table>& still, const std::vect
     claim_bounded(claims, tilted, carrier.rule,
                   "a tilted edge carries a plate at least up to the bound of its steeper flank");
     claim_bounded_noise(Claims(figure), noisy, carrier.rule, carrier.label);
-    const Tally &below = pool.below(carrier.rule), &above = pool.above(carrier.rule);
+    const EventCounts &below = pool.below(carrier.rule), &above = pool.above(carrier.rule);
     claims.at_least(
-        "nearly all plates are carried below the derived bound: lower end of the Wilson interval of the "
+        "nearly all plates are carried below the derived bound: lower end of the 95 % interval of the "
         "fraction",
-        wilson_interval(below.runs - below.events, below.runs).first, 0.97, "fraction");
+        estimated_fraction(EventCounts{below.without, below.events, below.unknown}).low, 0.97, "fraction");
     claims.at_least(
-        "nearly all plates are lost above the derived bound: lower end of the Wilson interval of the "
+        "nearly all plates are lost above the derived bound: lower end of the 95 % interval of the "
         "fraction",
-        wilson_interval(above.events, above.runs).first, 0.97, "fraction");
+        estimated_fraction(above).low, 0.97, "fraction");
   }
 }
 
@@ -303,7 +300,7 @@ Figure figure_tool_shapes(FigureContext& context) {
       "carried. Bars: up to the next value that was tried, at which a run is lost. The three rules are "
       "drawn side by side for each setting. Dashed: derived, no point is left in the plate (printed rule: "
       "in what is not shell; continuous rule: and it moves by more than frame_reach_m, 20 mm); with noise: "
-      "half are lost. Fraction carried: of all runs without noise, with 95 % Wilson intervals; below 0.6 of "
+      "half are lost. Fraction carried: of all runs without noise, with 95 % intervals; below 0.6 of "
       "the bound all are carried, above 1.4 none."};
   Pool pool;
   constexpr std::size_t kColumns = 4;

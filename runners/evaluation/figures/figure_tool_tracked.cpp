@@ -57,12 +57,12 @@ Table lift_map_of(FigureContext& context, const TrackedMethod& method, int seed)
   return map_table(std::string("map_") + method.column, context.sweep(sweep), "tool_popped_through");
 }
 
-// "tracked sheets 418 of 420 (0.983 to 0.999), as printed 42 of 42 (0.916 to 1)", with Wilson intervals.
+// "tracked sheets 418 of 420 (0.983 to 0.999), as printed 42 of 42 (0.916 to 1)", with 95 % intervals.
 std::string success_text(const std::vector<std::pair<std::string, Survived>>& methods) {
   std::ostringstream text;
   text.precision(3);
   for (const auto& [method, survived] : methods) {
-    const auto [low, high] = wilson_interval(survived.held, survived.runs);
+    const auto [low, high] = exact_interval(survived.held, survived.runs);
     text << (text.tellp() > 0 ? ", " : "") << method << ' ' << survived.held << " of " << survived.runs
          << " (" << low << " to " << high << ')';
   }
@@ -73,14 +73,14 @@ Table success_table(const std::vector<std::pair<std::string, Survived>>& methods
   std::vector<std::string> name;
   TableRows rows;
   for (const auto& [method, survived] : methods) {
-    const auto [low, high] = wilson_interval(survived.held, survived.runs);
+    const auto [low, high] = exact_interval(survived.held, survived.runs);
     name.push_back(method);
     rows.push_back({survived.share(), low, high, static_cast<double>(survived.runs)});
   }
   Table table = table_of("success", "lifts that did not pop through, over the whole map",
                          {{"survived", "1", "share of lifts that did not pop through"},
-                          {"survived_low", "1", "lower end of its 95 % Wilson interval"},
-                          {"survived_high", "1", "upper end of its 95 % Wilson interval"},
+                          {"survived_low", "1", "lower end of its 95 % interval"},
+                          {"survived_high", "1", "upper end of its 95 % interval"},
                           {"runs", "1", "number of lifts"}},
                          rows);
   table.columns.insert(table.columns.begin(), {"method", "1", "how the plate is rendered", name, 1, {}});
@@ -248,9 +248,9 @@ void add_claims(Figure& figure, const Survived& ours, const Survived& printed,
   map_claims.at_least("tracked sheets hold the plate in nearly all runs of the whole map: fraction" + beside,
                       ours.share(), 0.99, "fraction");
   map_claims.at_least(
-      "tracked sheets hold the plate in nearly all runs of the whole map: lower end of the 95 % Wilson "
+      "tracked sheets hold the plate in nearly all runs of the whole map: lower end of the exact 95 % "
       "interval of the fraction",
-      wilson_interval(ours.held, ours.runs).first, 0.97, "fraction");
+      exact_interval(ours.held, ours.runs).first, 0.97, "fraction");
   for (const Table& table : jumps)
     for (const char* what : {"_force", "_torque"})
       claims.at_most(table.title + ": at frames the " + (what[1] == 'f' ? "force" : "torque") +
@@ -301,7 +301,7 @@ Figure figure_tool_tracked(FigureContext& context) {
   figure.caption =
       "A noisy surface rises under a plate of 40 x 40 x 10 mm at 0.1 m/s and then accelerates, as in "
       "Fig 4.13; frames at 30 Hz; simulated. Lifts that did not pop through, over noise up to 3 r_c and "
-      "acceleration up to 1400 r_c/s^2, with 95 % Wilson intervals: " +
+      "acceleration up to 1400 r_c/s^2, with 95 % intervals: " +
       success_text(success) +
       ". Drawn is what the frames do to force and torque on a surface at rest and on one that rises evenly: "
       "a jump is the change at a frame beyond the change in the tick before, rms over the frames of two "

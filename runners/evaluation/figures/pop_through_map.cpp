@@ -34,18 +34,18 @@ Table map_table(const std::string& name, const SweepResult& result, const std::s
   const std::vector<double>& popped = result.measure(measure);
   TableRows rows;
   for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
-    const Tally t = tally(result, popped, cell);
-    const auto [low, high] = wilson_interval(t.runs - t.events, t.runs);
+    const EventCounts lifts = event_counts(result, popped, cell);
+    const Estimate survived = estimated_fraction(EventCounts{lifts.without, lifts.events, lifts.unknown});
     rows.push_back({axis_value(result, 0, cell) / kContactRadius_m,
-                    axis_value(result, 1, cell) / kContactRadius_m,
-                    1 - static_cast<double>(t.events) / t.runs, low, high, static_cast<double>(t.runs)});
+                    axis_value(result, 1, cell) / kContactRadius_m, survived.value, survived.low,
+                    survived.high, static_cast<double>(lifts.runs())});
   }
   return table_of(name, "lifts that did not pop through",
                   {kNoiseColumn,
                    kAccelerationColumn,
                    {"survived", "1", "share of lifts that did not pop through"},
-                   {"survived_low", "1", "lower end of its 95 % Wilson interval"},
-                   {"survived_high", "1", "upper end of its 95 % Wilson interval"},
+                   {"survived_low", "1", "lower end of its 95 % interval"},
+                   {"survived_high", "1", "upper end of its 95 % interval"},
                    {"runs", "1", "number of lifts"}},
                   rows);
 }

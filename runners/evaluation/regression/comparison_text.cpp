@@ -162,7 +162,8 @@ bool is_reported(const SweepComparison& sweep, std::size_t region, std::size_t m
 
 // Returns the smaller p of the tests of a region, as it is and adjusted.
 std::string p_text(const RegionComparison& region) {
-  return text("p %.3g, adjusted %.3g", std::min(region.sign_p, region.symmetry_p), region.adjusted_p);
+  if (std::isnan(region.adjusted_p)) return "no p";
+  return text("p %.3g, adjusted %.3g", std::fmin(region.difference.p, region.mean.p), region.adjusted_p);
 }
 
 // Prints shares with their intervals, the flips both ways, and the result of the paired test.
@@ -175,7 +176,8 @@ void print_regions(const SweepComparison& sweep, std::FILE* out) {
         "  %s by region: %s, more / less in the candidate, interval of the difference of shares, p of %s, and "
         "adjusted for all tests (Holm)\n",
         sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference",
-        event ? "McNemar's test" : "the sign or symmetry test");
+        event ? "McNemar's test (of clusters' means, if runs share random numbers)"
+              : "the sign test or of the mean");
     for (std::size_t r = 0; r < sweep.regions.size(); ++r) {
       if (!is_reported(sweep, r, m)) continue;
       const RegionComparison& region = sweep.at(r, m);
@@ -185,11 +187,16 @@ void print_regions(const SweepComparison& sweep, std::FILE* out) {
                        region.baseline_fraction.first, region.baseline_fraction.second,
                        region.pairs > 0 ? region.candidate_events / static_cast<double>(region.pairs) : 0.0,
                        region.candidate_fraction.first, region.candidate_fraction.second)
-                : text("%.4g (%.4g to %.4g)", region.mean.mean, region.mean.low, region.mean.high);
-      std::fprintf(out, "    %6lld runs  %s  %lld / %lld  %+.4f to %+.4f  %s  %s  %s\n",
-                   static_cast<long long>(region.runs), values.c_str(), static_cast<long long>(region.up),
-                   static_cast<long long>(region.down), region.difference.first, region.difference.second,
-                   p_text(region).c_str(), word_for(region.judgement), sweep.regions[r].label.c_str());
+                : text("%.4g (%.4g to %.4g)", region.mean.value, region.mean.low, region.mean.high);
+      const std::string unknown =
+          region.pairs < region.runs
+              ? text(", %lld unknown", static_cast<long long>(region.runs - region.pairs))
+              : std::string();
+      std::fprintf(out, "    %6lld runs%s  %s  %lld / %lld  %+.4f to %+.4f  %s  %s  %s\n",
+                   static_cast<long long>(region.runs), unknown.c_str(), values.c_str(),
+                   static_cast<long long>(region.up), static_cast<long long>(region.down),
+                   region.difference.low, region.difference.high, p_text(region).c_str(),
+                   word_for(region.judgement), sweep.regions[r].label.c_str());
     }
   }
 }

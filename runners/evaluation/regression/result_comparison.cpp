@@ -18,6 +18,7 @@
 #include "runners/experiment/settings/renamed_names.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_streams.h"
 
 namespace remote_touch {
 
@@ -100,6 +101,7 @@ void judge_columns(ResultComparison& result) {
             std::to_string(first.candidate_rows) +
             (result.columns->divergence ? "" : ", and the common rows are the same");
   if (!result.no_measures.empty()) text += "; no measures: " + result.no_measures;
+  if (!result.not_judged.empty()) text += "; " + result.not_judged;
   conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
 }
 
@@ -177,7 +179,10 @@ ResultComparison compare_by_kind(const Hdf5Reader& first_file, const Hdf5Reader&
                        "hashes are equal or not: expected with traces, sweeps and figures");
     return compare_hashes(hashes_of(first_file, ours), hashes_of(second_file, theirs));
   }
-  if (ours == "figure") return compare_figure(StoredFigure(first_file), StoredFigure(second_file), rules);
+  if (ours == "figure")
+    return compare_figure(
+        StoredFigure(first_file), StoredFigure(second_file), rules,
+        attribute(first_file.attributes(), "config") == attribute(second_file.attributes(), "config"));
   if (ours == "trace") {
     const StoredTrace first(first_file), second(second_file);
     return compare_trace(first, first.attributes(), second, second.attributes(), rules);
@@ -224,11 +229,12 @@ std::string kind_of(const Hdf5Reader& result) {
 }
 
 ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
-                                const ComparisonRules& rules) {
+                                const ComparisonRules& rules, bool one_origin) {
   check_names(rules.tolerances, baseline.column_names());
   // A figure's configuration is a list of all that it ran, which is too long for a list of its differences.
   ResultComparison result = begin("figure", {}, {});
-  result.columns = compare_by_name(baseline, candidate, rules.tolerances);
+  const std::vector<std::string> differences(one_origin ? 0 : 1, "the configurations differ");
+  result.columns = compare_by_name(baseline, candidate, rules.tolerances, differences);
   judge_columns(result);
   return result;
 }
@@ -262,11 +268,12 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
   result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
   if (!result.columns->is_same()) {
     result.no_measures = tick_difference(baseline, candidate);
-    auto measures = result.no_measures.empty() ? compare_measures(baseline, baseline_attributes, candidate,
-                                                                  candidate_attributes, rules.tolerances)
-                                               : std::nullopt;
+    auto measures = result.no_measures.empty()
+                        ? compare_measures(baseline, baseline_attributes, candidate, candidate_attributes,
+                                           rules.tolerances, result.configuration)
+                        : std::nullopt;
     if (measures)
-      result.measures = std::move(*measures), result.not_judged = outcome_difference(result.measures);
+      result.measures = std::move(measures->all), result.not_judged = std::move(measures->not_judged);
     else if (result.no_measures.empty())
       result.no_measures = "a column is missing, or the runs are not of one length";
   }
@@ -274,18 +281,42 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
   return result;
 }
 
+namespace {
+
+// Returns the streams of runs that draw where one of the two sweeps draws.
+CellStreams streams_of_both(const SweepResult& baseline, const TextAttributes& baseline_attributes,
+                            const SweepResult& candidate, const TextAttributes& candidate_attributes) {
+  CellStreams both = streams_of(baseline, attribute(baseline_attributes, "config"));
+  const CellStreams other = streams_of(candidate, attribute(candidate_attributes, "config"));
+  if (other.draws.size() != both.draws.size()) return both;  // they are not comparable
+  const bool is_same = both.noise_cell == other.noise_cell && both.seed == other.seed;
+  for (std::size_t cell = 0; cell < both.draws.size(); ++cell) {
+    both.draws[cell].of_cell |= other.draws[cell].of_cell;
+    both.draws[cell].of_replicate |= other.draws[cell].of_replicate || (!is_same && both.draws[cell].of_cell);
+  }
+  return both;
+}
+
+}  // namespace
+
 ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes& baseline_attributes,
                                const SweepResult& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules) {
   ResultComparison result = begin("sweep", baseline_attributes, candidate_attributes);
   result.paired = rules.paired;
-  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule, directions());
+  result.sweep = compare(baseline, candidate, rules.tolerances, rules.rule, directions(),
+                         {streams_of_both(baseline, baseline_attributes, candidate, candidate_attributes),
+                          !result.configuration.empty()});
   for (const std::string& difference : result.configuration) {
     if (difference.starts_with("experiment.seed "))
       result.sweep->problems.push_back(difference + ": the runs had different noise and cannot be paired");
     if (difference.starts_with("experiment.duration_s "))
       result.sweep->problems.push_back(difference + ": measures of another duration cannot be compared");
   }
+  const std::vector<std::string> known = names_of(baseline.measures);
+  for (const Column& measure : candidate.measures)
+    if (!result.configuration.empty() && std::find(known.begin(), known.end(), measure.name) == known.end())
+      result.sweep->problems.push_back("measure " + measure.name + ": the baseline has none");
   if (!result.sweep->problems.empty())
     conclude(result, Outcome::not_comparable, result.sweep->problems.front());
   else

@@ -33,7 +33,7 @@ struct ResultComparison {
   std::optional<TraceComparison> columns = {};  // set for traces and figures
   std::vector<ValueComparison> measures = {};   // set for traces that differ, see compare_measures()
   std::string no_measures = {};                 // why there are none although the traces differ
-  std::string not_judged = {};                  // why only some of them are judged; see outcome_difference()
+  std::string not_judged = {};                  // why only some of them, or none, are judged
   std::optional<SweepComparison> sweep = {};
   bool paired = false;  // the sweep was judged by the paired tests
   std::optional<HashComparison> hashes = {};
@@ -68,9 +68,9 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules);
 
-// Tables of figures, columns named table/column.
+// Tables of figures, columns named table/column. one_origin: true if both have the same configuration.
 ResultComparison compare_figure(const ColumnSource& baseline, const ColumnSource& candidate,
-                                const ComparisonRules& rules);
+                                const ComparisonRules& rules, bool one_origin);
 
 ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes& candidate);
 

@@ -4,6 +4,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/passivity.h"
+#include "runners/experiment/catalog/random_streams.h"
 #include "runners/experiment/provenance/provenance.h"
 
 namespace remote_touch {
@@ -16,10 +17,13 @@ std::vector<StoredSweep> read_all(const std::vector<BenchmarkSweep>& sweeps) {
   return stored;
 }
 
-SceneScore score_of(const BenchmarkScene& scene, const std::vector<StoredSweep>& stored) {
+SceneScore score_of(const BenchmarkScene& scene, const std::vector<BenchmarkSweep>& sweeps,
+                    const std::vector<StoredSweep>& stored) {
   SceneRules rules{scene.name, scene.title, scene.meaning, scene.success, {}, scene.old_success};
   for (const BenchmarkScene::Judged& judged : scene.measures)
     rules.measures.emplace_back(judged.measure, judged.better);
+  for (const BenchmarkSweep& one : sweeps)
+    rules.by_replicate.push_back(random_streams(one.sweep.experiment(0, 0)).of_replicate);
   std::vector<SweepResult> results;
   for (const StoredSweep& one : stored) results.push_back(one.result);
   return score(rules, results, scene.noise.empty());
@@ -84,7 +88,8 @@ std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, co
 
 Scorecard scores_of(const BenchmarkPlan& plan) {
   Scorecard card = empty_card(plan.benchmark.methods);
-  for (const ScenePlan& one : plan.scenes) card.scenes.push_back(score_of(one.scene, read_all(one.sweeps)));
+  for (const ScenePlan& one : plan.scenes)
+    card.scenes.push_back(score_of(one.scene, one.sweeps, read_all(one.sweeps)));
   correct(card);
   return card;
 }
@@ -97,7 +102,7 @@ ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, cons
   for (const ScenePlan& one : plan.scenes) {
     progress(report.card.scenes.size(), plan.scenes.size());
     const std::vector<StoredSweep> stored = read_all(one.sweeps);
-    report.card.scenes.push_back(score_of(one.scene, stored));
+    report.card.scenes.push_back(score_of(one.scene, one.sweeps, stored));
     report.card.scenes.back().truth = truth_of(one.sweeps.front().sweep, kernels);
     report.failures.emplace_back();
     for (std::size_t c = 0; c < stored.size(); ++c)
@@ -106,7 +111,7 @@ ScorecardReport evaluate(const BenchmarkPlan& plan, const Kernels& kernels, cons
   }
   if (!plan.audit.empty()) report.audit = empty_card(plan.laws);
   for (const ScenePlan& one : plan.audit)
-    report.audit->scenes.push_back(score_of(reported(one.scene), read_all(one.sweeps)));
+    report.audit->scenes.push_back(score_of(reported(one.scene), one.sweeps, read_all(one.sweeps)));
   correct(report.card);
   report.costs = costs_of(plan, kernels, stop, folder / "costs.json");
   report.cpu = cpu_name();

@@ -19,9 +19,9 @@ Json proportion_json(const Proportion& share) {
           {"high", number_or_null(share.high)}};
 }
 
-Json mean_json(const MeanDifference& mean) {
-  return {{"runs", mean.pairs},
-          {"mean", number_or_null(mean.mean)},
+Json mean_json(const Estimate& mean) {
+  return {{"runs", mean.clusters},
+          {"mean", number_or_null(mean.value)},
           {"low", number_or_null(mean.low)},
           {"high", number_or_null(mean.high)}};
 }
@@ -91,7 +91,7 @@ Json measure_json(const JudgedMeasure& measure) {
   Json methods = Json::array();
   for (std::size_t c = 0; c < measure.at_level.size(); ++c) {
     Json levels = Json::array();
-    for (const MeanDifference& level : measure.at_level[c]) levels.push_back(mean_json(level));
+    for (const Estimate& level : measure.at_level[c]) levels.push_back(mean_json(level));
     methods.push_back({{"overall", mean_json(measure.ranking.mean[c])},
                        {"mark", mark_word(is_judged ? mark_of(measure.ranking, c) : Mark::none)},
                        {"levels", levels}});
@@ -171,7 +171,7 @@ Json thresholds_json(const Scorecard& card) {
 }
 
 // Returns "given" or "taken" if the interval of the energy excludes zero, else "none".
-const char* energy_word(const MeanDifference& energy) {
+const char* energy_word(const Estimate& energy) {
   return energy.low > 0 ? "given" : energy.high < 0 ? "taken" : "none";
 }
 
@@ -236,6 +236,8 @@ std::string to_json(const ScorecardReport& report) {
                     {"seed", kScorecardSeed},
                     {"last_tuned_seed", kLastTunedSeed},
                     {"min_pairs", kMinPairs},
+                    {"tests", report.card.tests},
+                    {"least_pairs", report.card.least_pairs},
                     {"held_fraction", kHeldFraction},
                     {"contact_radius_m", kScorecardRadius_m},
                     {"significance", kSignificance},

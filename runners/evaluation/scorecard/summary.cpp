@@ -79,9 +79,9 @@ std::optional<std::vector<std::vector<EnergySummary>>> energies(const SceneScore
   std::vector<std::vector<EnergySummary>> laws(run->at_level.size());
   for (std::size_t c = 0; c < laws.size(); ++c)
     for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
-      MeanDifference cycle = run->at_level[c][i];
-      for (double* energy : {&cycle.mean, &cycle.low, &cycle.high}) *energy /= kPassivityCycles;
-      laws[c].push_back({cycle, update->at_level[c][i].mean});
+      Estimate cycle = run->at_level[c][i];
+      for (double* energy : {&cycle.value, &cycle.low, &cycle.high}) *energy /= kPassivityCycles;
+      laws[c].push_back({cycle, update->at_level[c][i].value});
     }
   return laws;
 }

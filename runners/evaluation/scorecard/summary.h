@@ -24,7 +24,7 @@ std::vector<CostSummary> cost_summary(const Scorecard& card, const std::vector<C
 
 // The energy that a hand got from a force law at one noise level.
 struct EnergySummary {
-  MeanDifference per_cycle_J;
+  Estimate per_cycle_J;
   double per_update_J;  // mean from one frame update to the next
 };
 // Returns the energies by law and level in a scene of the audit. None if the scene does not measure energy.

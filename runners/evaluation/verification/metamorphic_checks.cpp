@@ -1,5 +1,6 @@
 #include "runners/evaluation/verification/metamorphic_checks.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <variant>
@@ -20,6 +21,8 @@ using Outputs = std::vector<RenderOutput>;
 
 constexpr CheckName kTouch{
     "touch", "the renderer pushes back in most ticks, or in some if its contact model loses contact"};
+
+constexpr CheckName kFinite{"finite", "all positions, directions, forces and torques are finite numbers"};
 
 // Makes the renderer under test, as often as it is needed.
 class Subject {
@@ -90,18 +93,42 @@ class Subject {
   const Kernels& kernels_;
 };
 
-// Counts the ticks without a force. The check is violated in the tick in which the count exceeds the fraction
-// (1 - min) of all ticks.
-CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double min) {
-  const double allowed = (1 - min) * static_cast<double>(outputs.size());
-  Comparison count{.deviations = {{"ticks without force", "1", allowed}}};
+// Counts the ticks for which is_bad(output) is true. The check is violated in the tick in which the count
+// exceeds the allowed number.
+template <class IsBad>
+Comparison counted(const char* what, double allowed, const Outputs& outputs, IsBad&& is_bad) {
+  Comparison count{.deviations = {{what, "1", allowed}}};
   count.ticks = static_cast<int>(outputs.size());
   for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
-    if (!outputs[tick].force_N.isZero(0)) continue;
+    if (!is_bad(outputs[tick])) continue;
     if (++count.deviations.front().max > allowed && count.first_violation < 0)
       count.first_violation = static_cast<int>(tick);
   }
+  return count;
+}
+
+// An unknown force is no force.
+CheckResult touch(const MetamorphicScene& scene, const Outputs& outputs, double min) {
+  const Comparison count =
+      counted("ticks without force", (1 - min) * static_cast<double>(outputs.size()), outputs,
+              [](const RenderOutput& out) { return !out.force_N.allFinite() || out.force_N.isZero(0); });
   return {kTouch.name, kTouch.meaning, scene.name, "the other checks mean little without touch", count, {}};
+}
+
+// The other checks compare two runs, and numbers that are unknown in both count as equal there. Nothing may
+// be near the proxy, and no command may have been sent yet, so nearest_distance_m and slave_W are not
+// checked.
+bool is_finite(const RenderOutput& out) {
+  return out.proxy_W.allFinite() && out.force_N.allFinite() && out.normal_W.allFinite() &&
+         out.frame_correction_m.allFinite() && std::isfinite(out.surface_velocity_m_per_s) &&
+         (!out.tool || (out.tool->orientation_W.coeffs().allFinite() && out.tool->torque_Nm.allFinite() &&
+                        std::isfinite(out.tool->tool_penetration_m)));
+}
+
+CheckResult finite(const MetamorphicScene& scene, const Outputs& outputs) {
+  const Comparison count = counted("ticks with a value that is not finite", 0, outputs,
+                                   [](const RenderOutput& out) { return !is_finite(out); });
+  return {kFinite.name, kFinite.meaning, scene.name, "a device cannot exert any other force", count, {}};
 }
 
 // Returns a remark if a HIP that is moved by 1e-13 m along each axis violates the tolerance no later than the
@@ -125,7 +152,8 @@ std::span<const MetamorphicRelation> relations_of(DegreesOfFreedom degrees_of_fr
 std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicScene& scene) {
   const Outputs outputs = subject.play(scene);
   const Variation unvaried = subject.unvaried(scene, outputs);
-  std::vector<CheckResult> results{touch(scene, outputs, subject.min_touch_fraction())};
+  std::vector<CheckResult> results{touch(scene, outputs, subject.min_touch_fraction()),
+                                   finite(scene, outputs)};
   for (const MetamorphicRelation& relation : relations_of(subject.degrees_of_freedom())) {
     Variation run = unvaried;
     if (!relation.vary(run)) continue;
@@ -163,7 +191,7 @@ std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
 }
 
 std::vector<CheckName> check_names(DegreesOfFreedom degrees_of_freedom) {
-  std::vector<CheckName> names{kTouch};
+  std::vector<CheckName> names{kTouch, kFinite};
   for (const MetamorphicRelation& relation : relations_of(degrees_of_freedom))
     names.push_back({relation.name, relation.meaning});
   return names;

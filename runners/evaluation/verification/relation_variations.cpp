@@ -34,6 +34,11 @@ bool soften(Variation& run) {
   return true;
 }
 
+// True for a renderer that measures how the points move from frame to frame, as a sheet does.
+bool tracks_frames(const Variation& run) {
+  return run.contact_model.depends_on_axes && !run.contact_model.uses_camera;
+}
+
 bool points_are_stiff(const Variation& run) {
   return !run.scene.views.front().cloud.stiffness_N_per_m.empty();
 }
@@ -160,8 +165,9 @@ bool mirror_axis(Variation& run, int axis) {
   return true;
 }
 
+// A method that needs the direction to the sensor can be moved together with its camera.
 bool move(Variation& run) {
-  if (run.contact_model.depends_on_axes) return false;
+  if (run.contact_model.depends_on_axes && !needs_its_images(run)) return false;
   RigidTransform motion = RigidTransform::Identity();
   motion.linear() = Eigen::Quaterniond(0.6, 0.3, -0.5, 0.4).normalized().toRotationMatrix();
   motion.translation() = Vec3(0.31, -0.42, 0.27);
@@ -217,7 +223,7 @@ bool send_late(Variation& run) {
 // A step to the side over bumps has a component along the normal, which (4.13) interprets as a motion of the
 // cloud.
 bool double_rate(Variation& run) {
-  if (run.contact_model.depends_on_axes) return false;
+  if (tracks_frames(run)) return false;
   if (!run.scene.cloud_rests || run.scene.hip_rests) return false;
   send_more_often(run, 0);
   run.until_velocity = true;
@@ -225,7 +231,7 @@ bool double_rate(Variation& run) {
 }
 
 bool double_rate_at_rest(Variation& run) {
-  if (run.contact_model.depends_on_axes) return false;
+  if (tracks_frames(run)) return false;
   if (!run.scene.cloud_rests || !run.scene.hip_rests) return false;
   send_more_often(run, 1);
   return true;

@@ -141,12 +141,25 @@ std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
       configuration_.fixture_values(), configuration_.sequence, std::move(switches));
 }
 
+namespace {
+
+// Returns k_s of a renderer for points without a stiffness, as the configuration gives it.
+double own_stiffness_N_per_m(const Part<RendererEntry>& renderer) {
+  for (const Parameter& p : renderer.factory->settings())
+    if (double* const* value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
+      return **value;
+  return renderer.factory->stiffness_N_per_m();
+}
+
+}  // namespace
+
 FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitches> switches) const {
   std::vector<std::unique_ptr<const FixtureRule>> rules;
   for (const auto& rule : configuration_.fixtures) rules.push_back(rule.factory->build());
   // Switches change only with a sequence. Without one they are left out, because FrameStream would send the
   // frame of a scene at rest again and again.
-  return FixtureAssignment(std::move(rules), configuration_.sequence.empty() ? nullptr : std::move(switches));
+  return FixtureAssignment(std::move(rules), configuration_.sequence.empty() ? nullptr : std::move(switches),
+                           own_stiffness_N_per_m(configuration_.renderer));
 }
 
 namespace {

@@ -109,8 +109,10 @@ struct ContactModel {
   bool pressed_hip_passes_through = false;
   bool may_lose_contact = false;        // `touch` asks for a force in 2 % of the ticks, not in half of them
   bool depends_on_point_order = false;  // `verify` does not reorder the points
-  bool uses_camera = false;      // `verify` keeps the image layout, which gives the direction to the sensor
-  bool depends_on_axes = false;  // `verify` does not move or mirror the scene, or double the frame rate
+  bool uses_camera = false;  // `verify` keeps the image layout, which gives the direction to the sensor
+  // `verify` does not mirror the scene. It moves only images of a renderer that uses the camera, and doubles
+  // the frame rate only if the renderer uses the camera.
+  bool depends_on_axes = false;
   bool smooths_creases = false;  // `verify` gives a tool no scene in which walls meet
   // `verify` gives a tool no moving cloud, because rounding decides when the surface passes through the tool.
   bool motion_amplifies_rounding = false;

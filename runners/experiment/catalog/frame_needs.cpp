@@ -152,6 +152,19 @@ bool may_have_normals(const PointCloud& cloud) {
 
 }  // namespace
 
+namespace {
+
+// Returns the first cloud that has points; one without points if there are none among the first frames.
+PointCloud first_with_points(const Scenario& scenario) {
+  constexpr int kMaxFrames = 100;
+  PointCloud cloud;
+  for (int frame = 0; cloud.size() == 0 && frame < std::min(scenario.frame_count(), kMaxFrames); ++frame)
+    cloud = scenario.cloud(frame);
+  return cloud;
+}
+
+}  // namespace
+
 std::vector<FrameNeed> renderer_needs(const ExperimentConfiguration& configuration) {
   return entry_of(configuration).needs;
 }
@@ -180,7 +193,7 @@ void check_needs(const ExperimentConfiguration& configuration, const FixtureAssi
   const std::vector<FrameNeed> needs = renderer_needs(configuration);
   const bool faults = configuration.faults && use_view_direction(*configuration.faults);
   if ((needs.empty() && fixtures.empty() && !faults) || scenario.frame_count() < 1) return;
-  const PointCloud first = scenario.without_faults().cloud(0);
+  const PointCloud first = first_with_points(scenario.without_faults());
   if (contains(needs, FrameNeed::regions)) check_regions(configuration, !first.fixture_radius_m.empty());
   if (first.size() == 0) return;
   check_renderer(configuration, needs, contents_of(first));

@@ -85,13 +85,17 @@ FrameStream::FrameStream(const Scenario& scenario, FrameProcessing processing, c
       hash_frames_(hash_frames),
       generate_all_points_(generate_all_points) {}
 
+// The camera continues at its rate after the last frame of the scenario, and repeats that frame: only so does
+// a renderer see that a surface which moved is at rest. The only frame of a scene shows no motion, so it is
+// repeated only if a repetition can come earlier, come in its place, or show other fixtures.
 bool FrameStream::exists(int frame) const {
-  if (frame < scenario_.frame_count()) return true;
-  const bool continues = processing_.fixtures.changes_with_time() || transport_.drop_probability > 0;
-  return continues && !scenario_.ends();
+  const int count = scenario_.frame_count();
+  if (frame < count) return true;
+  const bool matters = count > 1 || processing_.fixtures.changes_with_time() ||
+                       transport_.drop_probability > 0 || transport_.jitter_s > 0;
+  return matters && !scenario_.ends();
 }
 
-// The camera continues at its rate after the last frame of the scenario, and repeats that frame.
 int FrameStream::source_frame(int frame) const {
   return std::min(frame, scenario_.frame_count() - 1);
 }
@@ -129,14 +133,22 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
   }
 }
 
-void FrameStream::fill(Frame& frame) const {
+void FrameStream::fill(Frame& frame) {
+  const int source = source_frame(frame.index);
   if (processing_.changes_points())
-    processing_.fill(frame, scenario_.cloud(source_frame(frame.index)),
+    processing_.fill(frame, scenario_.cloud(source),
                      scenario_.fixtures_off(frame.index).value_or(processing_.fixtures.off()));
+  else if (frame.index > source && repeated_)
+    frame.points = repeated_;
   else
-    frame.points = scenario_.points(source_frame(frame.index));
-  if (generate_all_points_ && !dynamic_cast<const CloudSearch*>(frame.points.get()))
-    frame.points = make_search(scenario_.cloud(source_frame(frame.index)));
+    frame.points = points_of(source);
+  if (frame.index > source) repeated_ = frame.points;
+}
+
+std::shared_ptr<const NeighbourSearch> FrameStream::points_of(int source) const {
+  auto points = scenario_.points(source);
+  if (!generate_all_points_ || dynamic_cast<const CloudSearch*>(points.get())) return points;
+  return make_search(scenario_.cloud(source));
 }
 
 std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {

@@ -47,11 +47,13 @@ std::uint64_t frame_hash(const PointCloud& cloud, double captured_s);
 
 class FrameStream {
  public:
-  // The scenario must outlive the stream. The last frame, and so the only one of a scene at rest, is sent
-  // once. It is repeated at the frame rate if the fixtures change with time or if frames can be lost, unless
-  // the scenario ends (Scenario::ends()). hash_frames: computes every point of every frame, for
-  // newest_hash(). generate_all_points: computes every point, with the same bits, before a frame is passed
-  // on, so that measured durations do not contain the generation of noise.
+  // The scenario must outlive the stream. The last frame is repeated at the frame rate, unless the scenario
+  // ends (Scenario::ends()). A repetition is a frame of its own: it has the next number, its own time of
+  // capture, latency and loss, and the points of the last frame. A scene with one frame only, which never
+  // changes, is sent once, unless fixtures change with time, or frames can be lost or overtake each other.
+  // hash_frames: computes every point of every frame, for newest_hash(). generate_all_points: computes every
+  // point, with the same bits, before a frame is passed on, so that measured durations do not contain the
+  // generation of noise.
   FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
               const NoiseKey& key, bool hash_frames, bool generate_all_points = false);
 
@@ -72,7 +74,8 @@ class FrameStream {
   int source_frame(int frame) const;  // the scenario's frame that this one shows
   double captured_s(int frame) const;
   void send(int frame);
-  void fill(Frame& frame) const;  // adds its points and targets
+  void fill(Frame& frame);  // adds its points and targets
+  std::shared_ptr<const NeighbourSearch> points_of(int source) const;
   std::uint64_t hash_of(int frame, const NeighbourSearch& points) const;
 
   const Scenario& scenario_;
@@ -83,6 +86,7 @@ class FrameStream {
   bool hash_frames_, generate_all_points_;
   int next_ = 0;  // the next frame to be sent
   std::vector<FrameInTransit> in_transit_;
+  std::shared_ptr<const NeighbourSearch> repeated_;  // points of the last repeated frame; null before it
   std::uint64_t hash_ = 0;
 };
 

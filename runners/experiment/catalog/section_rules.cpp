@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/json_parameters.h"
@@ -93,6 +94,14 @@ void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
   }
 }
 
+// Throws InputError if the stiffness is none: the force of a real device is scaled by it.
+double stiffness_of(const auto& factory, const std::string& renderer) {
+  const double stiffness = factory.stiffness_N_per_m();
+  if (stiffness >= 0 && std::isfinite(stiffness)) return stiffness;
+  throw InputError("max_stiffness_N_per_m of the renderer " + renderer + " = " + std::to_string(stiffness),
+                   "expected a finite number, 0 or more");
+}
+
 }  // namespace
 
 void check_changes(ExperimentConfiguration& configuration) {
@@ -100,12 +109,14 @@ void check_changes(ExperimentConfiguration& configuration) {
     const std::string problem = factory.validate();
     if (!problem.empty()) throw InputError(where, "after this change renderer." + problem);
   });
+  max_renderer_stiffness(configuration);
 }
 
 double max_renderer_stiffness(const ExperimentConfiguration& configuration) {
-  double max = configuration.renderer.factory->stiffness_N_per_m();
+  const std::string& name = configuration.renderer.name;
+  double max = stiffness_of(*configuration.renderer.factory, name);
   after_changes(configuration, [&](const auto& factory, const std::string&) {
-    max = std::max(max, factory.stiffness_N_per_m());
+    max = std::max(max, stiffness_of(factory, name));
   });
   return max;
 }
@@ -137,6 +148,15 @@ bool has_setting(const Part<RendererEntry>& renderer, const std::string& name) {
   return std::ranges::any_of(settings, [&](const Parameter& p) { return p.name == name; });
 }
 
+// The word of feedback.force.
+std::string name_of(FeedbackSettings feedback) {
+  for (const Parameter& p : parameters(feedback))
+    if (p.name == "force")
+      if (const Choice* const words = std::get_if<Choice>(&p.value))
+        return words->names[static_cast<std::size_t>(words->get())];
+  return {};
+}
+
 // The slave has the tool of the renderer.
 void check_slave_tool(const ExperimentConfiguration& configuration) {
   if (!has_setting(configuration.renderer, "tool_mesh"))
@@ -146,22 +166,24 @@ void check_slave_tool(const ExperimentConfiguration& configuration) {
   if (radius_m != SlaveSettings{}.radius_m)
     throw InputError("slave.radius_m = " + shown(radius_m),
                      "expected the default for a slave with a tool, whose surface touches the scene");
-  if (configuration.feedback->force == Feedback::passive_slave_force)
-    throw InputError("feedback.force = passive-slave-force",
-                     "expected another for a slave with a tool: passivity control balances the energy of "
-                     "force and position, not that of torque and rotation");
+  const Feedback force = configuration.feedback->force;
+  if (feels_slave(force) && force != Feedback::slave_force)
+    throw InputError(
+        "feedback.force = " + name_of(*configuration.feedback),
+        "expected another for a slave with a tool: it couples force and position, not torque and "
+        "rotation");
 }
 
-// Passivity control balances the work of the force that it commands, with the motion that the device
-// measures.
-void check_passive_device(const ExperimentConfiguration& configuration) {
-  if (!configuration.device || configuration.feedback->force != Feedback::passive_slave_force) return;
+// Passivity control and waves balance the work of the force on the hand with the motion that the device
+// measures, and predict this motion from the force that they command.
+void check_exact_device(const ExperimentConfiguration& configuration) {
+  const Feedback force = configuration.feedback->force;
+  if (!configuration.device || (force != Feedback::passive_slave_force && force != Feedback::wave)) return;
   const DeviceSettings& d = *configuration.device;
   const std::pair<std::string, bool> changed[] = {
       {"force_x = false", !d.motors.force_x},
       {"force_y = false", !d.motors.force_y},
       {"force_z = false", !d.motors.force_z},
-      {"max_force_N = " + shown(d.motors.max_force_N), d.motors.max_force_N > 0},
       {"position_resolution_m = " + shown(d.position_resolution_m), d.position_resolution_m > 0},
       {"delay_ticks = " + std::to_string(d.delay_ticks), d.delay_ticks > 0},
       {"contact_damping_Ns_per_m = " + shown(d.contact_damping_Ns_per_m), d.contact_damping_Ns_per_m != 0}};
@@ -169,8 +191,28 @@ void check_passive_device(const ExperimentConfiguration& configuration) {
     if (is_changed)
       throw InputError(
           "device." + setting,
-          "expected the default with feedback.force = passive-slave-force: passivity control needs "
-          "the exact motion, and a device that exerts the whole force in the same tick");
+          "expected the default with feedback.force = " + name_of(*configuration.feedback) +
+              ": it needs the exact motion, and a device that exerts the force in the same tick, in all "
+              "directions");
+}
+
+// Dead-bands look at the position of the hand and at the force of the scene. What else an architecture sends
+// may change while these do not.
+void check_links(const ExperimentConfiguration& configuration) {
+  const Feedback force = configuration.feedback->force;
+  const bool is_wave = force == Feedback::wave;
+  const std::tuple<const char*, const DeadBandSettings&, bool> links[] = {
+      {"command_link", configuration.command_link->dead_band, is_wave},
+      {"force_link", configuration.force_link->dead_band, is_wave || force == Feedback::position_position}};
+  for (const auto& [name, band, needs_all] : links)
+    if (needs_all && (band.weber_fraction > 0 || band.least > 0))
+      throw InputError(std::string(name) + (band.least > 0 ? ".least = " : ".weber_fraction = ") +
+                           shown(band.least > 0 ? band.least : band.weber_fraction),
+                       "expected 0 with feedback.force = " + name_of(*configuration.feedback) +
+                           ", which needs every packet");
+  if (const double limit = configuration.slave->max_speed_m_per_s; is_wave && limit > 0)
+    throw InputError("slave.max_speed_m_per_s = " + shown(limit),
+                     "expected 0 with feedback.force = wave, whose waves move the reference of the slave");
 }
 
 }  // namespace
@@ -201,7 +243,8 @@ void check_slave(ExperimentConfiguration& configuration) {
                      "expected 0, and a length as command_link.least: the size of a position depends on the "
                      "origin");
   if (renders_tool(configuration)) check_slave_tool(configuration);
-  check_passive_device(configuration);
+  check_exact_device(configuration);
+  check_links(configuration);
 }
 
 void check_device(ExperimentConfiguration& configuration) {

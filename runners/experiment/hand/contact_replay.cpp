@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
+#include "core/geometry/bounding_box.h"
 #include "core/geometry/near_origin.h"
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
@@ -141,6 +143,28 @@ Contact contact_of(const ForceTraceRow& row, double begins_s, const Settings& s)
   return contact;
 }
 
+// Adds a note on a contact that moves farther than a hand does, or faster.
+void add_unusual_size(const Settings& s, const ForceTrace& trace, std::vector<Note>& notes) {
+  constexpr double kLargest_m = 1, kFastest_m_per_s = 10;
+  double speed = 0;
+  BoundingBox box;
+  for (std::size_t i = 0; i < trace.rows.size(); ++i) {
+    box.extend(s.scale * trace.rows[i].contact_m);
+    if (i == 0) continue;
+    const Vec3 way_m = s.scale * (trace.rows[i].contact_m - trace.rows[i - 1].contact_m);
+    speed = std::max(speed, way_m.norm() / (trace.rows[i].time_s - trace.rows[i - 1].time_s));
+  }
+  const double size_m = box.diagonal().norm();
+  if (!(size_m > kLargest_m) && !(speed > kFastest_m_per_s)) return;
+  char text[160];
+  std::snprintf(text, sizeof text, ": the contact moves through %.3g m at up to %.3g m/s: ", size_m, speed);
+  notes.push_back({"unusual poses",
+                   s.file + text +
+                       (trace.states_length ? "times may be in another unit than the columns say"
+                                            : "without units, lengths are metres; columns x_mm y_mm z_mm are "
+                                              "millimetres")});
+}
+
 std::vector<Contact> contacts_in_file(const Settings& s, const Scenario& scenario, std::vector<Note>& notes) {
   const std::string file = find_recording(s.file);
   const ForceTrace trace = read_force_trace(file, s.columns);
@@ -164,6 +188,7 @@ std::vector<Contact> contacts_in_file(const Settings& s, const Scenario& scenari
     for (const std::string& name : trace.unused) names += (names.empty() ? "" : ", ") + name;
     notes.push_back({"columns unused", s.file + ": columns that are not used: " + names});
   }
+  add_unusual_size(s, trace, notes);
   return contacts;
 }
 

@@ -72,7 +72,8 @@ std::vector<double> step_tops(const std::vector<double>& heights, double spacing
 
 }  // namespace
 
-FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario) : path_(s.from_m) {
+FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario)
+    : scenario_(scenario), path_(s.from_m) {
   const Vec3 path = level_line_m(s);
   const int pieces = static_cast<int>(std::ceil(path.norm() / kSampling_m));
   std::vector<double> heights;
@@ -91,6 +92,36 @@ FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario) : path
   for (std::size_t i = 0; i < positions.size(); ++i)
     path_.go_to(at_height(i, std::max(depths[i], tops[i] + s.clearance_m)), s.speed_m_per_s);
   path_.go_to(at_height(positions.size() - 1, heights.back() + s.clearance_m), s.speed_m_per_s);
+  follow(s);
+}
+
+double FollowSurface::risen_m(const Vec3& at_W, double time_s) const {
+  return scenario_.surface_height(at_W.x(), at_W.z(), scenario_.truth_time_s(time_s)) -
+         scenario_.surface_height(at_W.x(), at_W.z(), 0);
+}
+
+// Compares the heights at the ends and in the middle of the line during the motion. Heights that are unknown
+// count as at rest.
+void FollowSurface::follow(const Settings& s) {
+  constexpr double kEvery_s = 0.005, kSame_m = 1e-9, kMostTimes = 20000;
+  if (scenario_.frame_count() == 1) return;
+  const double times = std::min(std::ceil(path_.duration_s() / kEvery_s), kMostTimes);
+  for (int i = 1; i <= times; ++i) {
+    const double time_s = path_.duration_s() * i / times, first_m = risen_m(s.from_m, time_s);
+    moves_ |= std::abs(first_m) > kSame_m;
+    for (const double part : {0.5, 1.0})
+      if (std::abs(risen_m(s.from_m + part * level_line_m(s), time_s) - first_m) > kSame_m)
+        throw InputError("trajectory.name = follow-surface",
+                         "the surface changes its shape or place along the line at " +
+                             std::to_string(time_s) +
+                             " s: expected a surface that is at rest, or rises and sinks as a whole");
+  }
+}
+
+DeviceState FollowSurface::at(double time_s) const {
+  Vec3 p_W = path_.at(time_s);
+  if (moves_) p_W.y() += risen_m(p_W, time_s);
+  return {p_W};
 }
 
 }  // namespace remote_touch

@@ -13,7 +13,9 @@ namespace remote_touch {
 // The HIP keeps its distance to every part of the surface along the line (a parallel curve, not a vertical
 // shift). It lifts off over steps and comes down behind them: a frictionless proxy stays at the wall of a
 // step as long as the HIP is below the step's top, so a HIP that stayed inside would only build up force. The
-// HIP moves at constant speed along its own path, approaches from above and leaves upwards.
+// HIP moves at constant speed along its own path, approaches from above and leaves upwards. The path is that
+// over the surface at time 0. If the surface rises or sinks as a whole, the HIP rises and sinks with it: with
+// the true surface, from which signed_distance() measures.
 class FollowSurface final : public Trajectory {
  public:
   struct Settings {
@@ -26,13 +28,19 @@ class FollowSurface final : public Trajectory {
     double step_margin_m = 0.01;
   };
 
-  // Throws InputError if the scenario has no surface height at the start of the line.
+  // The scenario must outlive the motion. Throws InputError if the scenario has no surface height at the
+  // start of the line, or if the surface moves otherwise than up and down as a whole.
   FollowSurface(const Settings& settings, const Scenario& scenario);
-  DeviceState at(double time_s) const override { return {path_.at(time_s)}; }
+  DeviceState at(double time_s) const override;
   double duration_s() const override { return path_.duration_s(); }
 
  private:
+  double risen_m(const Vec3& at_W, double time_s) const;  // change of the height of the surface since time 0
+  void follow(const Settings& settings);                  // sets moves_
+
+  const Scenario& scenario_;
   PolylinePath path_;
+  bool moves_ = false;
 };
 
 Parameters parameters(FollowSurface::Settings& s);

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <string_view>
 
 #include "scenarios/text_files/file_ending.h"
+#include "scenarios/text_files/number_columns.h"
 #include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
@@ -17,97 +16,30 @@ namespace remote_touch {
 namespace {
 
 constexpr double kMaxCoordinateInFile_m = 100;
-constexpr const char* kBlanks = " \t\v\f\r";
 
-struct Unit {
-  const char* suffix;
-  double in_si;
-};
-struct Quantity {
-  const char *name, *other_name;
-  std::array<Unit, 2> units;
-};
-constexpr std::array<Unit, 2> kTime = {{{"s", 1}, {"ms", 1e-3}}};
-constexpr std::array<Unit, 2> kLength = {{{"m", 1}, {"mm", 1e-3}}};
-constexpr std::array<Unit, 2> kForce = {{{"n", 1}, {"n", 1}}};
-constexpr std::array<Quantity, 7> kQuantities = {{{"time", "t", kTime},
-                                                  {"x", "px", kLength},
-                                                  {"y", "py", kLength},
-                                                  {"z", "pz", kLength},
-                                                  {"fx", "fx", kForce},
-                                                  {"fy", "fy", kForce},
-                                                  {"fz", "fz", kForce}}};
-
-// The column of each quantity, and the value of its unit in SI units.
-struct Columns {
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::array<std::size_t, kQuantities.size()> index{};
-  std::array<double, kQuantities.size()> unit{};
-  std::vector<std::string> names;  // names of all columns, as the file has them
-  std::vector<std::string> unused;
-};
-
-std::string in_small_letters(std::string_view name) {
-  std::string small(name);
-  for (char& c : small)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return small;
+const std::vector<ColumnQuantity>& quantities() {
+  using Unit = ColumnQuantity::Unit;
+  static const std::vector<ColumnQuantity> all = {{{"time", "t"}, Unit::time}, {{"x", "px"}, Unit::length},
+                                                  {{"y", "py"}, Unit::length}, {{"z", "pz"}, Unit::length},
+                                                  {{"fx"}, Unit::force},       {{"fy"}, Unit::force},
+                                                  {{"fz"}, Unit::force}};
+  return all;
 }
 
-struct NamedQuantity {
-  std::size_t index;  // index in kQuantities
-  double unit;        // size of its unit in SI units
-};
-// Returns nothing if the name, in small letters, is not that of a quantity with one of its units or without a
-// unit.
-std::optional<NamedQuantity> quantity_named(const std::string& name) {
-  for (std::size_t i = 0; i < kQuantities.size(); ++i)
-    for (const char* base : {kQuantities[i].name, kQuantities[i].other_name}) {
-      if (name == base) return NamedQuantity{i, 1};
-      for (const Unit& unit : kQuantities[i].units)
-        if (name == std::string(base) + "_" + unit.suffix) return NamedQuantity{i, unit.in_si};
-    }
-  return std::nullopt;
-}
-
-void add_column(const std::string& where, std::string_view name, Columns& columns) {
-  columns.names.emplace_back(name);
-  const std::optional<NamedQuantity> found = quantity_named(in_small_letters(name));
-  if (!found) {
-    columns.unused.emplace_back(name);
-    return;
-  }
-  if (columns.index[found->index] != Columns::kNone)
-    refuse(where, "column ", std::string(name), ": expected one column of ", kQuantities[found->index].name);
-  columns.index[found->index] = columns.names.size() - 1;
-  columns.unit[found->index] = found->unit;
-}
-
-Columns columns_named(const std::string& where, const std::vector<std::string_view>& names) {
-  Columns columns;
-  columns.index.fill(Columns::kNone);
-  for (const std::string_view name : names) add_column(where, name, columns);
-  for (std::size_t i = 0; i < kQuantities.size(); ++i)
-    if (columns.index[i] == Columns::kNone)
-      refuse(where, "no column ", kQuantities[i].name,
+NumberColumns columns_named(const std::string& where, const std::vector<std::string_view>& names) {
+  NumberColumns columns(where, {names.begin(), names.end()}, quantities());
+  for (std::size_t i = 0; i < quantities().size(); ++i)
+    if (!columns.has(i))
+      refuse(where, "no column ", std::string(quantities()[i].names.front()),
              ": expected time, x, y, z, fx, fy and fz, each with its unit (_s, _ms, _m, _mm, _N) or without");
   return columns;
 }
 
 std::string_view trimmed(std::string_view text) {
+  constexpr const char* kBlanks = " \t\v\f\r";
   const std::size_t begin = text.find_first_not_of(kBlanks);
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
-}
-
-std::vector<std::string_view> words_of_line(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t end = 0;;) {
-    const std::size_t begin = line.find_first_not_of(kBlanks, end);
-    if (begin == std::string_view::npos) return words;
-    end = std::min(line.find_first_of(kBlanks, begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
-  }
 }
 
 std::vector<std::string_view> fields_of_line(std::string_view line) {
@@ -120,23 +52,12 @@ std::vector<std::string_view> fields_of_line(std::string_view line) {
   }
 }
 
-// std::from_chars does not accept a plus sign.
-double number_of(const std::string& where, std::string_view text, const std::string& column) {
-  const bool has_plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
-  const std::string_view digits = has_plus ? text.substr(1) : text;
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-    refuse(where, "'", std::string(text.substr(0, 32)), "' in column ", column, ": expected a number");
-  return value;
-}
-
 ForceTraceRow row_of(const std::string& where, const std::vector<std::string_view>& fields,
-                     const Columns& columns) {
-  std::array<double, kQuantities.size()> values{};
+                     const NumberColumns& columns) {
+  std::array<double, 7> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t column = columns.index[i];
-    values[i] = columns.unit[i] * number_of(where, fields[column], columns.names[column]);
+    values[i] = columns.value(where, fields, i);
+    if (!std::isfinite(values[i])) columns.refuse_number(where, fields, i);
   }
   return {values[0], {values[1], values[2], values[3]}, {values[4], values[5], values[6]}};
 }
@@ -171,15 +92,16 @@ class TraceReader {
   ForceTrace take() {
     if (trace_.rows.size() < 2)
       refuse(file_.string(), "has ", trace_.rows.size(), " row(s): expected 2 or more");
-    trace_.unused = columns_.unused;
-    for (std::size_t i = columns_.names.size(); i < most_fields_; ++i)
+    trace_.unused = columns_.unused();
+    trace_.states_length = columns_.states_unit(1);
+    for (std::size_t i = columns_.count(); i < most_fields_; ++i)
       trace_.unused.push_back("column " + std::to_string(i + 1));
     return std::move(trace_);
   }
 
  private:
   void check_count(const std::string& where, std::size_t fields) {
-    const std::size_t expected = columns_.names.size();
+    const std::size_t expected = columns_.count();
     if (fields < expected || (is_csv_ && fields > expected))
       refuse(where, fields, " values: expected ", expected, is_csv_ ? "" : " or more");
     most_fields_ = std::max(most_fields_, fields);
@@ -188,7 +110,7 @@ class TraceReader {
   const std::filesystem::path file_;
   const bool is_csv_;
   bool has_columns_ = false;
-  Columns columns_;
+  NumberColumns columns_;
   ForceTrace trace_;
   std::size_t most_fields_ = 0;
 };
@@ -200,13 +122,10 @@ ForceTrace read_force_trace(const std::filesystem::path& file, const std::string
     refuse(file.string(), "expected a file that ends in .csv or .traj");
   const std::string text = read_input_text(file, "expected rows of time, position and force");
   TraceReader reader(file, traj_columns);
-  std::string_view rest = without_byte_order_mark(text);
-  for (std::size_t number = 1; !rest.empty(); ++number) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = trimmed(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+  for_each_line(without_byte_order_mark(text), [&](std::size_t number, std::string_view untrimmed) {
+    const std::string_view line = trimmed(untrimmed);
     if (!line.empty() && line[0] != '#' && line[0] != '%') reader.add(number, line);
-  }
+  });
   return reader.take();
 }
 

@@ -25,6 +25,7 @@ struct ForceTraceRow {
 struct ForceTrace {
   std::vector<ForceTraceRow> rows;  // two or more, in order of time
   std::vector<std::string> unused;  // names of the columns that are not used; "column 9" if it has none
+  bool states_length = false;       // the name of the column of x states its unit
 };
 
 // traj_columns: the names of the columns of a .traj file, in their order, separated by blanks. Further

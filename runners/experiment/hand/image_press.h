@@ -1,5 +1,6 @@
 // A device that presses along the ray of one pixel, a set depth behind the surface of the newest frame: it
-// stays in contact while the camera or the scene moves.
+// stays in contact while the camera or the scene moves. Its depths, clearance and speed are those along the
+// axis of the camera; along the ray they are larger by 1 / cos of the angle between both.
 #pragma once
 
 #include <map>

@@ -21,10 +21,11 @@ Parameters parameters(ImageScan::Settings& s) {
       {"last_column", &s.last_column, -1, 4095,
        "last image column; -1: as far right as the depth stays within span_m"},
       {"depth_m", &s.depth_m, -1, 1,
-       "depth of the HIP behind the surface of the first frame, along the viewing ray"},
+       "depth of the HIP behind the surface of the first frame, along the axis of the camera"},
       {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100, "speed along the HIP's path"},
       {"clearance_m", &s.clearance_m, 0, 10,
-       "distance in front of the surface at the start, at the end and over edges and holes"},
+       "distance in front of the surface at the start, at the end and over edges and holes, along the axis of the "
+       "camera"},
       {"span_m", &s.span_m, 1e-3, 100,
        "surfaces whose depth differs by more than this from that of the object are not touched, unless "
        "first_column and last_column are both given"},

@@ -1,7 +1,8 @@
 // A device that scans along an image row of the first frame, at a set depth behind the surface that the
-// camera saw. It is the default path over any recording. The device touches surfaces that the camera saw
-// without gaps. It lifts off over depth edges and holes, because there are no points behind them to hold the
-// proxy. While it is lifted, it is in front of everything that the first frame shows along its way.
+// camera saw, along the axis of the camera. It is the default path over any recording. The device touches
+// surfaces that the camera saw without gaps. It lifts off over depth edges and holes, because there are no
+// points behind them to hold the proxy. While it is lifted, it is in front of everything that the first frame
+// shows along its way.
 #pragma once
 
 #include <string>

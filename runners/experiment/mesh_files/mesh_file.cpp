@@ -17,6 +17,7 @@
 
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/packed_values.h"
+#include "core/geometry/bounding_box.h"
 #include "core/mesh/mesh_corners.h"
 #include "core/mesh/polygon_triangles.h"
 #include "core/parameters/input_error.h"
@@ -144,7 +145,8 @@ namespace {
 void require_whole_facets(const std::string& stl) {
   constexpr std::size_t kCountAt = 80, kHeader = 84, kFacet = 50;
   if (stl.size() < kHeader)
-    throw std::runtime_error("it neither begins with the word solid nor has the 84 bytes of a binary header");
+    throw std::runtime_error(
+        "it is no text that begins with the word solid, and lacks the 84 bytes of a binary header");
   std::uint32_t facets = 0;
   std::memcpy(&facets, stl.data() + kCountAt, sizeof facets);
   const std::size_t needed = kHeader + kFacet * std::size_t{facets};
@@ -213,6 +215,24 @@ TriangleMesh mesh_in_child(const std::filesystem::path& file, const RunInChild& 
   return mesh;
 }
 
+// Throws std::runtime_error if single precision, in which the library reads, changes the shape: half of its
+// last digit must be at most 1e-4 of the size.
+void require_precise(const TriangleMesh& mesh) {
+  BoundingBox box;
+  for (const auto& triangle : mesh.triangles)
+    for (const int corner : triangle)
+      if (mesh.vertices[static_cast<std::size_t>(corner)].allFinite())
+        box.extend(mesh.vertices[static_cast<std::size_t>(corner)]);
+  if (box.isEmpty()) return;
+  const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  const double size = box.sizes().maxCoeff(), rounding = 0x1p-24 * farthest;
+  if (rounding <= 1e-4 * size) return;
+  std::ostringstream problem;
+  problem << "its coordinates reach " << farthest << " and are read in single precision, to " << rounding
+          << ", but its longest side is " << size << ": expected a mesh nearer to its origin";
+  throw std::runtime_error(problem.str());
+}
+
 }  // namespace
 
 TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run) {
@@ -226,6 +246,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run)
     if (ending_of(file) == ".ply")
       if (const std::string problem = ply_problem(file); !problem.empty()) throw std::runtime_error(problem);
     mesh = mesh_in_child(file, run);
+    require_precise(mesh);
   } catch (const std::runtime_error& error) {
     throw InputError(file.string(), "cannot be read (" + one_line(error.what()) + "); " + allowed);
   }
@@ -235,7 +256,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run)
 
 std::string mesh_reader_version() {
   return "assimp " + std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." +
-         std::to_string(aiGetVersionPatch()) + ", concave polygons, strict text";
+         std::to_string(aiGetVersionPatch());
 }
 
 }  // namespace remote_touch

@@ -14,10 +14,12 @@ bool is_mesh_file(const std::filesystem::path& file);
 // Returns all meshes of the file as one mesh. Vertices at equal positions are welded, and polygons are cut
 // into triangles of their area (polygon_triangles.h). Lines and points are left out. Coordinates have single
 // precision, in the unit of the file. Throws InputError, with the name of the file, also for a polygon that
-// cannot be cut. run: runs the child process, because the library reads the file only there.
+// cannot be cut, and if single precision is coarser than 1e-4 of the mesh's size, as at map coordinates. run:
+// runs the child process, because the library reads the file only there.
 TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run = in_own_child);
 
-// Returns the version of the reader. Another version may read a file differently.
+// Returns the version of the library that reads the files, which is not a part of the program. Another
+// version may read a file differently.
 std::string mesh_reader_version();
 
 }  // namespace remote_touch

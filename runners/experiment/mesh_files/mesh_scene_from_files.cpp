@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/geometry/bounding_box.h"
-#include "scenarios/meshes/pose_file.h"
 
 namespace remote_touch {
 
@@ -36,7 +35,7 @@ BoundingBox box_of(const SceneMesh& mesh) {
 double nearest_depth_m(const DepthSensorSettings& sensor) {
   if (sensor.sensor == DepthSensorKind::simple) return 0;
   const Triangulation t = triangulation(sensor);
-  return t.max_disparity_px > 0 ? sensor.camera.focal_px * t.baseline_m / t.max_disparity_px : 0;
+  return t.max_disparity_px > 0 ? t.focal_px * t.baseline_m / t.max_disparity_px : 0;
 }
 
 // Places the camera where a ball around the box fills the smaller side of the image, or farther away, where
@@ -58,7 +57,8 @@ std::string text_of(const SceneMesh& mesh) {
   char sides[96];
   std::snprintf(sides, sizeof sides, ": %zu triangles, %.3f x %.3f x %.3f m",
                 mesh.object.shape->triangles().size(), sides_m.x(), sides_m.y(), sides_m.z());
-  return mesh.object.name + sides;
+  return mesh.object.name + sides +
+         (mesh.object.shape->crosses_itself() ? ", its faces cross each other" : "");
 }
 
 std::string text_of(const Vec3& camera_W) {
@@ -80,7 +80,9 @@ Parameters parameters(MeshSceneFromFiles::Settings& s) {
        "their bounding box if that is longer"},
       {"table_height_m", &s.table_height_m, -10, 10, "height of the table"},
       {"camera_path", &s.camera_path, 0, 0,
-       "file of camera poses over time, `t tx ty tz qx qy qz qw`, camera to world; empty: at rest"},
+       "file of camera poses over time, `t tx ty tz qx qy qz qw` or as its first line names them; empty: at rest"},
+      {"pose_direction", choice(s.pose_direction, {"camera-to-world", "world-to-camera"}), 0, 0,
+       "what the poses of camera_path transform"},
       {"camera_fit", &s.camera_fit, 0, 0,
        "the camera looks at the middle of the objects, in the direction from camera_position_m to "
        "target_position_m, from where they fill the image, or from the least distance of the sensor"},
@@ -105,20 +107,73 @@ std::vector<RecordingPart> input_files(const MeshSceneFromFiles::Settings& s) {
   return files;
 }
 
+namespace {
+
+// The paths of the files of poses that a scene names, on one clock.
+class ScenePaths {
+ public:
+  ScenePaths(const MeshSceneFromFiles::Settings& s, std::vector<Note>& notes) {
+    for (const PlacedMesh& object : s.objects) add(object.mesh.empty() ? "" : object.path);
+    add(s.camera_path);
+    std::vector<const PoseFile*> files;
+    for (const auto& file : files_)
+      if (file) files.push_back(&*file);
+    const std::vector<double> origins_s = origins_of_clocks(files, notes);
+    for (std::size_t i = 0, next = 0; i < files_.size(); ++i) {
+      if (!files_[i]) continue;
+      paths_[i] = path_of(*files_[i], origins_s[next++]);
+      if (i + 1 == files_.size() && s.pose_direction == PoseDirection::world_to_camera)
+        paths_[i] = inverse(*paths_[i]);
+      const bool may_be_reordered = files_[i]->has_unnamed_quaternions && i + 1 < files_.size();
+      const std::string name = files_[i]->file.filename().string();
+      for (const auto& more : {files_[i]->notes, unusual_poses(name, paths_[i]->poses(), may_be_reordered)})
+        notes.insert(notes.end(), more.begin(), more.end());
+      text_ += "; " + name + ": " + motion_text(paths_[i]->poses());
+    }
+  }
+
+  // i: index of an object, or kCamera.
+  static constexpr std::size_t kCamera = 3;
+  const std::optional<PosePath>& operator[](std::size_t i) const { return paths_[i]; }
+  // Describes what was read of each, for the user.
+  const std::string& text() const { return text_; }
+
+ private:
+  void add(const std::string& name) {
+    files_.push_back(name.empty() ? std::nullopt
+                                  : std::optional(read_poses(find_recording(name), PoseLines::stamped)));
+    paths_.emplace_back();
+  }
+  static PosePath inverse(const PosePath& path) {
+    std::vector<StampedPose> poses = path.poses();
+    for (StampedPose& pose : poses) pose.X = pose.X.inverse();
+    return PosePath(std::move(poses));
+  }
+
+  std::vector<std::optional<PoseFile>> files_;
+  std::vector<std::optional<PosePath>> paths_;
+  std::string text_;
+};
+
+}  // namespace
+
 MeshSceneFromFiles::Parts MeshSceneFromFiles::read(const Settings& s) {
-  Parts parts{{}, {}, s.scene, {}};
+  Parts parts{{}, {}, s.scene, {}, {}};
+  const ScenePaths paths(s, parts.notes);
   BoundingBox box;
   for (std::size_t i = 0; i < kPrefixes.size(); ++i) {
     if (s.objects[i].mesh.empty()) continue;
-    parts.meshes.push_back(load(s.objects[i], kPrefixes[i]));
+    const PosePath at_rest(RigidTransform::Identity());
+    parts.meshes.push_back(load(s.objects[i], kPrefixes[i], paths[i].value_or(at_rest)));
     box.extend(box_of(parts.meshes.back()));
     parts.input += text_of(parts.meshes.back()) + "; ";
   }
   if (s.table) parts.meshes.push_back(table_around(box, s.table_height_m));
-  if (!s.camera_path.empty()) parts.camera_path = read_stamped_poses(find_recording(s.camera_path));
+  parts.camera_path = paths[ScenePaths::kCamera];
   if (s.camera_fit && !parts.camera_path && !box.isEmpty()) fit(box, parts.scene.sensor);
   parts.input += text_of(parts.camera_path ? parts.camera_path->at(0).translation().eval()
                                            : parts.scene.sensor.camera.camera_position_m);
+  parts.input += paths.text();
   return parts;
 }
 
@@ -126,7 +181,14 @@ MeshSceneFromFiles::MeshSceneFromFiles(const Settings& settings, const NoiseKey&
     : MeshSceneFromFiles(read(settings), key, kernels) {}
 
 MeshSceneFromFiles::MeshSceneFromFiles(Parts parts, const NoiseKey& key, const Kernels& kernels)
-    : MeshScene(parts.scene, std::move(parts.meshes), std::move(parts.camera_path), key, kernels),
-      input_(std::move(parts.input)) {}
+    : MeshScene(parts.scene, std::move(parts.meshes), parts.camera_path, key, kernels),
+      input_(std::move(parts.input)),
+      notes_(std::move(parts.notes)) {}
+
+std::vector<Note> MeshSceneFromFiles::input_notes() const {
+  std::vector<Note> notes = notes_, more = MeshScene::input_notes();
+  notes.insert(notes.end(), more.begin(), more.end());
+  return notes;
+}
 
 }  // namespace remote_touch

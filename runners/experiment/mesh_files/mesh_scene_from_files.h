@@ -7,6 +7,7 @@
 
 #include "runners/experiment/mesh_files/placed_mesh.h"
 #include "scenarios/meshes/mesh_scene.h"
+#include "scenarios/meshes/pose_file.h"
 
 namespace remote_touch {
 
@@ -22,7 +23,8 @@ class MeshSceneFromFiles final : public MeshScene {
     // the diagonal of the objects' bounding box if that is longer.
     bool table = true;
     double table_height_m = 0;
-    std::string camera_path;  // file of read_stamped_poses(): camera (x right, y down, z forward) to world
+    std::string camera_path;  // file of stamped poses of the camera, x right, y down, z forward
+    PoseDirection pose_direction = PoseDirection::camera_to_world;
     // Moves the target to the middle of the objects at the start, and the camera along its line of sight, so
     // that they fill the image, or are as near as the sensor measures. Without effect on a camera with a
     // path.
@@ -32,8 +34,11 @@ class MeshSceneFromFiles final : public MeshScene {
   // Throws as load(const PlacedMesh&, ...) does. Pre: validate(settings) is empty.
   MeshSceneFromFiles(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
-  // "husky: 5316 triangles, 0.200 x 0.042 x 0.143 m; camera at (0.00, 0.31, 0.22) m"
+  // "husky: 5316 triangles, 0.200 x 0.042 x 0.143 m; camera at (0.00, 0.31, 0.22) m; path.txt: 12 poses over
+  // 1.1 s at 10 Hz, 0.3 m long, at most 0.5 m/s"
   std::string input() const override { return input_; }
+  // Notes on the files of poses, and on objects out of view.
+  std::vector<Note> input_notes() const override;
 
  private:
   struct Parts {
@@ -41,11 +46,13 @@ class MeshSceneFromFiles final : public MeshScene {
     std::optional<PosePath> camera_path;
     MeshScene::Settings scene;
     std::string input;
+    std::vector<Note> notes;
   };
   static Parts read(const Settings& settings);
   MeshSceneFromFiles(Parts parts, const NoiseKey& key, const Kernels& kernels);
 
   std::string input_;
+  std::vector<Note> notes_;
 };
 
 Parameters parameters(MeshSceneFromFiles::Settings& s);

@@ -5,14 +5,16 @@
 #include <filesystem>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/geometry/bounding_box.h"
 #include "core/geometry/rotation.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_repair.h"
+#include "core/mesh/mesh_sides.h"
+#include "core/mesh/welded_mesh.h"
 #include "runners/experiment/mesh_files/named_mesh.h"
 #include "scenarios/meshes/checked_object.h"
-#include "scenarios/meshes/pose_file.h"
 #include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
@@ -47,32 +49,11 @@ void scale_to(double size_m, const std::string& subject, TriangleMesh& mesh) {
   for (Vec3& vertex : mesh.vertices) vertex *= size_m / longest;
 }
 
-// Returns true if a part of the mesh has a negative volume and is not in the box of a solid part. Such a part
-// is no hollow.
-bool has_inverted_part(const TriangleMesh& mesh) {
-  int count = 0;
-  const std::vector<int> part_of = parts_of(mesh, edges_by_vertices(mesh), count);
-  std::vector<double> volumes(static_cast<std::size_t>(count), 0);  // six times the volumes
-  std::vector<BoundingBox> boxes(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto part = static_cast<std::size_t>(part_of[i]);
-    const auto& [a, b, c] = mesh.triangles[i];
-    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-    volumes[part] += p.dot(q.cross(r));
-    boxes[part].extend(p), boxes[part].extend(q), boxes[part].extend(r);
-  }
-  const auto least = [&](std::size_t i) {  // a part with less volume is a sheet with two sides
-    const double diagonal = boxes[i].diagonal().norm();
-    return 1e-6 * diagonal * diagonal * diagonal;
-  };
-  const auto is_in_solid = [&](const BoundingBox& box) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      if (volumes[i] > least(i) && boxes[i].contains(box)) return true;
-    return false;
-  };
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    if (volumes[i] < -least(i) && !is_in_solid(boxes[i])) return true;
-  return false;
+// Returns true if the mesh is closed and its solid lies behind all of its faces, or on both sides.
+bool is_outward_solid(const TriangleMesh& mesh) {
+  const TriangleMesh welded = welded_mesh(mesh);
+  if (welded.triangles.empty() || !is_closed_surface(welded)) return false;
+  return !has_inverted_part_in(welded, face_sides(welded));
 }
 
 TriangleMesh checked_mesh(const PlacedMesh& s, const std::string& prefix) {
@@ -80,7 +61,7 @@ TriangleMesh checked_mesh(const PlacedMesh& s, const std::string& prefix) {
   const MeshCheck check = check_mesh(mesh);
   if (!check.readable()) refuse(subject_of(s, prefix), text(check), ": expected a mesh of triangles");
   MeshRepair repaired;
-  if (s.repair && (!check.closed() || has_inverted_part(mesh))) mesh = repair_mesh(mesh, repaired);
+  if (s.repair && !is_outward_solid(mesh)) mesh = repair_mesh(mesh, repaired);
   if (s.size_m > 0) scale_to(s.size_m, subject_of(s, prefix), mesh);
   return mesh;
 }
@@ -93,12 +74,6 @@ Vec3 to_bottom(const TriangleMesh& mesh, const RigidTransform& X_WO) {
 }
 
 constexpr std::size_t kMotionColumns = 7;
-
-// Returns the poses of the path; the identity without one.
-std::vector<StampedPose> poses_in(const PlacedMesh& s) {
-  if (s.path.empty()) return {StampedPose{}};
-  return read_stamped_poses(find_recording(s.path)).poses();
-}
 
 // Returns the displacements and turns of the motion; the identity without one.
 std::vector<StampedPose> motion_of(const PlacedMesh& s) {
@@ -116,9 +91,9 @@ std::vector<StampedPose> motion_of(const PlacedMesh& s) {
 // Returns the path of the object in the world frame. With a motion the mesh is moved to a frame whose origin
 // is at position_m, because a pose path moves the origin of its body on straight lines. At most one of
 // `motion` and `path` has several poses.
-PosePath placed_path(const PlacedMesh& s, TriangleMesh& mesh) {
+PosePath placed_path(const PlacedMesh& s, const std::vector<StampedPose>& path, TriangleMesh& mesh) {
   const RigidTransform rotated(rotation(kRadiansPerDegree * s.rotation_deg));
-  const std::vector<StampedPose> path = poses_in(s), motion = motion_of(s);
+  const std::vector<StampedPose> motion = motion_of(s);
   Vec3 shift = Vec3::Zero();
   if (s.origin == PlacedMesh::Origin::bottom) shift = to_bottom(mesh, rotated * path.front().X);
   const RigidTransform outer(Eigen::Translation3d(s.position_m));
@@ -163,8 +138,8 @@ Parameters parameters(PlacedMesh& s, const std::string& prefix) {
        "motion: times, displacements and rotation vectors, world frame, about the position; between "
        "rows straight, by the smaller angle, and at constant rate"},
       {prefix + "mesh_path", &s.path, 0, 0,
-       "file of poses over time instead, `t tx ty tz qx qy qz qw`, of the object in the frame that position "
-       "and rotation place; empty: none"},
+       "file of poses over time instead, `t tx ty tz qx qy qz qw` or as its first line names them, of the object "
+       "in the frame that position and rotation place; empty: none"},
       {prefix + "mesh_colour", &s.colour, 0, 0, "colour of the object, #rrggbb; empty: none"},
       {prefix + "mesh_sheet", &s.sheet, 0, 0,
        "the mesh is an open surface, whose outside is the side of its normals"},
@@ -189,9 +164,9 @@ std::vector<RecordingPart> input_files(const PlacedMesh& s) {
   return files;
 }
 
-SceneMesh load(const PlacedMesh& s, const std::string& prefix) {
+SceneMesh load(const PlacedMesh& s, const std::string& prefix, const PosePath& path_of_file) {
   TriangleMesh mesh = checked_mesh(s, prefix);
-  PosePath path = placed_path(s, mesh);
+  PosePath path = placed_path(s, path_of_file.poses(), mesh);
   const std::string setting = "scenario." + prefix;
   const std::string if_inverted = ", or " + setting + "mesh_repair=true";
   const std::string if_open =
@@ -200,9 +175,6 @@ SceneMesh load(const PlacedMesh& s, const std::string& prefix) {
   MeshObject object = checked_object(
       std::filesystem::path(s.mesh).stem().string(), mesh, !s.sheet,
       {subject_of(s, prefix), if_open, if_inverted, "; " + setting + "mesh_size_m scales the mesh"});
-  if (!s.sheet && has_inverted_part(mesh))
-    refuse(subject_of(s, prefix), "a part of the mesh is inside out: expected all faces to point outwards",
-           if_inverted);
   return {std::move(object), std::move(path), colour_in(s.colour)};
 }
 

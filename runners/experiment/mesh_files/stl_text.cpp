@@ -105,6 +105,8 @@ bool is_stl_text(const std::string& bytes) {
   std::uint32_t facets = 0;
   if (bytes.size() >= kHeader) std::memcpy(&facets, bytes.data() + kHeader - sizeof facets, sizeof facets);
   if (bytes.size() >= kHeader && bytes.size() == kHeader + std::uint64_t{kFacet} * facets) return false;
+  if (bytes.find('\0') != std::string::npos)
+    return false;  // binary with another length, "solid" in its header
   const std::size_t begin = std::min(bytes.find_first_not_of(kStlBlanks), bytes.size());
   constexpr std::string_view kSolid = "solid";
   return is_keyword(std::string_view(bytes).substr(begin, kSolid.size()), kSolid);

@@ -5,8 +5,8 @@
 
 namespace remote_touch {
 
-// True if the bytes are an STL file of text: they begin with "solid", in any case, and do not have the length
-// that a binary file with their number of facets has.
+// True if the bytes are an STL file of text: they begin with "solid", in any case, have no byte 0, and do not
+// have the length that a binary file with their number of facets has.
 bool is_stl_text(const std::string& bytes);
 
 // Returns the same triangles, written as the library expects them: keywords in lower case, no names, and

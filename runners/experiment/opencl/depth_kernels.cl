@@ -318,7 +318,7 @@ double drawn(double from, double to, double weight) {
 
 // Fills the columns of r_f and k_s by the rules of forbidden regions by hue, 7.3.2. Each step has 8 numbers:
 // first and last hue, least saturation, least and greatest lightness, r_f, k_s (below 0: unchanged),
-// strength. keeps_points: true if the points of the cloud are the measured ones, false if they are those of
+// strength, k_s from which the step fades in at a point that has none. keeps_points: true if the points of the cloud are the measured ones, false if they are those of
 // place_points.
 __kernel void fixture_columns(__global const unsigned int* restrict rgb,
                               __global const double* restrict depth_m, int keeps_points,
@@ -333,14 +333,14 @@ __kernel void fixture_columns(__global const unsigned int* restrict rgb,
   const Colour colour = colour_of(rgb[to]);
   double radius = 0, stiffness = or_none(0, 0);
   for (int i = 0; i < count; ++i) {
-    __global const double* const step = steps + 8 * i;
+    __global const double* const step = steps + 9 * i;
     const int above = colour.hue_deg >= step[0], below = colour.hue_deg <= step[1];
     const int in_hues = step[0] <= step[1] ? above & below : above | below;
     const int is_clear = (colour.saturation >= step[2]) & (colour.lightness >= step[3]);
     const double weight = step[7];
     if (!(is_there & in_hues & is_clear & (colour.lightness <= step[4]) & (weight > 0))) continue;
     if (step[5] >= 0) radius = drawn(radius, step[5], weight);
-    if (step[6] >= 0) stiffness = stiffness == stiffness ? drawn(stiffness, step[6], weight) : step[6];
+    if (step[6] >= 0) stiffness = drawn(stiffness == stiffness ? stiffness : step[8], step[6], weight);
   }
   const size_t column = width * get_global_size(1);
   columns[to + 6 * column] = radius;

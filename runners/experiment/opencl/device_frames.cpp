@@ -90,10 +90,10 @@ void DeviceFrames::aim(const CameraIntrinsics& camera) {
 
 void DeviceFrames::upload_steps(const DeviceFrame& frame) {
   std::vector<double> numbers;
-  for (const auto& [range, strength] : frame.steps)
+  for (const auto& [range, strength, first_stiffness] : frame.steps)
     for (const double each :
          {range.from_deg, range.to_deg, range.min_saturation, range.min_lightness, range.max_lightness,
-          range.values.radius_m, range.values.stiffness_N_per_m, strength})
+          range.values.radius_m, range.values.stiffness_N_per_m, strength, first_stiffness})
       numbers.push_back(each);
   if (numbers.size() > most_step_numbers_ || most_step_numbers_ == 0) {
     most_step_numbers_ = std::max<std::size_t>(numbers.size(), 1);

@@ -65,7 +65,7 @@ FixtureAssignment trial_rules() {
   half_blue.values.stiffness_N_per_m = 500, half_blue.values.schedule = {0, 0.5};
   std::vector<std::unique_ptr<const FixtureRule>> rules;
   rules.push_back(std::make_unique<HueRange>(red)), rules.push_back(std::make_unique<HueRange>(half_blue));
-  return FixtureAssignment(std::move(rules));
+  return FixtureAssignment(std::move(rules), nullptr, 600);
 }
 
 // Compares process_all() on the device with the CPU: for the same image as a sensor sends it, with all

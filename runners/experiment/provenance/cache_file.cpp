@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "runners/experiment/provenance/cache_size.h"
+#include "runners/experiment/provenance/provenance.h"
 
 namespace remote_touch {
 
@@ -70,6 +71,14 @@ void CacheWriter::write(const char* data, std::size_t size) {
     good_ = part > 0;
     if (good_) data += part, size -= static_cast<std::size_t>(part);
   }
+}
+
+std::string build_for_keys() {
+  std::string text;
+  for (const auto& [name, value] : provenance("", "", ""))
+    if (name == "version" || name == "source_digest" || name == "compiler" || name == "flags")
+      text += name + " " + value + "\n";
+  return text;
 }
 
 bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::string& key,

@@ -36,6 +36,10 @@ struct CacheKind {
   std::size_t max_bytes = 0;  // maximum size of a file; 0: no maximum. A larger file is not read
 };
 
+// Returns version, digest of the sources, compiler and flags of this program as a text for keys. Everything
+// in the cache has it in its key, because another build may compute something else.
+std::string build_for_keys();
+
 // Returns true if the folder has a complete file of that kind and key, and take() has read all its fields.
 // Then marks the file as used now. Does not call take() for a file of another key.
 bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,

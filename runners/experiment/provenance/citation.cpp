@@ -139,6 +139,15 @@ std::string bibtex_text(const std::string& text) {
   return value;
 }
 
+std::string dissertation_entry() {
+  return bibtex_entry(
+      "phdthesis", "ryden_2013",
+      {{"author", "{Ryd{\\'e}n, F.}"},
+       {"title", "{Real-Time Haptic Interaction with Remote Environments using Non-contact Sensors}"},
+       {"school", "{University of Washington}"},
+       {"year", "{2013}"}});
+}
+
 std::string program_entry(const TextAttributes& attributes) {
   const std::string stored_version = attribute(attributes, "version");
   const std::string commit = attribute(attributes, "git_commit");

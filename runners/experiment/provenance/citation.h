@@ -12,6 +12,9 @@ namespace remote_touch {
 // BibTeX are escaped, and "--" does not become a dash. Braces are always balanced.
 std::string bibtex_text(const std::string& text);
 
+// The entry "@phdthesis{ryden_2013, ...}" of the dissertation, the source of the method.
+std::string dissertation_entry();
+
 // The entry "@software{remote_touch_COMMIT, ...}" of the program that wrote these attributes of a result, or
 // of this program if they come from provenance(). It has the SHA-256 of the sources if the commit alone does
 // not identify them.

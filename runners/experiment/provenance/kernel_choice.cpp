@@ -12,7 +12,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/provenance/kernel_tasks.h"
-#include "runners/experiment/provenance/provenance.h"
 
 namespace remote_touch {
 
@@ -74,9 +73,7 @@ std::string level_times_key() {
   CacheWriter pack;
   pack.value(kLevelTimesFormat);
   add_processor(pack);
-  for (const auto& [name, value] : provenance("", "", ""))
-    if (name == "version" || name == "source_digest" || name == "compiler" || name == "flags")
-      pack.text(value);
+  pack.text(build_for_keys());
   return pack.hex();
 }
 

@@ -32,6 +32,8 @@ Parameters parameters(SafetyLimits& s) {
       {"ramp_s", &s.ramp_s, 0, 10,
        "after it starts, the force rises linearly to its full value over this time"},
       {"max_command_age_s", &s.max_command_age_s, 0.002, 1, "commands older than this are ignored"},
+      {"max_frame_age_s", &s.max_frame_age_s, 0, 100,
+       "there is no force while the newest frame was taken longer ago than this, such as after a camera has stopped; 0: no limit, and none with frame_link.least_motion_m, which sends frames only when something moves"},
   };
 }
 

@@ -17,6 +17,7 @@ struct SafetyLimits {
   double engage_force_N = 0.3;
   double ramp_s = 0.5;
   double max_command_age_s = 0.02;
+  double max_frame_age_s = 0;
 };
 
 Parameters parameters(SafetyLimits& s);

@@ -110,16 +110,18 @@ std::vector<Note> ContactWatch::start_notes(const Scenario& scenario, double res
   const double reach_m = rest_distance_m + (distance_m < 0 ? -distance_m : 0);
   const std::vector<Vec3> near = points_in(*start_->points, {hand_W, reach_m}, kernels);
   if (near.empty()) return {};
-  char text[200];
+  char text[240];
+  const int begun = std::snprintf(text, sizeof text, "when the first frame arrives, at %.6g s, the hand is ",
+                                  start_->time_s);
+  const auto rest = static_cast<std::size_t>(begun);
   if (distance_m < 0)
-    std::snprintf(text, sizeof text, "the hand starts %.3g mm behind the true surface", -1e3 * distance_m);
+    std::snprintf(text + rest, sizeof text - rest, "%.3g mm behind the true surface", -1e3 * distance_m);
   else if (std::isnan(distance_m))
-    std::snprintf(text, sizeof text, "the hand starts nearer to a point than the contact radius of %.3g mm",
+    std::snprintf(text + rest, sizeof text - rest, "nearer to a point than the contact radius of %.3g mm",
                   1e3 * rest_distance_m);
   else
-    std::snprintf(text, sizeof text,
-                  "the hand starts %.3g mm in front of the true surface, nearer than the contact radius of "
-                  "%.3g mm",
+    std::snprintf(text + rest, sizeof text - rest,
+                  "%.3g mm in front of the true surface, nearer than the contact radius of %.3g mm",
                   1e3 * distance_m, 1e3 * rest_distance_m);
   return {{"starts in contact", text}};
 }
@@ -129,7 +131,7 @@ std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, doub
   constexpr int kFrames = 2;  // see first_touch.h
   if (!crossing_ || crossing_->frames > kFrames) return {};
   const Site& site = crossing_->site;
-  const double before_s = std::max(0.0, site.time_s - 1 / scenario.frame_rate_hz());
+  const double before_s = std::max(0.0, site.time_s - 1 / scenario.frame_rate_hz());  // no NaN
   const double moved_m = scenario.signed_distance(site.position_W, before_s) -
                          scenario.signed_distance(site.position_W, site.time_s);
   if (!(moved_m > 0)) return {};
@@ -148,6 +150,38 @@ std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, doub
                          : "before the proxy touched a point",
       moved.c_str(), safe.c_str());
   return {{"lost at the first touch", text}};
+}
+
+WallWatch::WallWatch(const Scenario& scenario, std::string what)
+    : scenario_(scenario), what_(std::move(what)), has_walls_(!scenario.true_meshes(0).empty()) {}
+
+double WallWatch::side_m(const Vec3& position_W, double signed_distance_m, double time_s) {
+  constexpr double kTurnedRound = -0.5;  // cosine of the angle; at a corner the normal turns by less
+  if (!has_walls_ || std::isnan(signed_distance_m)) return signed_distance_m;
+  const bool is_inside = signed_distance_m < 0;
+  if (is_inside && !last_normal_ && outside_W_) last_normal_ = scenario_.true_normal(*outside_W_, time_s);
+  if (is_inside || last_normal_) {
+    const Vec3 normal = scenario_.true_normal(position_W, time_s);
+    if (last_normal_ && normal.dot(*last_normal_) < kTurnedRound) {
+      if (walls_ == 0) outward_ = *last_normal_;
+      walls_ += last_normal_->dot(outward_) > 0 ? 1 : -1;
+      if (!has_passed_) has_passed_ = true, first_s_ = time_s, half_m_ = std::abs(signed_distance_m);
+    }
+    if (normal.allFinite()) last_normal_ = normal;  // else the middle of the wall, or a crease
+  }
+  if (!is_inside) outside_W_ = position_W, last_normal_.reset();
+  return walls_ == 0 ? signed_distance_m : std::nan("");
+}
+
+std::vector<Note> WallWatch::notes() const {
+  if (!has_passed_) return {};
+  char text[240];
+  std::snprintf(
+      text, sizeof text,
+      "at %.6g s %s passed the middle of a wall, %.2g mm below its surface: on which side of the wall "
+      "it is does not show from there on, and measures that need the side leave these ticks out",
+      first_s_, what_.c_str(), 1e3 * half_m_);
+  return {{"thin object", text}};
 }
 
 std::vector<Note> tool_start_notes(const Trace& trace) {

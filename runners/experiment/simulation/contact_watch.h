@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "analysis/measures/surface_side.h"
@@ -27,8 +28,8 @@ class ContactWatch {
   explicit ContactWatch(double held_depth_m = 0) : side_(held_depth_m) {}
 
   // Must be called after each tick of a run without a tool. points: the newest frame that the renderer has;
-  // null before the first. proxy_distance_m: distance of the proxy to the true surface, NaN if it is not
-  // known.
+  // null before the first. proxy_distance_m: distance of the proxy by which the run is judged, see
+  // judged_distance_m(); NaN if it is not known.
   void add(double time_s, const Vec3& hand_W, const RenderOutput& out, const Points& points,
            double proxy_distance_m = std::numeric_limits<double>::quiet_NaN());
   bool has_contact() const { return contact_.has_value(); }
@@ -67,6 +68,33 @@ class ContactWatch {
   std::optional<Crossing> crossing_;  // set from the tick in which the proxy popped through until it is back
   double nearest_m_ = std::numeric_limits<double>::infinity();
   int frame_ = -1, frames_ = 0;  // newest frame; frames since the contact
+};
+
+// Follows a position through the walls of true objects. The distance to a mesh has a sign, but behind the
+// middle of a wall the nearest surface is that of the other side: the position seems to come out in front
+// again. It passes the middle of a wall where the normal of the nearest surface turns round from one tick to
+// the next.
+class WallWatch {
+ public:
+  // Parameter what: the position in words, such as "the hand". The scenario must outlive the watch.
+  WallWatch(const Scenario& scenario, std::string what);
+
+  // Must be called in each tick. Returns the distance of the position from the true surface, or NaN if it has
+  // passed the middle of a wall: it then has no side. Scenes whose truth is not one of meshes have no walls.
+  double side_m(const Vec3& position_W, double signed_distance_m, double time_s);
+  // Returns a note "thin object" if the position passed the middle of a wall.
+  std::vector<Note> notes() const;
+
+ private:
+  const Scenario& scenario_;
+  const std::string what_;
+  const bool has_walls_;
+  std::optional<Vec3> outside_W_;    // the newest position outside of the objects
+  std::optional<Vec3> last_normal_;  // normal of the nearest surface in the tick before, inside of an object
+  Vec3 outward_ = Vec3::Zero();      // the side from which it came into the first wall
+  int walls_ = 0;                    // walls between that side and the position
+  double first_s_ = 0, half_m_ = 0;  // time and depth at the first middle of a wall
+  bool has_passed_ = false;
 };
 
 // Returns a note "starts in contact" if a tool touches points in the first tick with a frame.

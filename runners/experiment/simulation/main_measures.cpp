@@ -16,6 +16,7 @@ enum class When { always, fixtures, no_fixtures };
 struct Priority {
   const char* measure;
   When when;
+  const char* unless = "";  // another measure, with which this one is left out
 };
 constexpr Priority kPriorities[] = {
     // Did the slave touch, how hard, and what did the hand feel of it?
@@ -27,12 +28,14 @@ constexpr Priority kPriorities[] = {
     // Guidance has to lead the hand to its goal.
     {"guidance_error", When::always},
     {"guidance_error_angle", When::always},
-    // The first question about a method: does its proxy stay on the right side of the true surface?
+    // The first question about a method: does its proxy stay on the right side of the surface? Where a camera
+    // measured the surface, the second is on which side of the true one that is.
     {"popped_through", When::no_fixtures},
+    {"popped_through_truth", When::no_fixtures},
     {"first_pop_through_time", When::no_fixtures},  // has no value unless it happened
     {"tool_popped_through", When::no_fixtures},
     // How far was it wrong? The depth of points in a tool needs no truth.
-    {"max_penetration", When::no_fixtures},
+    {"max_penetration", When::no_fixtures, "popped_through_truth"},
     {"max_tool_penetration", When::always},
     // How well does the hand feel the shape?
     {"rms_contact_error", When::no_fixtures},
@@ -84,10 +87,13 @@ std::vector<MeasuredValue> measured_values(std::span<const Measure> list, const 
 
 std::vector<MeasuredValue> main_measures(const std::vector<MeasuredValue>& all, Fixtures fixtures) {
   std::vector<MeasuredValue> chosen;
+  const auto find = [&](const std::string& name) {
+    return std::ranges::find_if(all, [&](const MeasuredValue& each) { return each.measure->name == name; });
+  };
   for (const Priority& priority : kPriorities) {
-    const auto found = std::ranges::find_if(
-        all, [&](const MeasuredValue& each) { return each.measure->name == priority.measure; });
+    const auto found = find(priority.measure);
     if (found == all.end() || std::isnan(found->value) || !is_wanted(priority.when, fixtures)) continue;
+    if (find(priority.unless) != all.end()) continue;
     chosen.push_back(*found);
     if (chosen.size() == kMainMeasures) break;
   }

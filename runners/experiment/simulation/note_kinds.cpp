@@ -37,14 +37,16 @@ const std::vector<NoteKind>& note_kinds() {
       {"edges bridged", "image-scan treats depth jumps above edge_jump_m as surface"},
       {"object not scanned", "image-scan touches another thing than the nearest object"},
       {"camera changes", "a later CameraInfo or depth unit of a bag differs from the first, which is used"},
-      {"starts in contact", "the hand starts behind the surface, or within the contact radius of it"},
+      {"starts in contact",
+       "when the first frame arrives, the hand is behind the surface or within the contact radius of it"},
       {"lost at the first touch",
        "the surface passed the proxy before a third frame after the first contact"},
       {"object not pressed", "image-press presses another thing than the nearest object"},
       {"hand jumped", "the pixel that image-press follows suddenly showed another place"},
       {"nothing selected", "a fixture rule selects no point, so that it has no effect"},
       {"outcome unknown",
-       "popped_through has no value, beside an object for example; fractions of runs take it as 0"},
+       "popped_through has no value, beside an object for example; fractions of runs leave it out, and their intervals "
+       "allow for both outcomes"},
       {"few frames", "fewer than three frames show the motion of the scene"},
       {"columns unused", "a measured contact has columns that are not used"},
       {"slave without surface", "the true surface, or its normal, is not known where the slave was"},
@@ -53,6 +55,18 @@ const std::vector<NoteKind>& note_kinds() {
       {"slave loop gains energy",
        "the device gave much energy to the hand: hand, links and slave may oscillate"},
       {"setting without effect", "settings of the experiment that cannot act together"},
+      {"slave starts in contact",
+       "the slave starts behind the true surface, so that its largest forces may be those of its start"},
+      {"force not finite", "the renderer's force is not a number in some ticks; it counts as no force there"},
+      {"thin object", "the hand or the proxy passed the middle of a wall; it has no side from there on"},
+      {"unusual poses",
+       "a file of poses, or of a contact, is improbably fast, far or slow, or states a convention that is not read"},
+      {"poses do not fit", "the frames of a recording fit each other worse with the poses of the camera"},
+      {"truth elsewhere", "a true object of a recording is nowhere near what the camera measured"},
+      {"not in view", "an object of a scene of meshes is at no time in the image of the camera"},
+      {"camera assumed", "the intrinsics of a recording are assumed, because no file states them"},
+      {"equal numbers",
+       "frames of a recording have names that differ in leading zeros only; one may be a copy"},
   };
   return kinds;
 }
@@ -63,9 +77,9 @@ std::vector<std::string> note_kind_names() {
   return names;
 }
 
-std::int32_t note_bits(const std::vector<Note>& notes) {
-  std::int32_t bits = 0;
-  for (const Note& note : notes) bits |= std::int32_t{1} << number_of_kind(note.kind);
+std::uint64_t note_bits(const std::vector<Note>& notes) {
+  std::uint64_t bits = 0;
+  for (const Note& note : notes) bits |= std::uint64_t{1} << number_of_kind(note.kind);
   return bits;
 }
 

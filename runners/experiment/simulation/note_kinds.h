@@ -15,12 +15,13 @@ struct NoteKind {
 };
 
 // Kind i has bit i of the dataset `notes`. The order is part of the file format of sweeps, so new kinds are
-// appended. Kind 0 includes all kinds that are not in the list, for example from scenarios of other programs.
+// appended, at most 64. Kind 0 includes all kinds that are not in the list, for example from scenarios of
+// other programs.
 const std::vector<NoteKind>& note_kinds();
 std::vector<std::string> note_kind_names();
 
 // Returns the bits of the kinds of these notes; 0 without notes.
-std::int32_t note_bits(const std::vector<Note>& notes);
+std::uint64_t note_bits(const std::vector<Note>& notes);
 
 // Returns name and meaning, such as "no contact: no point was touched and no force was felt". Returns the
 // name alone for a kind that is not in the list.

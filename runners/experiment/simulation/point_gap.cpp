@@ -38,7 +38,7 @@ std::vector<Vec2> in_their_plane(const std::vector<Vec3>& points, const Vec3& po
 
 double nearest_m(const std::vector<Vec2>& points, const Vec2& centre) {
   double squared = std::numeric_limits<double>::infinity();
-  for (const Vec2& p : points) squared = std::min(squared, (p - centre).squaredNorm());
+  for (const Vec2& p : points) squared = std::min(squared, (p - centre).squaredNorm());  // no NaN
   return std::sqrt(squared);
 }
 
@@ -91,7 +91,7 @@ std::optional<Disk> held_disk(const std::vector<Vec2>& points, Vec2 centre) {
       const double farther = (q - centre).squaredNorm() - disk.radius_m * disk.radius_m;
       const double ahead = open.direction.dot(q - open.side);
       const bool is_at_border = farther <= 3 * kRounding * disk.radius_m * disk.radius_m;
-      if (!is_at_border && ahead > 0) t = std::min(t, farther / (2 * ahead));
+      if (!is_at_border && ahead > 0) t = std::min(t, farther / (2 * ahead));  // no NaN
     }
     if (std::isinf(t)) return {};
     centre += t * open.direction;
@@ -124,7 +124,7 @@ PointGap widest_gap(const std::vector<Vec3>& points, const Vec3& position, doubl
       }
       const bool passes = disk->radius_m > ball_radius_m * (1 + kRounding);
       const bool is_here = disk->centre.norm() <= disk->radius_m * (1 + kRounding);
-      if (passes && is_here) gap.radius_m = std::max(gap.radius_m, disk->radius_m);
+      if (passes && is_here) gap.radius_m = std::max(gap.radius_m, disk->radius_m);  // no NaN
     }
   return gap;
 }

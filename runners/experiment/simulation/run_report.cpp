@@ -50,8 +50,8 @@ void add_few_frames(const std::vector<Phase>& of_scene, const Trace& trace, doub
   if (of_scene.empty()) return;
   double begins_s = end_s, ends_s = 0;
   for (const Phase& phase : of_scene) {
-    begins_s = std::min(begins_s, std::max(0.0, phase.begins_s));
-    ends_s = std::max(ends_s, std::min(end_s, phase.ends_s));
+    begins_s = std::min(begins_s, std::max(0.0, phase.begins_s));  // no NaN: settings
+    ends_s = std::max(ends_s, std::min(end_s, phase.ends_s));      // no NaN
   }
   const int frames = frames_between(trace, begins_s, ends_s);
   if (frames == 0 || frames >= kEnoughFrames || ends_s - begins_s < kBriefMotion_s) return;
@@ -68,6 +68,20 @@ void add_contact(const Trace& trace, std::vector<Note>& notes) {
     notes.push_back({"no frame", "no frame arrived before the run ended"});
   else if (std::ranges::all_of(trace.contact_count, is_none) && std::ranges::all_of(trace.force_N, is_zero))
     notes.push_back(no_contact_note());
+}
+
+// Adds a note if the renderer's force or torque is not a finite number in some tick.
+void add_unknown_forces(const Trace& trace, std::vector<Note>& notes) {
+  std::size_t count = 0, first = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    if (trace.force_N[i].allFinite() && (!trace.has_tool() || trace.torque_Nm[i].allFinite())) continue;
+    if (count++ == 0) first = i;
+  }
+  if (count == 0) return;
+  notes.push_back({"force not finite", "the renderer's force is not a finite number in " +
+                                           std::to_string(count) + " of " + std::to_string(trace.length()) +
+                                           " ticks, first at " + seconds(trace.time_s[first]) +
+                                           ": it counts as no force there"});
 }
 
 }  // namespace
@@ -112,6 +126,7 @@ RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, cons
   add_late_phases(of_scene, of_hand, end_s, report.notes);
   add_few_frames(of_scene, trace, end_s, report.notes);
   add_contact(trace, report.notes);
+  add_unknown_forces(trace, report.notes);
   return report;
 }
 

@@ -31,9 +31,10 @@ std::size_t tick_count(const Experiment& experiment, const Trajectory& trajector
   return static_cast<std::size_t>(ticks);
 }
 
-Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double time_s,
-                   std::uint64_t frame_hash) {
-  const double proxy_position_m = scenario.signed_distance(out.proxy_W, time_s);
+Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double time_s, std::uint64_t frame_hash,
+                   WallWatch& proxy_walls) {
+  const double proxy_position_m =
+      proxy_walls.side_m(out.proxy_W, scenario.signed_distance(out.proxy_W, time_s), time_s);
   double slave_command_m = proxy_position_m;
   if (!out.slave_W.allFinite())
     slave_command_m = std::numeric_limits<double>::quiet_NaN();
@@ -54,12 +55,18 @@ double measured_height_m(const Scenario& scenario, const Vec3& x_W, double rest_
   return scenario.measured_distance(x_W - rest_distance_m * scenario.true_normal(x_W, time_s), time_s);
 }
 
+// Returns the force of the tick without the part of guidance, which may pull in any direction.
+Vec3 contact_force_N(const RenderOutput& out) {
+  return out.guidance ? Vec3(out.force_N - out.guidance->force_N) : out.force_N;
+}
+
 // See RenderedContact.
 Trace::TrueContact true_contact(const Scenario& scenario, const RenderedContact& contact, const Vec3& hip_W,
-                                const RenderOutput& out, double proxy_distance_m, double time_s) {
-  const double hip_distance_m = scenario.signed_distance(hip_W, time_s);
+                                const RenderOutput& out, double proxy_distance_m, double time_s,
+                                WallWatch& hand_walls) {
+  const double hip_distance_m = hand_walls.side_m(hip_W, scenario.signed_distance(hip_W, time_s), time_s);
   const bool has_proxy = !(contact.spring_N_per_m > 0);
-  const Vec3 x_W = has_proxy ? out.proxy_W : Vec3(hip_W + out.force_N / contact.spring_N_per_m);
+  const Vec3 x_W = has_proxy ? out.proxy_W : Vec3(hip_W + contact_force_N(out) / contact.spring_N_per_m);
   const double distance_m = has_proxy ? proxy_distance_m : scenario.signed_distance(x_W, time_s);
   return {distance_m - contact.rest_distance_m, hip_distance_m,
           measured_height_m(scenario, x_W, contact.rest_distance_m, time_s)};
@@ -69,7 +76,7 @@ Trace::TrueContact true_contact(const Scenario& scenario, const RenderedContact&
 // with an area, so its normal is known only on a plane.
 Vec3 true_normal(const Scenario& scenario, const RenderOutput& out, double time_s) {
   const Vec3 unknown = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  if (out.state == ContactState::free || out.force_N.isZero(0)) return unknown;
+  if (out.state == ContactState::free || contact_force_N(out).isZero(0)) return unknown;
   return out.tool ? scenario.plane_normal(time_s).value_or(unknown)
                   : scenario.true_normal(out.proxy_W, time_s);
 }
@@ -158,6 +165,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
 
   SurfaceWatch surface(scenario->without_faults(), *trajectory);
   ContactWatch contacts(held_depth_m(contact));
+  WallWatch proxy_walls(*scenario, "the proxy"), hand_walls(*scenario, "the hand");
   Trace trace;
   trace.reserve(ticks);
   trace.held_depth_m = held_depth_m(contact);
@@ -177,21 +185,23 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     hand.apply(commanded_wrench(remote ? &*remote : nullptr, device, out, time_s));
     std::optional<SlaveState> slave;
     if (remote) {
+      remote->observe_exerted(hand.state()->force_N);
       slave = remote->state();
       slave->frame_packets = link.sent();
       link.observe_slave(slave->position_W, time_s);
     }
-    Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash());
+    Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash(), proxy_walls);
     if (finds_contact)
-      known.contact =
-          true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s);
+      known.contact = true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s,
+                                   hand_walls);
     if (options.find_true_contact) known.normal = true_normal(*scenario, out, time_s);
     if (hand.follows_script()) known.expected_force_N = trajectory->expected_force_N(time_s);
     trace.append(time_s, device, out, known, hand.state(), slave);
     if (options.report) {
       surface.add(device.position_W, time_s);
       if (!out.tool)
-        contacts.add(time_s, device.position_W, out, observed.newest_points(), known.proxy_distance_m);
+        contacts.add(time_s, device.position_W, out, observed.newest_points(),
+                     known.measured_distance_m.value_or(known.proxy_distance_m));
     }
     if (options.progress && tick % (ticks / 100 + 1) == 0)
       options.progress(static_cast<double>(tick) / static_cast<double>(ticks));
@@ -204,6 +214,8 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     add_missed_phases(experiment.operator_phases(), end_s, notes);
     add(fixture_notes(frames.fixtures(), observed.first_points(), observed.newest_points()), notes);
     add(surface.notes(), notes);
+    add(proxy_walls.notes(), notes);
+    add(hand_walls.notes(), notes);
     add(slave_setting_notes(experiment, Experiment::Hand::simulated), notes);
     add(slave_notes(trace), notes);
     if (trace.has_tool())

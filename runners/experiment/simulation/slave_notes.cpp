@@ -45,6 +45,23 @@ bool feels_nothing(const Trace& trace) {
          std::all_of(trace.device_force_N.begin(), trace.device_force_N.end(), is_zero);
 }
 
+// The slave is put at its first command in one tick, and pushed out from the next one on.
+void add_start(const Trace& trace, std::vector<Note>& notes) {
+  constexpr double kRounding_m = 1e-9;
+  const auto is_known = [](const Vec3& position) { return position.allFinite(); };
+  const auto first = std::ranges::find_if(trace.slave_position_m, is_known);
+  const auto tick = static_cast<std::size_t>(first - trace.slave_position_m.begin());
+  const double depth_m = -trace.slave_clearance_m[tick];
+  if (!(depth_m > kRounding_m)) return;
+  const double force_N = tick + 1 < trace.length() ? trace.slave_peak_force_N[tick + 1] : 0;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the slave starts %.3g mm behind the true surface, with a force of %.3g N on it: largest "
+                "forces of the run may be those of its start",
+                1e3 * depth_m, force_N);
+  notes.push_back({"slave starts in contact", text});
+}
+
 }  // namespace
 
 std::vector<Note> slave_notes(const Trace& trace) {
@@ -61,6 +78,7 @@ std::vector<Note> slave_notes(const Trace& trace) {
         {"slave without surface",
          "the normal of the true surface is not known where the slave was behind it, so there was "
          "no force on it, and measures of its force have no value"});
+  add_start(trace, notes);
   if (kept_first_command(trace))
     notes.push_back(
         {"slave without command",
@@ -94,7 +112,7 @@ std::vector<Note> slave_setting_notes(const Experiment& experiment, Experiment::
                                 ": the HIP is sent to the slave, and the hand does not feel the renderer"});
   const bool is_scripted = hand == Experiment::Hand::simulated && !setting("operator").is_object() &&
                            setting("trajectory.name") != "live-session";
-  if (is_scripted && force.ends_with("slave-force"))
+  if (is_scripted && force != "rendered" && force != "none")
     notes.push_back({kKind, "feedback.force = " + force +
                                 " moves nothing: without the section operator the hand follows its path, "
                                 "whatever the device exerts"});
@@ -105,7 +123,10 @@ std::string slave_summary(const Trace& trace) {
   const double clearance_m = min_slave_clearance_m(trace);
   if (std::isnan(clearance_m)) return {};
   char text[120];
-  if (slave_touched(trace) > 0)
+  const double touched = slave_touched(trace);
+  if (std::isnan(touched))
+    std::snprintf(text, sizeof text, "it is not known whether the slave touched: its force is unknown");
+  else if (touched > 0)
     std::snprintf(text, sizeof text,
                   "the slave touched first at %.3f s; largest force of the scene on it: %.3g N",
                   first_slave_contact_time_s(trace), max_slave_force_N(trace));

@@ -16,6 +16,8 @@ struct Trace;
 //   known in some tick in which the slave was behind it.
 // - "slave without command": the slave never started; or it received no command after its first one although
 //   others were meant for it; or it touched, and the hand, which was to feel it, felt no force.
+// - "slave starts in contact": the slave was behind the true surface when it was put at its first command, so
+//   that the largest force on it, and all that follows from it, is that of this start.
 // - "slave loop gains energy": the device gave the hand more than 5 J, as an unstable loop does, while it
 //   returned the force on the slave.
 std::vector<Note> slave_notes(const Trace& trace);

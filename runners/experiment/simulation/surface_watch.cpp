@@ -21,8 +21,8 @@ double shown_depth(const PointCloud& cloud, const RigidTransform& X_CW, const Ve
   const int u = static_cast<int>(column), v = static_cast<int>(row);
   const int reach = static_cast<int>(std::clamp(camera.fx * reach_m / p_C.z(), 1.0, kMaxReach_px));
   std::vector<double> depths;
-  for (int y = std::max(0, v - reach); y <= std::min(camera.height - 1, v + reach); ++y)
-    for (int x = std::max(0, u - reach); x <= std::min(camera.width - 1, u + reach); ++x) {
+  for (int y = std::max(0, v - reach); y <= std::min<int>(camera.height - 1, v + reach); ++y)
+    for (int x = std::max(0, u - reach); x <= std::min<int>(camera.width - 1, u + reach); ++x) {
       if ((x - u) * (x - u) + (y - v) * (y - v) > reach * reach) continue;
       const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
       if (cloud.is_measured(i)) depths.push_back((X_CW * cloud.point(i)).z());
@@ -59,7 +59,7 @@ void SurfaceWatch::add_step(const Vec3& hand_W, double time_s, double max_step_m
   last_W_ = hand_W;
   if (max_step_m <= 0 || !(step_m > max_step_m)) return;
   if (jumps_++ == 0) first_jump_s_ = time_s, first_jump_m_ = step_m;
-  longest_jump_m_ = std::max(longest_jump_m_, step_m);
+  longest_jump_m_ = std::max(longest_jump_m_, step_m);  // no NaN: above a limit
 }
 
 void SurfaceWatch::add(const Vec3& hand_W, double time_s) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include "core/rendering/renderer.h"
@@ -19,15 +20,19 @@ class FrameSender {
 
   // Returns true if the frame has to be sent, and then keeps its points until the next one has to.
   bool sends(const Frame& frame) { return dead_band_.sends(frame, slave_at(frame.captured_s), kernels_); }
-  // Must be called once per tick, after the slave has moved, with increasing times.
-  void observe_slave(const Vec3& slave_W, double time_s) { slave_.emplace_back(time_s, slave_W); }
+  // Must be called once per tick, after the slave has moved, with increasing times. slave_W: NaN before the
+  // slave has started, as in a trace.
+  void observe_slave(const Vec3& slave_W, double time_s) {
+    if (slave_W.allFinite()) slave_.emplace_back(time_s, slave_W);
+  }
   // Forgets where the slave was. Until it is observed again, every frame is sent.
   void lose_slave() { slave_.clear(); }
   // Returns the number of frames that had to be sent.
   int sent() const { return dead_band_.sent(); }
 
  private:
-  Vec3 slave_at(double time_s);
+  // Returns nothing if the position at that time is not known.
+  std::optional<Vec3> slave_at(double time_s);
 
   FrameDeadBand dead_band_;
   const Kernels& kernels_;

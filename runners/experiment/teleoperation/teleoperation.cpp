@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/statistics/extremes.h"
+
 namespace remote_touch {
 
 namespace {
@@ -15,11 +17,6 @@ SlaveState unknown_state() {
       Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   state.peak_force_N = state.clearance_m = std::numeric_limits<double>::quiet_NaN();
   return state;
-}
-
-// Displacement of a mass in a tick per force that is held for the tick; 0 for an unknown mass.
-double response_m_per_N(double mass_kg, double tick_s) {
-  return mass_kg > 0 ? tick_s * tick_s / (2 * mass_kg) : 0;
 }
 
 }  // namespace
@@ -56,9 +53,9 @@ Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseK
       commands_(settings.commands, key, NoiseUse::command_channel, tick_s,
                 settings.tool ? settings.tool->reach_m : 0),
       forces_(settings.forces, key, NoiseUse::force_channel, tick_s, 0),
-      hand_port_(settings.feedback.passivity, tick_s, response_m_per_N(settings.hand_mass_kg, tick_s)),
-      slave_port_(settings.feedback.passivity, tick_s),
+      ends_(make_ends(settings.feedback, settings.slave, settings.hand_mass_kg, tick_s)),
       state_(unknown_state()) {
+  if (feels_slave(settings.feedback.force)) state_.energy.emplace();
   if (!settings.tool) return;
   tool_slave_.emplace(settings.slave, *settings.tool, tick_s, scene);
   state_.tool.emplace();
@@ -67,10 +64,13 @@ Teleoperation::Teleoperation(const TeleoperationSettings& settings, const NoiseK
 void Teleoperation::move_slave(double time_s) {
   const Vec3 goal_W = X_registration_ * *command_W_;
   const Eigen::Quaterniond turn(X_registration_.linear());
+  std::optional<Slave::Wave> wave = ends_.slave->wave();
+  if (wave) wave->value_W = X_registration_.linear() * wave->value_W;
   const Slave::State& slave = tool_slave_ ? tool_slave_->move({goal_W, turn * command_orientation_W_}, time_s)
+                              : wave      ? slave_.move(*wave, time_s)
                                           : slave_.move(goal_W, time_s);
   if (tool_slave_) state_.tool = {tool_slave_->state().orientation_W, tool_slave_->state().torque_Nm};
-  state_.command_W = goal_W;
+  state_.command_W = wave ? slave.reference_W : goal_W;
   state_.position_W = slave.position_W, state_.force_N = slave.force_N;
   state_.peak_force_N = slave.peak_force_N, state_.clearance_m = slave.clearance_m;
   if (slave.is_force_known) return;
@@ -80,22 +80,23 @@ void Teleoperation::move_slave(double time_s) {
 }
 
 double Teleoperation::ticks_since_last(double time_s) const {
-  return std::max(1.0, std::round((time_s - last_s_) / tick_s_));
+  return std::max(1.0, std::round((time_s - last_s_) / tick_s_));  // no NaN: times
 }
 
 // ticks: since the last tick. All but the last of them were missed.
 void Teleoperation::move_slave_until(double time_s, double ticks) {
   double peak_N = 0;
-  for (int left = static_cast<int>(std::min(ticks - 1, 1.0 * kMaxMissedTicks)); left > 0; --left) {
+  const double missed = std::min(ticks - 1, 1.0 * kMaxMissedTicks);  // no NaN: ticks are counted
+  for (int left = static_cast<int>(missed); left > 0; --left) {
     const double at_s = time_s - left * tick_s_;
     move_slave(at_s);
-    peak_N = std::max(state_.peak_force_N, peak_N);  // keeps NaN
-    if (is_passive()) slave_port_.observe(slave_force());
+    peak_N = max_or_nan(peak_N, state_.peak_force_N);
+    observe_slave();
     receive_command(at_s);
     send_force(at_s);
   }
   move_slave(time_s);
-  state_.peak_force_N = std::max(state_.peak_force_N, peak_N);
+  state_.peak_force_N = max_or_nan(state_.peak_force_N, peak_N);
 }
 
 // Returns the motion of the hand since the last tick.
@@ -106,32 +107,50 @@ Vec3 Teleoperation::displacement_m(const DeviceState& device) {
   return device.position_W - before_W;
 }
 
+void Teleoperation::observe_slave() {
+  if (!feels_slave(s_.feedback.force)) return;
+  const Slave::State& s = slave();
+  ends_.slave->observe({slave_force(), in_frame_of_hand(s.position_W), in_axes_of_hand(s.velocity_W),
+                        in_axes_of_hand(s.reference_displacement_m), in_axes_of_hand(s.drive_N),
+                        s.reference_work_J, s.drive_work_J});
+}
+
+// ticks: since the last tick.
+void Teleoperation::observe_hand(const DeviceState& device, double ticks) {
+  const Vec3 moved_m = displacement_m(device);
+  if (!feels_slave(s_.feedback.force)) return;
+  ends_.hand->observe({hand_W_.value_or(Vec3::Zero()), moved_m, exerted_N_, ticks});
+  const PortEnergy &hand = hand_energy(), &slave = slave_energy();
+  state_.energy =
+      ChannelEnergy{hand.in_J, hand.out_J, slave.in_J, slave.out_J, hand.dissipated_J + slave.dissipated_J};
+}
+
 void Teleoperation::receive_command(double time_s) {
   commands_.receive(time_s);
   command_orientation_W_ = commands_.receiver.shown_orientation(time_s).value_or(command_orientation_W_);
   if (const std::optional<Vec3> received = commands_.receiver.shown(time_s))
-    command_W_ =
-        is_passive() ? slave_port_.command(*received, slave_force(), commands_.newest.in_J) : *received;
+    command_W_ = ends_.slave->command(*received, commands_.newest.message);
 }
 
 void Teleoperation::send_force(double time_s) {
-  if (!feels_slave()) return;
+  if (!feels_slave(s_.feedback.force)) return;
   const Vec3 torque_Nm = tool_slave_ ? in_axes_of_hand(tool_slave_->state().torque_Nm) : Vec3(Vec3::Zero());
   forces_.send(slave_force(), Eigen::Quaterniond::Identity(),
-               {.in_J = slave_port_.energy().in_J, .torque_Nm = torque_Nm}, time_s);
+               {.message = ends_.slave->message(), .torque_Nm = torque_Nm}, time_s);
 }
 
-// Returns the force on the hand for the coming tick.
-Vec3 Teleoperation::receive_force(double time_s) {
-  if (!feels_slave()) return Vec3::Zero();
+// Returns the wrench on the hand for the coming tick.
+Wrench Teleoperation::receive_wrench(double time_s) {
+  if (!feels_slave(s_.feedback.force)) return {};
   forces_.receive(time_s);
-  return forces_.receiver.shown(time_s).value_or(Vec3::Zero());
-}
-
-// last_displacement_m: of the hand, in the tick that has ended.
-Vec3 Teleoperation::passive_force(const Vec3& force_N, const Vec3& last_displacement_m) {
-  const Vec3 expected_m = s_.hand_mass_kg > 0 ? hand_port_.free_displacement() : last_displacement_m;
-  return hand_port_.force(force_N, expected_m, forces_.newest.in_J);
+  HandEnd::Arrival arrival{.message = forces_.newest.message};
+  if (const std::optional<Vec3> shown_N = forces_.receiver.shown(time_s)) {
+    const std::optional<double> due_s = longest_silence_s(s_.forces.dead_band);
+    const double overdue_s = due_s ? forces_.receiver.silence_s(time_s) - *due_s : 0;
+    arrival.force_N = *shown_N, arrival.has_come = true;
+    arrival.share = held_share(s_.feedback.hold, overdue_s);
+  }
+  return {ends_.hand->force(arrival), s_.feedback.gain * arrival.share * forces_.newest.torque_Nm};
 }
 
 Vec3 Teleoperation::command(const DeviceState& device, const RenderOutput& out) const {
@@ -152,25 +171,19 @@ Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, d
   const Eigen::Quaterniond orientation_W = command_orientation(device, out);
   const bool is_valid = command_W.allFinite() && orientation_W.coeffs().allFinite();
   const bool is_first = !command_W_ && is_valid;
-  if (is_first) command_W_ = command_W, command_orientation_W_ = orientation_W;
+  if (is_first) command_W_ = ends_.slave->command(command_W, {}), command_orientation_W_ = orientation_W;
   if (!command_W_) return is_rendered ? rendered_wrench(out) : Wrench{};
 
   const double ticks = is_first ? 1 : ticks_since_last(time_s);
   move_slave_until(time_s, ticks);
   last_s_ = time_s;
-  const Vec3 moved_m = displacement_m(device);
-  if (is_passive() && !is_first) {
-    slave_port_.observe(slave_force());
-    hand_port_.observe(moved_m);
-  }
-  if (is_valid) commands_.send(command_W, orientation_W, {.in_J = hand_port_.energy().in_J}, time_s);
+  observe_slave();
+  observe_hand(device, ticks);
+  if (is_valid) commands_.send(command_W, orientation_W, {.message = ends_.hand->message()}, time_s);
   receive_command(time_s);
   send_force(time_s);
-  Wrench wrench =
-      is_rendered ? rendered_wrench(out) : Wrench{receive_force(time_s), forces_.newest.torque_Nm};
-  if (s_.feedback.force == Feedback::slave_force)
-    wrench.force_N *= s_.feedback.gain, wrench.torque_Nm *= s_.feedback.gain;
-  if (is_passive()) wrench.force_N = passive_force(wrench.force_N, moved_m / ticks);
+  const Wrench wrench = is_rendered ? rendered_wrench(out) : receive_wrench(time_s);
+  exerted_N_ = wrench.force_N;
   state_.command_packets = static_cast<std::int32_t>(commands_.sender.packets());
   state_.force_packets = static_cast<std::int32_t>(forces_.sender.packets());
   return wrench;

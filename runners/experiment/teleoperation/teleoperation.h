@@ -44,16 +44,21 @@ class Teleoperation {
   // frame_packets is always 0: the caller counts the frames.
   const SlaveState& state() const { return state_; }
 
-  // The energies at both ports since the start. They are counted only with passivity control.
-  const PortEnergy& hand_energy() const { return hand_port_.energy(); }
-  const PortEnergy& slave_energy() const { return slave_port_.energy(); }
+  // States the force that the device exerts from the last tick to the next one, with all its limits. Without
+  // a call it is the force that tick() returned.
+  void observe_exerted(const Vec3& force_N) { exerted_N_ = force_N; }
+
+  // The energies at both ports since the start, see architecture.h. They are counted only if the hand is to
+  // feel the slave.
+  const PortEnergy& hand_energy() const { return ends_.hand->energy(); }
+  const PortEnergy& slave_energy() const { return ends_.slave->energy(); }
 
  private:
-  // A sample (a pose or a force), the energy that has entered the channel at its port, see
-  // passivity_control.h, and the torque on a tool. The dead-band compares only the sample.
+  // A sample (a pose or a force), the message of the architecture, and the torque on a tool. The dead-band
+  // compares only the sample.
   struct Packet {
     DeadBandSample sample = {};
-    double in_J = 0;
+    Message message = {};
     Vec3 torque_Nm = Vec3::Zero();
   };
   struct Link {
@@ -71,17 +76,17 @@ class Teleoperation {
   Vec3 in_axes_of_hand(const Vec3& v_W) const { return X_registration_.linear().transpose() * v_W; }
   // The force of the scene on the slave in the last tick, in the axes in which the hand works.
   Vec3 slave_force() const { return in_axes_of_hand(slave().force_N); }
-  bool is_passive() const { return s_.feedback.force == Feedback::passive_slave_force; }
-  bool feels_slave() const { return s_.feedback.force == Feedback::slave_force || is_passive(); }
+  Vec3 in_frame_of_hand(const Vec3& p_W) const { return X_registration_.inverse() * p_W; }
   const Slave::State& slave() const { return tool_slave_ ? tool_slave_->state() : slave_.state(); }
   void move_slave(double time_s);
   double ticks_since_last(double time_s) const;
   void move_slave_until(double time_s, double ticks);
+  void observe_slave();
+  void observe_hand(const DeviceState& device, double ticks);
   Vec3 displacement_m(const DeviceState& device);
   void receive_command(double time_s);
   void send_force(double time_s);
-  Vec3 receive_force(double time_s);
-  Vec3 passive_force(const Vec3& force_N, const Vec3& last_displacement_m);
+  Wrench receive_wrench(double time_s);
 
   const TeleoperationSettings s_;
   const RigidTransform X_registration_;  // turns a position that is sent into where the slave goes
@@ -89,9 +94,9 @@ class Teleoperation {
   Slave slave_;
   std::optional<ToolSlave> tool_slave_;  // instead of slave_
   Link commands_, forces_;
-  ImpedancePassivityController hand_port_;
-  AdmittancePassivityController slave_port_;
+  Ends ends_;
   double last_s_ = 0;              // time of the last tick
+  Vec3 exerted_N_ = Vec3::Zero();  // by the device since the last tick
   std::optional<Vec3> hand_W_;     // last finite position of the hand
   std::optional<Vec3> command_W_;  // the command for the coming tick of the slave
   Eigen::Quaterniond command_orientation_W_ = Eigen::Quaterniond::Identity();

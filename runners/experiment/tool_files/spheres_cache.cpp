@@ -52,7 +52,6 @@ void visit(Direction& pack, Tree& tree, Spheres& spheres) {
 
 std::string spheres_key(const std::string& tool_key, int max_leaves) {
   CacheWriter pack;
-  pack.value(kSpheresFormat);
   pack.text(tool_key);
   pack.value(max_leaves);
   return pack.hex();

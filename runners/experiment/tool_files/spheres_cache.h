@@ -9,10 +9,10 @@
 
 namespace remote_touch {
 
-// Part of the key: raise it whenever the result of make_tool_spheres() changes.
+// Version of the layout of the file, in its first line.
 inline constexpr int kSpheresFormat = 1;
 
-// Returns the key of the spheres, from the key of the tool in its cache and from max_leaves.
+// Returns the key of the spheres, from the key of the tool in its cache, which has the build, and max_leaves.
 std::string spheres_key(const std::string& tool_key, int max_leaves);
 
 // These functions do for spheres what read_tool() and write_tool() do for tools.

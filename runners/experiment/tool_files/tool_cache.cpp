@@ -54,7 +54,7 @@ std::string sha256_of_mesh(const TriangleMesh& mesh) {
 
 std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings) {
   CacheWriter pack;
-  pack.value(kToolFormat);
+  pack.text(build_for_keys());
   pack.text(mesh_sha256);
   pack.value(settings.voxel_m), pack.value(settings.size_m), pack.value(settings.repair);
   if (settings.outer_field) pack.text("outer field");

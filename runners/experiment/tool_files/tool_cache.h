@@ -9,11 +9,11 @@
 
 namespace remote_touch {
 
-// Part of the key: raise it whenever the result of make_voxel_tool() or of the generated tools changes.
+// Version of the layout of the file, in its first line.
 inline constexpr int kToolFormat = 2;
 
-// Returns the key of the tool in the cache: a hash of all that the tool depends on. This is a SHA-256 of the
-// mesh (or of the file from which it is read) and the settings, to the last bit.
+// Returns the key of the tool in the cache: a hash of all that the tool depends on. This is the build of the
+// program, a SHA-256 of the mesh (or of the file from which it is read), and the settings, to the last bit.
 std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings);
 std::string sha256_of_mesh(const TriangleMesh& mesh);
 

@@ -21,8 +21,8 @@ namespace remote_touch {
 namespace {
 
 SweepQuestion question_of(const AnalyseRequest& request) {
-  return {request.limit, request.along, request.threshold,   request.level,
-          request.means, request.by,    request.differences, request.between};
+  return {request.limit, request.along,       request.threshold, request.level,    request.means,
+          request.by,    request.differences, request.between,   request.direction};
 }
 
 // Returns the command without the output.
@@ -42,7 +42,7 @@ std::string command_of(const AnalyseRequest& request) {
   for (const std::string& measure : request.means) add("--mean", measure);
   for (const std::string& axis : request.by) add("--by", axis);
   for (const std::string& measure : request.differences) add("--difference", measure);
-  add("--between", request.between);
+  add("--between", request.between), add("--direction", request.direction);
   return shell_command(words);
 }
 

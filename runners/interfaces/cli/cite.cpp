@@ -35,7 +35,8 @@ std::string digest_text(const std::string& file, const TextAttributes& attribute
 void print_entries(CitedResult cited, const TextAttributes& attributes) {
   cited.title = title_of(cited.file, attributes);
   cited.digest = digest_text(cited.file, attributes);
-  std::printf("%s\n%s", program_entry(attributes).c_str(), result_entry(cited, attributes).c_str());
+  std::printf("%s\n%s\n%s", dissertation_entry().c_str(), program_entry(attributes).c_str(),
+              result_entry(cited, attributes).c_str());
 }
 
 void print_session_entries(const std::string& file, const TextAttributes& attributes) {
@@ -61,7 +62,8 @@ void print_result_entries(const StoredResult& result) {
 
 int command_cite(const CommandLine&, const CiteRequest& request) {
   if (request.file.empty()) {
-    std::fputs(program_entry(provenance({}, std::string(), {})).c_str(), stdout);
+    std::printf("%s\n%s", dissertation_entry().c_str(),
+                program_entry(provenance({}, std::string(), {})).c_str());
     return kDone;
   }
   const Hdf5Reader file(request.file);

@@ -112,7 +112,7 @@ int command_merge(const CommandLine& line, const MergeCommand& command);
 // See SweepQuestion in runners/sweep/sweep_answer.h.
 struct AnalyseRequest {
   std::string sweep;
-  std::string limit, along, between;  // empty: chosen
+  std::string limit, along, between, direction;  // empty: chosen
   double threshold = 0.5, level = 0.5;
   std::vector<std::string> means, differences, by;
   std::string output;  // .h5 or .csv; empty: none

@@ -144,7 +144,7 @@ void add_repro_cite_and_verify(Subcommands& commands) {
   command->add_option("--config", repro->config, "write the stored configuration to this JSON file");
 
   auto [citing, cite] = commands.add(
-      "cite", "print BibTeX entries of this program, or of a result and the program that made it",
+      "cite", "print BibTeX entries of the dissertation and of this program, or also of a result",
       command_cite);
   citing->add_option(
       "file", cite->file,

@@ -158,7 +158,13 @@ void add_analyse(Subcommands& commands) {
       "measure whose differences between the values of --between are wanted; may be given several times");
   command->add_option(
       "--between", analyse->between,
-      "axis whose values are compared with its first value (default: the first axis of names)");
+      "axis whose values are compared with its first value, for --difference (default: the first axis of "
+      "names) and for --limit: differences and ratios of limits");
+  command
+      ->add_option("--direction", analyse->direction,
+                   "the event becomes more (rises) or less probable (falls) along the axis; default: as the "
+                   "runs show it")
+      ->check(CLI::IsMember({"rises", "falls"}));
   command->add_option("-o,--output", analyse->output,
                       "file for the tables: .h5 (also for scripts/plot) or .csv");
 }

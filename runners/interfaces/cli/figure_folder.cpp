@@ -64,6 +64,8 @@ FigureFolder::FigureFolder(const CommandLine& line, const std::string& folder,
       runs_(runs),
       claims_(made(folder_) / "claims.json", names_of_figures()),
       printed_(runs.size()) {
+  require_report(line, (folder_ / "claims.json").string(), {}, kClaims);
+  require_report(line, progress_file().string(), {}, kFigureProgress);
   for (const FigureRun& run : runs) require_result(line, file_of(run.entry->name), {});
   write_progress({std::vector<JobProgress>(runs.size()), TimeLeft{std::vector<double>(runs.size()), 0}});
 }

@@ -10,6 +10,7 @@
 #include "analysis/storage/file_digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/schema.h"
+#include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/renamed_columns.h"
@@ -18,6 +19,7 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
@@ -96,10 +98,10 @@ void print_hashes(const std::vector<std::uint64_t>& values) {
 
 // Prints how many runs of a sweep have each kind of note, see SweepResult::notes. kinds: the names of the
 // kinds, separated by commas.
-void print_notes(const std::vector<std::int32_t>& all, const std::string& kinds) {
+void print_notes(const std::vector<std::uint64_t>& all, const std::string& kinds) {
   const std::vector<std::string> names = split_names(kinds);
-  for (std::size_t bit = 0; bit < std::min<std::size_t>(names.size(), 31); ++bit) {
-    const auto has = [bit](std::int32_t notes) { return (notes >> bit & 1) != 0; };
+  for (std::size_t bit = 0; bit < std::min<std::size_t>(names.size(), 64); ++bit) {
+    const auto has = [bit](std::uint64_t notes) { return (notes >> bit & 1) != 0; };
     if (const auto count = std::count_if(all.begin(), all.end(), has); count > 0)
       std::printf("  %s %td", names[bit].c_str(), count);
   }
@@ -127,12 +129,13 @@ void print_datasets(const Hdf5Content& content) {
   const Extents extents(content);
   const std::string note_kinds = attribute(content.attributes, "note_kinds");
   for (const auto& [path, column] : content.datasets) {
-    const auto* notes = std::get_if<std::vector<std::int32_t>>(&column.values);
+    const bool is_notes = path == "/sweep/notes";
     const bool has_unit = std::holds_alternative<std::vector<double>>(column.values) ||
-                          (notes && column.value_names.empty() && path != "/sweep/notes");
+                          (std::holds_alternative<std::vector<std::int32_t>>(column.values) &&
+                           column.value_names.empty() && !is_notes);
     print_dataset(path, extents.of(path, column), has_unit ? column.units : "");
-    if (path == "/sweep/notes" && notes)
-      print_notes(*notes, note_kinds);
+    if (is_notes)
+      print_notes(note_numbers(column), note_kinds);
     else
       print_values(column);
   }
@@ -234,6 +237,8 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
   }
   print_attributes(file, content.attributes);
   print_datasets(content);
+  if (is_schema_of(attribute(content.attributes, "schema"), "sweep"))
+    print_equal_runs(read_stored_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
   return kDone;
 }
 

@@ -107,7 +107,8 @@ void print_arrays(const SweepTally& tally, const Hdf5Content& content) {
 }  // namespace
 
 void print_tally(const std::string& file, const Hdf5Content& content) {
-  const SweepTally tally = read_tally(Hdf5Reader(file)).tally;
+  const StoredTally stored = read_tally(Hdf5Reader(file));
+  const SweepTally& tally = stored.tally;
   const CellTally all = over_all_cells(tally);
   std::printf("  tally        %s cells, %d replicates each: %lld of %llu runs done, %lld failed\n",
               extent_text(outline_of(tally)).c_str(), tally.replicates, static_cast<long long>(all.done),
@@ -117,6 +118,7 @@ void print_tally(const std::string& file, const Hdf5Content& content) {
     std::printf("    %-22s %s; %s\n", tally.measures[i].name.c_str(),
                 measure_text(all.measures[i], tally.measures[i].units).c_str(),
                 tally.measures[i].long_name.c_str());
+  print_equal_runs(outline_of(tally), attribute(stored.attributes, "config"));
   print_arrays(tally, content);
 }
 

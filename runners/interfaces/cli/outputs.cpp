@@ -54,6 +54,15 @@ void require_report(const CommandLine& line, const std::string& output,
   require(line, output, inputs, begins_with(opening), "a report");
 }
 
+void require_text(const CommandLine& line, const std::string& output, const std::vector<std::string>& inputs,
+                  const std::string& text) {
+  const auto is_same = [text](const std::filesystem::path& file) {
+    std::error_code absent;
+    return std::filesystem::file_size(file, absent) == text.size() && opening_of(file, text.size()) == text;
+  };
+  require(line, output, inputs, is_same, "the same configuration");
+}
+
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening) {
   require(line, output, inputs, begins_with(opening), "an export of such a result");

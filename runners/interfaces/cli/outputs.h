@@ -27,6 +27,10 @@ void require_result(const CommandLine& line, const std::string& output,
 void require_report(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
 
+// The same for a file that this command has written before with the same text.
+void require_text(const CommandLine& line, const std::string& output, const std::vector<std::string>& inputs,
+                  const std::string& text);
+
 // The same for a file of an export.
 void require_export(const CommandLine& line, const std::string& output,
                     const std::vector<std::string>& inputs, const std::string& opening);
@@ -42,7 +46,9 @@ void require_distinct(const std::vector<OutputOption>& outputs);
 
 inline constexpr const char* kJsonReport = "{\n  \"baseline\":";
 inline constexpr const char* kJsonReports = "[\n  {\n    \"baseline\":";
-inline constexpr const char* kConfiguration = "{\"title\":";  // opening of JSON that is in one line
+inline constexpr const char* kClaims = "[\n  {\n    \"figure\":";
+inline constexpr const char* kFigureProgress = "{\n \"left_s\":";
+inline constexpr const char* kScorecardJson = "{\n \"schema\": \"remote-touch-scorecard/";
 inline constexpr const char* kJunitReport = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
 inline constexpr const char* kPage = "<!DOCTYPE html>\n<!-- remote-touch view -->";
 

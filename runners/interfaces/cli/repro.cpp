@@ -61,8 +61,8 @@ class Repro {
     if (result_.kind() == "figure")
       throw InputError("--config",
                        "a figure has no single configuration: expected a trace, a sweep or hashes");
-    require_report(line_, target, {result_.file()}, kConfiguration);
     const std::string text = result_.config() + "\n";
+    require_text(line_, target, {result_.file()}, text);
     write_file_atomically(target, text.data(), text.size());
     std::printf("# configuration written to %s\n", target.c_str());
   }
@@ -143,7 +143,8 @@ class Repro {
             }
         },
         [&](const FigureProgress& made) { progress.update(progress_text(runs, made)); });
-    return compare_figure(StoredFigure(Hdf5Reader(result_.file())), ColumnsInMemory(std::move(columns)), {});
+    return compare_figure(StoredFigure(Hdf5Reader(result_.file())), ColumnsInMemory(std::move(columns)), {},
+                          true);
   }
 
   const CommandLine& line_;

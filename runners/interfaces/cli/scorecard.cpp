@@ -11,6 +11,7 @@
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/scorecard_runs.h"
 
@@ -54,6 +55,10 @@ void print(const ScorecardReport& report) {
       std::printf("\n");
     }
   }
+  if (card.tests > 0)
+    std::printf(
+        "%lld comparisons of two methods, corrected together (Holm): significant from %lld pairs of runs on\n",
+        static_cast<long long>(card.tests), static_cast<long long>(card.least_pairs));
   for (const auto& [name, why] : report.skipped)
     std::printf("%s\n  skipped: %s\n", name.c_str(), why.c_str());
 }
@@ -69,6 +74,8 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
   require_same_benchmark(sweeps);
   require_all_of(std::filesystem::path(request.folder) / kScorecardFile, plan);
   make_scorecard_folder(request.folder);
+  require_report(line, (std::filesystem::path(request.folder) / "scorecard.json").string(), {},
+                 kScorecardJson);
   try {
     do_scorecard_runs(line, sweeps);
     Progress after("traces and results", line.quiet);

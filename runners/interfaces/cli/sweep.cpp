@@ -2,22 +2,23 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <optional>
+#include <mutex>
+#include <numeric>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/simulation/note_kinds.h"
-#include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/sweep_run.h"
 #include "runners/sweep/sweep_session.h"
+#include "runners/sweep/tally_outline.h"
 #include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
@@ -44,38 +45,59 @@ TextAttributes attributes_of(const Sweep& sweep, const SweepRequest& request, co
   return list;
 }
 
-// A few runs spread over the sweep, for at most about two seconds.
+constexpr std::size_t kSamples = 24;  // runs that a dry run tries
+constexpr double kSample_s = 2;       // time after which it begins no further run
+
+// Returns the numbers of some pending runs: the first and the last, and others. Their distances are no
+// multiples of the length of an axis, so that all values of all axes have a chance.
+std::vector<std::uint64_t> spread_runs(const SweepResult& plan) {
+  const std::vector<std::size_t> places = plan.runs_in(RunState::pending);
+  std::vector<std::uint64_t> runs;
+  const auto add = [&](std::size_t i) {
+    const std::uint64_t run = plan.run_at(places[i]);
+    if (std::find(runs.begin(), runs.end(), run) == runs.end()) runs.push_back(run);
+  };
+  if (!places.empty()) add(0), add(places.size() - 1);
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  for (std::size_t k = 1; !places.empty() && k <= kSamples; ++k)
+    add(static_cast<std::size_t>(std::fmod(static_cast<double>(k) * kGoldenRatio, 1.0) *
+                                 static_cast<double>(places.size())));
+  return runs;
+}
+
+// Some runs, made as the sweep makes them: side by side, each on one thread.
 struct Sample {
-  std::optional<double> seconds_per_run = {};  // empty: no run was tried
-  int failed = 0;
-  SweepResult tried;  // only these runs are done in it
-};
-Sample sample_runs(const Sweep& sweep, const SweepResult& result, const CommandLine& line) {
-  const std::vector<std::size_t> places = result.runs_in(RunState::pending);
-  SimulationOptions options;
-  RunReport report;
-  options.report = &report;
-  options.kernels = line.kernels;
-  options.stop = line.stop;
-  const auto start = Clock::now();
-  constexpr std::size_t kSamples = 16;
-  std::size_t done = 0;
-  Sample sample{std::nullopt, 0, result};
-  sample.tried.state.assign(result.state.size(), RunState::pending);
-  for (; done < std::min(kSamples, places.size()) && seconds_since(start) < 2; ++done) {
-    // An odd multiplier visits the samples out of order, so that stopping early leaves a fair choice.
-    const std::size_t place =
-        places[places.size() < kSamples ? done : (7 * done % kSamples) * places.size() / kSamples];
-    const std::size_t run = result.run_at(place);
-    try {
-      const Trace trace = simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
-      add_unknown_outcome(sweep.measures(), trace, report.notes);
-      sample.tried.notes[place] = note_bits(report.notes), sample.tried.state[place] = RunState::done;
-    } catch (const std::exception&) {
-      ++sample.failed;  // the sweep would record it
-    }
+  std::vector<double> seconds = {};  // duration of each run that was tried
+  SweepResult tried;                 // the others are pending
+
+  double mean_s() const {
+    return std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(seconds.size());
   }
-  if (done > 0) sample.seconds_per_run = seconds_since(start) / static_cast<double>(done);
+};
+Sample sample_runs(const Sweep& sweep, const SweepResult& plan, const CommandLine& line) {
+  const std::vector<std::uint64_t> wanted = spread_runs(plan);
+  std::vector<std::uint64_t> runs = wanted;
+  std::sort(runs.begin(), runs.end());
+  Sample sample{{}, sweep.part(runs)};
+  if (runs.empty()) return sample;
+  SweepRunOptions options{line.kernels, line.stop};
+  const auto start = Clock::now();
+  // The first run of a process also reads files and fills caches; it is made once more, unless it is long.
+  do_run(sweep, options, plan.cell_of(wanted.front()), plan.replicate_of(wanted.front()));
+  const double first_s = seconds_since(start);
+  if (first_s > kSample_s) sample.seconds.push_back(first_s);
+  std::mutex one_at_a_time;
+  options.runs = [&](std::size_t count, const auto& make) {
+    side_by_side(count, [&](std::size_t i) {
+      if (seconds_since(start) > kSample_s) return;
+      const auto begin = Clock::now();
+      make(static_cast<std::size_t>(std::lower_bound(runs.begin(), runs.end(), wanted[i]) - runs.begin()));
+      const double seconds = seconds_since(begin);
+      const std::lock_guard lock(one_at_a_time);
+      sample.seconds.push_back(seconds);
+    });
+  };
+  do_pending_runs(sweep, sample.tried, options);
   return sample;
 }
 
@@ -101,13 +123,16 @@ int dry_run(const Sweep& sweep, const Work& work, const CommandLine& line, const
   if (work.done > 0) std::printf("; %zu are done", work.done);
   if (const auto rule = sweep.refinement())
     std::printf("\n  refinement: up to %llu runs in all", static_cast<unsigned long long>(rule->budget));
-  if (sample.seconds_per_run)
-    std::printf("\n  about %.3g s on %d threads (%.3g ms a run, some tried)",
-                *sample.seconds_per_run * static_cast<double>(runs) / omp_get_max_threads(),
-                omp_get_max_threads(), 1e3 * *sample.seconds_per_run);
-  else
+  if (sample.seconds.empty()) {
     std::printf("\n  no time to estimate: no run was tried");
-  if (sample.failed > 0) std::printf("; %d of those tried failed", sample.failed);
+  } else {
+    const auto [least, most] = std::minmax_element(sample.seconds.begin(), sample.seconds.end());
+    std::printf("\n  about %.2g s on %d threads (%.3g ms a run, %.3g to %.3g in the %zu that were tried)",
+                sample.mean_s() * static_cast<double>(runs) / omp_get_max_threads(), omp_get_max_threads(),
+                1e3 * sample.mean_s(), 1e3 * *least, 1e3 * *most, sample.seconds.size());
+  }
+  if (const std::size_t failed = sample.tried.runs_in(RunState::failed).size(); failed > 0)
+    std::printf("; %zu of those tried failed", failed);
   std::printf("\n  file: %s\n", work.file_text.c_str());
   for (const std::string& note : note_lines(sample.tried))
     std::printf("  note on the runs that were tried: %s\n", note.c_str());
@@ -127,20 +152,19 @@ int dry_run_of_runs(const Sweep& sweep, const SweepPlan& plan, const CommandLine
                  line, request);
 }
 
-// Tries the first replicate of cells that are spread over those of the shard.
+// Tries first replicates of cells of the shard.
 int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const TallyPlan& plan, const CommandLine& line,
                      const SweepRequest& request) {
-  constexpr std::size_t kSamples = 16;
   const SweepResult outline = sweep.outline();
   const std::size_t cells = shard.cells_of(outline.cell_count());
   const std::uint64_t done = plan.tally.held.count(), left = plan.own_runs - done;
-  const std::size_t tried = left == 0 ? 0 : std::min(kSamples, cells);
-  std::vector<std::uint64_t> runs;
-  for (std::size_t i = 0; i < tried; ++i) runs.push_back(outline.run(shard.cell(i * cells / tried), 0));
-  const SweepResult sample = sweep.part(runs);
+  std::vector<std::uint64_t> first_runs;
+  for (std::size_t i = 0; left > 0 && i < cells; ++i) first_runs.push_back(outline.run(shard.cell(i), 0));
+  const SweepResult of_cells = sweep.part(std::move(first_runs));
   return dry_run(
-      sweep, {left, done, "a tally of " + std::to_string(cells) + (cells == 1 ? " cell" : " cells"), sample},
-      line, request);
+      sweep,
+      {left, done, "a tally of " + std::to_string(cells) + (cells == 1 ? " cell" : " cells"), of_cells}, line,
+      request);
 }
 
 // Does what is left of a session, with progress. Returns false if it was interrupted.
@@ -161,19 +185,21 @@ bool run_session(const CommandLine& line, const SweepRequest& request, const std
 }
 
 int make_runs(const CommandLine& line, const SweepRequest& request, const std::string& file,
-              SweepSession session) {
+              const std::string& config, SweepSession session) {
   if (!run_session(line, request, file, session))
     return print_interrupted(file, session.result().runs_in(RunState::done).size());
   const int code = print_summary(file, session.result());
+  print_equal_runs(session.result(), config);
   if (request.strict) refuse_notes(session.result());
   return code;
 }
 
 int make_tally(const CommandLine& line, const SweepRequest& request, const std::string& file,
-               TallySession session) {
+               const std::string& config, TallySession session) {
   if (!run_session(line, request, file, session))
     return print_interrupted(file, session.tally().held.count());
   const int code = print_summary(file, session.tally(), session.digest());
+  print_equal_runs(outline_of(session.tally()), config);
   if (request.strict) refuse_notes(session.tally());
   return code;
 }
@@ -194,10 +220,11 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     return request.dry_run
                ? dry_run_of_tally(sweep, shard, tally_plan_in_file(sweep, shard, attributes, file), line,
                                   request)
-               : make_tally(line, request, file, TallySession(sweep, shard, attributes, file));
+               : make_tally(line, request, file, sweep.to_json(),
+                            TallySession(sweep, shard, attributes, file));
   if (request.dry_run)
     return dry_run_of_runs(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
-  return make_runs(line, request, file, SweepSession(sweep, shard, attributes, file));
+  return make_runs(line, request, file, sweep.to_json(), SweepSession(sweep, shard, attributes, file));
 }
 
 }  // namespace remote_touch

@@ -9,6 +9,7 @@
 #include "runners/interfaces/cli/commands.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/sweep_streams.h"
 #include "runners/sweep/tally_outline.h"
 
 namespace remote_touch {
@@ -95,6 +96,20 @@ int SweepSummary::print(const std::string& file, const std::string& digest) cons
   if (failed_ > failures_.size())
     std::printf("  and %zu more, in the dataset /sweep/error\n", failed_ - failures_.size());
   return failed_ == 0 ? kDone : kCheckFailed;
+}
+
+void print_equal_runs(const SweepResult& outline, const std::string& config) {
+  constexpr std::size_t kMostCells = 1'000'000;
+  if (outline.replicates == 1 || outline.cell_count() > kMostCells) return;
+  const CellStreams streams = streams_of(outline, config);
+  std::size_t fixed = 0, first = 0;
+  for (std::size_t cell = outline.cell_count(); cell-- > 0;)
+    if (streams.doubt.empty() && streams.is_fixed(cell)) ++fixed, first = cell;
+  if (fixed > 0)
+    std::printf(
+        "  note: %zu of %zu cells draw no random numbers: their %d replicates are equal, and analyse "
+        "counts them as one run (the first: --cell %s)\n",
+        fixed, outline.cell_count(), outline.replicates, cell_text(outline, first).c_str());
 }
 
 int print_summary(const std::string& file, const SweepResult& result) {

@@ -21,6 +21,10 @@ int print_summary(const std::string& file, const SweepResult& result);
 // kind of note, and the first failed run of each cell. Returns kDone, or kCheckFailed if a run failed.
 int print_summary(const std::string& file, const SweepTally& tally, const std::string& digest);
 
+// Prints a note on the cells whose replicates are equal, because they draw no random numbers. outline: of the
+// sweep with this configuration (JSON). Prints nothing if each cell has one run, and for more than 1e6 cells.
+void print_equal_runs(const SweepResult& outline, const std::string& config);
+
 // Returns the sum of the tallies of all cells.
 CellTally over_all_cells(const SweepTally& tally);
 // Returns, for example, "mean 0.25 0 .. 1 1, median 0, of 4 of 5 runs": mean, range, unit, median, and how

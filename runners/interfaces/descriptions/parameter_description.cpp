@@ -101,6 +101,8 @@ const char* runs_with(TracePart part) {
       return "a run with a measured surface beside the true one";
     case TracePart::slave:
       return "a run with a slave";
+    case TracePart::channel_energy:
+      return "a run whose hand is to feel the slave";
     case TracePart::slave_tool:
       return "a run with a slave that has a tool";
     case TracePart::rounded_hand:

@@ -77,11 +77,15 @@ void check(const remote_touch_renderer& r, const std::string& file) {
 }  // namespace
 
 std::vector<RendererEntry> load_plugin(const std::string& file) {
-  const remote_touch_plugin_function get = function_of(file);
+  const remote_touch_plugin_function function = function_of(file);
+  const auto renderer_with = [&](std::size_t number) {
+    return guarded_call(
+        [&] { return "--plugin " + file; },
+        [&] { return function(REMOTE_TOUCH_PLUGIN_VERSION, sizeof(remote_touch_renderer), number); });
+  };
   std::vector<RendererEntry> entries;
   for (std::size_t number = 0; number < kMaxRenderers; ++number) {
-    const remote_touch_renderer* functions =
-        get(REMOTE_TOUCH_PLUGIN_VERSION, sizeof(remote_touch_renderer), number);
+    const remote_touch_renderer* functions = renderer_with(number);
     if (functions == nullptr) break;
     check(*functions, file);
     RendererEntry entry;
@@ -92,8 +96,7 @@ std::vector<RendererEntry> load_plugin(const std::string& file) {
     entry.contact_model = kContactModels[functions->contact_model];
     entries.push_back(std::move(entry));
   }
-  if (entries.size() == kMaxRenderers &&
-      get(REMOTE_TOUCH_PLUGIN_VERSION, sizeof(remote_touch_renderer), kMaxRenderers) != nullptr)
+  if (entries.size() == kMaxRenderers && renderer_with(kMaxRenderers) != nullptr)
     throw InputError("--plugin " + file,
                      "has too many renderers: expected at most " + std::to_string(kMaxRenderers));
   if (entries.empty())

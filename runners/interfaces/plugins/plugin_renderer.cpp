@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cstring>
-#include <exception>
 #include <limits>
+#include <utility>
 
 #include "core/parameters/input_error.h"
 #include "core/search/neighbour_search.h"
@@ -38,20 +38,11 @@ class Problem {
   std::array<char, 256> text_{};
 };
 
-// Makes a call of the library. An exception becomes an InputError: the interface does not allow exceptions,
-// but libraries in C++ can throw them.
+// Makes a call of a function of the library, see guarded_call().
 template <class Call>
 auto guarded(const remote_touch_renderer& functions, const char* name, Call&& call) {
-  try {
-    return call();
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw InputError(std::string("plug-in renderer ") + functions.name + ": " + name,
-                     std::string("threw an exception: ") + error.what());
-  } catch (...) {
-    throw InputError(std::string("plug-in renderer ") + functions.name + ": " + name, "threw an exception");
-  }
+  return guarded_call([&] { return std::string("plug-in renderer ") + functions.name + ": " + name; },
+                      std::forward<Call>(call));
 }
 
 // Makes a call of the library that frees something. Its exceptions are ignored: the caller may be a
@@ -179,10 +170,14 @@ class PluginFactory final : public RendererFactory {
     return {};
   }
   std::vector<RecordingPart> inputs() const override { return {}; }
-  double stiffness_N_per_m() const override { return functions_.max_stiffness_N_per_m(values_.data()); }
+  double stiffness_N_per_m() const override {
+    return guarded(functions_, "max_stiffness_N_per_m",
+                   [&] { return functions_.max_stiffness_N_per_m(values_.data()); });
+  }
   RenderedContact contact() const override {
-    return {functions_.rest_distance_m ? functions_.rest_distance_m(values_.data())
-                                       : std::numeric_limits<double>::quiet_NaN()};
+    if (!functions_.rest_distance_m) return {std::numeric_limits<double>::quiet_NaN()};
+    return {
+        guarded(functions_, "rest_distance_m", [&] { return functions_.rest_distance_m(values_.data()); })};
   }
   std::unique_ptr<Renderer> build(double haptic_rate_hz, const Kernels& kernels) const override {
     return std::make_unique<PluginRenderer>(functions_, values_, haptic_rate_hz, kernels);

@@ -1,16 +1,33 @@
 // Adapts a renderer of a shared library to the Renderer interface.
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/parameters/input_error.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/factory.h"
 #include "runners/interfaces/plugins/remote_touch_plugin.h"
 
 namespace remote_touch {
+
+// Makes a call of a library. An exception becomes an InputError of subject(): the interface does not allow
+// exceptions, but libraries in C++ can throw them, of any type. Nothing is allocated without an exception.
+template <class Subject, class Call>
+auto guarded_call(const Subject& subject, Call&& call) {
+  try {
+    return call();
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(subject(), std::string("threw an exception: ") + error.what());
+  } catch (...) {
+    throw InputError(subject(), "threw an exception");
+  }
+}
 
 // All methods except the destructor throw InputError if the library throws; the destructor ignores that.
 // prepare(), on_frame() and step() also throw it if the library reports a problem.

@@ -32,6 +32,9 @@ Doubles doubles_of(const py::handle& value, const Subject& subject, const char* 
   if (kind != 'f' && kind != 'i' && kind != 'u')
     throw InputError(subject(),
                      "an array of " + std::string(py::str(any.dtype())) + ": expected " + expected);
+  // A masked number of a NumPy masked array is not known. Its array has some number there, too.
+  if (!any.is(value) && py::isinstance<py::array>(value) && py::hasattr(value, "filled"))
+    return Doubles(value.attr("astype")("float64").attr("filled")(std::nan("")));
   return Doubles(any);
 }
 

@@ -1,6 +1,7 @@
 #include "runners/interfaces/python/long_work.h"
 
 #include <omp.h>
+#include <pthread.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -22,7 +23,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kSignalCheckPeriod{50};  // time between two checks for signals
 
+// A forked process has none of the threads that work.
 std::atomic<int> works_in_progress{0};
+[[maybe_unused]] const int kIsForgotten = ::pthread_atfork(nullptr, nullptr, [] { works_in_progress = 0; });
 
 const Kernels*& kernels_in_use() {
   static const Kernels* kernels = supported_kernels().back();
@@ -91,14 +94,22 @@ std::shared_ptr<py::error_already_set> wait(Ending& ending, const py::object& re
 
 }  // namespace
 
+UnchangedCatalog::UnchangedCatalog() {
+  ++works_in_progress;
+}
+
+UnchangedCatalog::~UnchangedCatalog() {
+  --works_in_progress;
+}
+
 void do_long_work(const py::object& report, int threads, const std::function<void(const LongWork&)>& work) {
   std::atomic<bool> stop{false};
   std::atomic<double> fraction{0};
   Ending ending;
   const LongWork given{chosen_python_kernels(), stop, [&](double done) { fraction = done; }};
   std::shared_ptr<py::error_already_set> raised;
-  ++works_in_progress;
   {
+    const UnchangedCatalog unchanged;
     const py::gil_scoped_release without_lock;
     try {
       const auto given_work = [&] { work(given); };
@@ -108,7 +119,6 @@ void do_long_work(const py::object& report, int threads, const std::function<voi
       ending.tell(std::current_exception());
     }
   }
-  --works_in_progress;
   if (raised) throw py::error_already_set(*raised);
   if (ending.failure()) std::rethrow_exception(ending.failure());
   if (!report.is_none()) report(1.0);
@@ -130,6 +140,7 @@ const Kernels& chosen_python_kernels() {
 namespace {
 std::mutex file_mutex;
 bool sweep_is_written = false;  // guarded by file_mutex
+thread_local bool has_turn = false;
 
 void require_no_sweep() {
   if (sweep_is_written)
@@ -139,16 +150,22 @@ void require_no_sweep() {
 }  // namespace
 
 FileTurn::FileTurn(For duration) : duration_(duration) {
+  if (has_turn)
+    throw InputError("a file",
+                     "this thread reads or writes another one: expected the call before or after it");
   std::unique_lock lock(file_mutex);
   require_no_sweep();
-  if (duration == For::a_sweep)
+  if (duration == For::a_sweep) {
     sweep_is_written = true;
-  else
+  } else {
     lock.release();  // locked until the destructor
+    has_turn = true;
+  }
 }
 
 FileTurn::~FileTurn() {
   if (duration_ == For::a_moment) {
+    has_turn = false;
     file_mutex.unlock();
     return;
   }

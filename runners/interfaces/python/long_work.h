@@ -24,7 +24,17 @@ struct LongWork {
 void do_long_work(const pybind11::object& report, int threads,
                   const std::function<void(const LongWork&)>& work);
 
-// Throws InputError while such work is running, because the catalog must not change then.
+// Keeps the catalog as it is while it exists: a class that is registered again would belong to some runs of a
+// sweep only. A process that is forked meanwhile may change its own catalog.
+class UnchangedCatalog {
+ public:
+  UnchangedCatalog();
+  ~UnchangedCatalog();
+  UnchangedCatalog(const UnchangedCatalog&) = delete;
+  UnchangedCatalog& operator=(const UnchangedCatalog&) = delete;
+};
+
+// Throws InputError while long work is running or the catalog is kept as it is.
 void require_no_long_work(const char* subject);
 
 // Chooses the kernels that all calls use: those of the forced x86-64 level, or of the fastest one if `forced`
@@ -33,8 +43,8 @@ void choose_python_kernels(const std::string& forced);
 const Kernels& chosen_python_kernels();
 
 // The HDF5 library is not made for several threads: one call reads or writes at a time, and none while a
-// sweep or a scorecard is written. Throws InputError instead of waiting for the end of a sweep, because the
-// caller may be a class in Python that the sweep itself runs.
+// sweep or a scorecard is written. Throws InputError instead of waiting for the end of a sweep, or of another
+// turn of the same thread, because the caller may be a class in Python that this sweep or turn calls.
 class FileTurn {
  public:
   enum class For { a_moment, a_sweep };

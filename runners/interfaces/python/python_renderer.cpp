@@ -1,6 +1,5 @@
 // A renderer written in Python.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/parameters/input_error.h"
@@ -80,13 +79,7 @@ class PythonRendererFactory final : public PythonFactory<Renderer, double, const
  public:
   PythonRendererFactory(const PythonEntry& entry, bool has_tool)
       : PythonFactory(entry), has_tool_(has_tool) {}
-  double stiffness_N_per_m() const override {
-    const double stiffness = number_of("max_stiffness_N_per_m");
-    if (!(stiffness >= 0) || std::isinf(stiffness))
-      throw InputError(type_->subject("max_stiffness_N_per_m"),
-                       "returned " + std::to_string(stiffness) + ": expected a finite number of 0 or more");
-    return stiffness;
-  }
+  double stiffness_N_per_m() const override { return number_of("max_stiffness_N_per_m"); }
   RenderedContact contact() const override {
     return {number_of("rest_distance_m"), number_of("spring_N_per_m")};
   }

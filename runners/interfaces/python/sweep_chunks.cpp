@@ -66,6 +66,7 @@ class WorkerSweep {
     std::vector<double> values;
     std::vector<std::int32_t> states;
     {
+      const UnchangedCatalog unchanged;
       const py::gil_scoped_release without_lock;
       const OneThread one_thread;
       part = sweep_->part(std::move(numbers));
@@ -97,7 +98,7 @@ class WorkerSweep {
 // chunk that no worker of this build makes.
 void store(SweepResult& result, const std::function<void(std::size_t)>& stored,
            const Array<std::uint64_t>& runs, const Array<std::int32_t>& states, const Array<double>& values,
-           const Array<std::int32_t>& notes, const Texts& errors) {
+           const Array<std::uint64_t>& notes, const Texts& errors) {
   const py::ssize_t count = runs.size();
   bool fits = states.size() == count && notes.size() == count && values.ndim() == 2 &&
               values.shape(0) == static_cast<py::ssize_t>(result.measures.size()) &&
@@ -107,8 +108,8 @@ void store(SweepResult& result, const std::function<void(std::size_t)>& stored,
     const auto state = static_cast<RunState>(states.data()[i]);
     const auto place = result.place_of(runs.data()[i]);
     fits = place && *place < result.state.size() && result.state[*place] == RunState::pending &&
-           (state == RunState::done || state == RunState::failed) && notes.data()[i] >= 0 &&
-           notes.data()[i] >> result.note_kinds.size() == 0;
+           (state == RunState::done || state == RunState::failed) &&
+           SweepResult::are_known_notes(notes.data()[i], result.note_kinds.size());
     if (fits) places.push_back(*place);
   }
   if (!fits)
@@ -148,7 +149,7 @@ struct WorkElsewhere {
              sweep.keep() != Keep::runs,
              py::cpp_function(
                  [&](const Array<std::uint64_t>& runs, const Array<std::int32_t>& states,
-                     const Array<double>& values, const Array<std::int32_t>& notes,
+                     const Array<double>& values, const Array<std::uint64_t>& notes,
                      const Texts& errors) { store(result, stored, runs, states, values, notes, errors); }),
              py::cpp_function(
                  [&](const std::vector<std::size_t>& runs, const std::string& why) { forget(runs, why); }));
@@ -187,6 +188,7 @@ py::dict sweep_in_chunks(const std::string& subject, const std::optional<std::st
   StoredSweep all;
   std::optional<StoredTally> tally;
   {
+    const UnchangedCatalog unchanged;
     const py::gil_scoped_release without_lock;
     const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
     const WorkElsewhere work{sweep, input_hashes(sweep.inputs()), do_round};

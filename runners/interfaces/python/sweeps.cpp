@@ -96,7 +96,7 @@ SweepResult result_of(const py::tuple& parts) {
   for (const auto state : parts[2].cast<std::vector<std::int32_t>>())
     result.state.push_back(static_cast<RunState>(state));
   result.replicates = parts[3].cast<int>();
-  result.notes = parts[4].cast<std::vector<std::int32_t>>();
+  result.notes = parts[4].cast<std::vector<std::uint64_t>>();
   bool fits = result.state.size() == result.run_count() &&
               (result.notes.empty() || result.notes.size() == result.run_count());
   for (const Column& measure : result.measures)
@@ -190,12 +190,13 @@ void bind_sweeps(py::module_& module) {
       "analyse",
       [](const std::string& file, const py::tuple& parts, const std::string& config, const std::string& limit,
          const std::string& along, double above, double level, const Names& mean, const Names& by,
-         const Names& difference, const std::string& between) {
-        return analyse(file, parts, config, {limit, along, above, level, mean, by, difference, between});
+         const Names& difference, const std::string& between, const std::string& direction) {
+        return analyse(file, parts, config,
+                       {limit, along, above, level, mean, by, difference, between, direction});
       },
       py::arg("file"), py::arg("parts"), py::arg("config"), py::arg("limit"), py::arg("along"),
       py::arg("above"), py::arg("level"), py::arg("mean"), py::arg("by"), py::arg("difference"),
-      py::arg("between"), "Limits, means and differences of a sweep, as tables.");
+      py::arg("between"), py::arg("direction"), "Limits, means and differences of a sweep, as tables.");
 }
 
 }  // namespace remote_touch

@@ -22,7 +22,10 @@ void BrowserDevice::run(DeviceCycle& cycle) {
 }
 
 void BrowserDevice::request(const HandMotion& motion) {
-  if (motion.stops != stops_) stopped_ = {now_.position_W, now_.orientation_W, 0};
+  if (motion.stops != stops_) {
+    stopped_ = {now_.position_W, now_.orientation_W, 0};
+    velocity_m_per_s_.setZero();
+  }
   stops_ = motion.stops;
   const HandPose &from = motion.from, &to = motion.to;
   wanted_.position_W = (stopped_.position_W + to.position_W - from.position_W)

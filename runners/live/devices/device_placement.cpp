@@ -1,10 +1,22 @@
 #include "runners/live/devices/device_placement.h"
 
+#include <cmath>
+#include <string>
+#include <utility>
+
 #include "core/geometry/rotation.h"
+#include "core/parameters/input_error.h"
 
 namespace remote_touch {
 
 double force_scale(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m) {
+  const std::pair<const char*, double> all[] = {{"stiffness of the renderer", stiffness_N_per_m},
+                                                {"device_scale", device_scale},
+                                                {"largest stiffness of the device", device_limit_N_per_m}};
+  for (const auto& [name, value] : all)
+    if (!(value >= 0 && std::isfinite(value)))
+      throw InputError(std::string(name) + " = " + std::to_string(value),
+                       "expected a finite number, 0 or more");
   const double felt = stiffness_N_per_m * device_scale;
   return device_limit_N_per_m > 0 && felt > device_limit_N_per_m ? device_limit_N_per_m / felt : 1;
 }

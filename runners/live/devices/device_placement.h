@@ -10,7 +10,8 @@ namespace remote_touch {
 
 // Returns a factor for all forces with which no spring exceeds the maximum stiffness of the device; 1 if no
 // spring exceeds it, or if the limit is 0 (unknown). The motion scale device_scale makes springs stiffer by
-// that factor.
+// that factor. Throws InputError if an argument is not finite, or negative: it must not switch the scaling
+// off.
 double force_scale(double stiffness_N_per_m, double device_scale, double device_limit_N_per_m);
 
 // Transforms device coordinates D to the world and back: p_W = device_position_m + scale R_WD p_D. Forces and

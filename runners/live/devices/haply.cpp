@@ -24,6 +24,7 @@ constexpr double kMinCheckedForce_N = 0.3, kMinFraction = 0.1, kMaxSurplus_N = 1
 constexpr DeviceFault kLate{"the Haply service answers too late"};
 constexpr DeviceFault kNoState{"the Haply service sent a message that is not a state"};
 constexpr DeviceFault kDeviceGone{"the Inverse3 is no longer in the states of the service"};
+constexpr DeviceFault kNoVelocity{"the Inverse3 sent no cursor_velocity: expected x, y and z in every state"};
 constexpr DeviceFault kHandleGone{"the handle is no longer in the states of the service"};
 constexpr DeviceFault kNoOrientation{"the handle sent an orientation that is not a unit quaternion"};
 constexpr DeviceFault kNoForce{"the commanded force is not finite"};
@@ -61,6 +62,8 @@ class ForceCheck {
 
 DeviceFault convert(const HaplyMessage& message, bool has_handle, DeviceReading& reading) {
   if (!message.device || !message.device->has_position) return kDeviceGone;
+  // The limit of the speed needs it: a velocity of zero would always pass.
+  if (!message.device->has_velocity) return kNoVelocity;
   reading = {};
   reading.position_m = from_service(message.device->position_m);
   reading.velocity_m_per_s = from_service(message.device->velocity_m_per_s);

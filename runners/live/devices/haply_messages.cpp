@@ -41,7 +41,10 @@ bool read_device_state(JsonReader& json, HaplyDeviceState& device) {
       device.has_position = true;
       return components(json, "xyz", device.position_m);
     }
-    if (key == "cursor_velocity") return components(json, "xyz", device.velocity_m_per_s);
+    if (key == "cursor_velocity") {
+      device.has_velocity = true;
+      return components(json, "xyz", device.velocity_m_per_s);
+    }
     if (key == "current_cursor_force") {
       device.has_force = true;
       return components(json, "xyz", device.force_N);

@@ -18,7 +18,7 @@ struct HaplyDeviceState {
   std::string_view id;
   std::string_view
       basis;  // axes of this connection, in the inventory only; "XYZ" if they are the service's own
-  bool has_position = false, has_force = false;
+  bool has_position = false, has_velocity = false, has_force = false;
   Vec3 position_m = Vec3::Zero(), velocity_m_per_s = Vec3::Zero();
   Vec3 force_N = Vec3::Zero();  // force that the service reports as commanded now
 };

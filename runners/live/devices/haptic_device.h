@@ -66,6 +66,9 @@ class HapticDevice {
 
   const DeviceTraits& traits() const { return traits_; }
 
+  // Called at most once, before run(): the run begins at start_ns, a time of the clock. A simulated device
+  // counts its time from there; a real one ignores it.
+  virtual void start_at([[maybe_unused]] std::int64_t start_ns) {}
   // Calls tick() at the device's rate until tick() returns false. The default version uses the clock and
   // traits().tick_rate_hz. A tick that was missed is skipped, not made later.
   virtual void run(DeviceCycle& cycle);

@@ -82,8 +82,8 @@ double SafetyGate::fraction(double now_s, const Wrench& command) noexcept {
 }
 
 Wrench SafetyGate::pass(double now_s, const DeviceReading& reading, const DeviceFault& fault,
-                        const Wrench& command, double command_time_s) noexcept {
-  const Wrench passed = limited(now_s, reading, fault, command, command_time_s);
+                        const Wrench& command, double command_time_s, double frame_age_s) noexcept {
+  const Wrench passed = limited(now_s, reading, fault, command, command_time_s, frame_age_s);
   is_limiting_ =
       state_ == GateState::engaged && (differs(passed.force_N, command.force_N, kSmallForce_N) ||
                                        differs(passed.torque_Nm, command.torque_Nm, kSmallTorque_Nm));
@@ -91,7 +91,7 @@ Wrench SafetyGate::pass(double now_s, const DeviceReading& reading, const Device
 }
 
 Wrench SafetyGate::limited(double now_s, const DeviceReading& reading, const DeviceFault& fault,
-                           const Wrench& command, double command_time_s) noexcept {
+                           const Wrench& command, double command_time_s, double frame_age_s) noexcept {
   const double gap_s = has_last_ ? now_s - last_s_ : 0;
   last_s_ = now_s, has_last_ = true;
   if (rearm_.exchange(false, std::memory_order_relaxed) && state_ == GateState::latched)
@@ -99,8 +99,9 @@ Wrench SafetyGate::limited(double now_s, const DeviceReading& reading, const Dev
   if (const DeviceFault found = trouble(reading, fault, command); found && state_ != GateState::latched)
     latch(found);
   if (state_ == GateState::latched) return {};
-  const bool is_stale =
-      gap_s > limits_.max_command_age_s || now_s - command_time_s > limits_.max_command_age_s;
+  const bool is_stale = gap_s > limits_.max_command_age_s ||
+                        now_s - command_time_s > limits_.max_command_age_s ||
+                        (limits_.max_frame_age_s > 0 && frame_age_s > limits_.max_frame_age_s);
   if (is_stale) state_ = GateState::waiting;
   const double part = is_stale ? 0 : fraction(now_s, command);
   // The last written force is old after a gap, so a step is never larger than that of a tick of 2 ms.

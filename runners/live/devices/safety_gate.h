@@ -17,8 +17,9 @@ enum class GateState { waiting, ramping, engaged, latched };
 // Independent rules:
 // - A fault of the device, a reading or a command that is not finite, or a hand that is faster than the
 //   limits sets the force to zero until rearm().
-// - If no tick came for max_command_age_s, or the command is older than that, the force falls to zero at the
-//   slew rate. It must then start again as described next.
+// - The force falls to zero at the slew rate if no tick came for max_command_age_s, if the command is older
+//   than that, or if its newest frame is older than max_frame_age_s. It must then start again as described
+//   next.
 // - The force starts only while the command is below engage_force_N, and its torque is below the same
 //   fraction of its limit. It then rises linearly over ramp_s, so that it does not jump when the hand is
 //   inside something.
@@ -30,9 +31,10 @@ class SafetyGate {
   explicit SafetyGate(const SafetyLimits& limits) : limits_(limits) {}
 
   // Returns the wrench that may be written at now_s, for a command that was made at command_time_s. now_s
-  // must never decrease. fault: the fault of the reading, if any.
+  // must never decrease. fault: the fault of the reading, if any. frame_age_s: time since the newest frame
+  // was taken; 0 if there is none, or if frames are not expected.
   Wrench pass(double now_s, const DeviceReading& reading, const DeviceFault& fault, const Wrench& command,
-              double command_time_s) noexcept;
+              double command_time_s, double frame_age_s = 0) noexcept;
   // Sets the force to zero until rearm(), as after a fault of the device.
   void latch(const DeviceFault& reason) noexcept;
   // Starts again without force after the device was released from outside. A latch remains.
@@ -51,7 +53,7 @@ class SafetyGate {
                       const Wrench& command) const noexcept;
   double fraction(double now_s, const Wrench& command) noexcept;
   Wrench limited(double now_s, const DeviceReading& reading, const DeviceFault& fault, const Wrench& command,
-                 double command_time_s) noexcept;
+                 double command_time_s, double frame_age_s) noexcept;
 
   const SafetyLimits limits_;
   GateState state_ = GateState::waiting;

@@ -14,13 +14,13 @@ SimulatedDevice::SimulatedDevice(std::unique_ptr<const Trajectory> script, const
       placement_(placement) {}
 
 void SimulatedDevice::run(DeviceCycle& cycle) {
-  start_s_ = clock().now_s();
+  if (!start_s_) start_s_ = clock().now_s();
   HapticDevice::run(cycle);
   if (failure_) std::rethrow_exception(failure_);
 }
 
 void SimulatedDevice::move_to_now() {
-  const auto now = static_cast<long long>((clock().now_s() - start_s_) * traits_.tick_rate_hz);
+  const auto now = static_cast<long long>((clock().now_s() - start_s_.value_or(0)) * traits_.tick_rate_hz);
   const long long first = ticks_;
   ticks_ = std::max(ticks_ + 1, now);
   for (long long tick = std::max(first + 1, ticks_ - kMaxTicksAtOnce); tick <= ticks_; ++tick) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <optional>
 
 #include "runners/experiment/hand/simulated_hand.h"
 #include "runners/experiment/hand/trajectory.h"
@@ -14,13 +15,14 @@
 namespace remote_touch {
 
 // Follows its clock: the hand also moves during ticks that were missed, in steps of its own rate. Its time
-// starts with run().
+// starts at start_at(), or else with run().
 class SimulatedDevice final : public HapticDevice {
  public:
   // placement: that of the loop. It is used here in the inverse direction.
   SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
                   const DevicePlacement& placement, double rate_hz, Clock& clock);
 
+  void start_at(std::int64_t start_ns) override { start_s_ = 1e-9 * static_cast<double>(start_ns); }
   // Rethrows the exception of the script after the loop has ended, such as an InputError for an unusable
   // frame.
   void run(DeviceCycle& cycle) override;
@@ -43,7 +45,7 @@ class SimulatedDevice final : public HapticDevice {
   const std::unique_ptr<const Trajectory> script_;
   SimulatedHand hand_;
   const DevicePlacement placement_;
-  double start_s_ = 0;
+  std::optional<double> start_s_;  // time of the clock at the start
   long long ticks_ = 0;
   DeviceState state_;
   DeviceReading last_;

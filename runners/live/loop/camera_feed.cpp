@@ -91,7 +91,7 @@ bool CameraFeed::is_newer(const SensorFrame& sensed) {
   if (!newer) return false;
   if (counts_.received > 1) {
     counts_.skipped += sensed.number - last_number_ - 1;
-    counts_.max_pause_s = std::max(counts_.max_pause_s, sensed.captured_s - last_captured_s_);
+    counts_.max_pause_s = std::max(counts_.max_pause_s, sensed.captured_s - last_captured_s_);  // no NaN
   }
   last_number_ = sensed.number, last_captured_s_ = sensed.captured_s;
   return true;

@@ -80,10 +80,10 @@ std::string histogram(const std::vector<double>& late_s) {
   constexpr double kFirst_us = 4;
   std::array<long long, kRows> counts{};
   for (const double late : late_s) {
-    const double doubled = std::log2(std::max(1e6 * late, 1e-3) / kFirst_us);
+    const double doubled = std::log2(std::max(1e6 * late, 1e-3) / kFirst_us);  // no NaN
     ++counts[static_cast<std::size_t>(std::clamp(static_cast<int>(std::ceil(doubled)), 0, kRows - 1))];
   }
-  const long long max = *std::max_element(counts.begin(), counts.end());
+  const long long max = *std::max_element(counts.begin(), counts.end());  // no NaN
   std::string text;
   for (int i = 0; i < kRows; ++i) {
     const long long count = counts[static_cast<std::size_t>(i)];

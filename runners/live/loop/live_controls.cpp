@@ -1,8 +1,8 @@
 #include "runners/live/loop/live_controls.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 
 #include "core/parameters/input_error.h"
 
@@ -59,8 +59,8 @@ Experiment LiveControls::checked(const std::vector<double>& values) const {
   std::vector<std::string> settings;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (values[i] == parameters_[i].value) continue;
-    char number[40];
-    std::snprintf(number, sizeof number, "%.17g", values[i]);
+    char number[40] = {};
+    std::to_chars(number, number + sizeof number - 1, values[i]);  // the shortest text of this number
     const bool is_off_or_on = parameters_[i].is_switch && (values[i] == 0 || values[i] == 1);
     settings.push_back(parameters_[i].name + "=" +
                        (is_off_or_on ? (values[i] == 1 ? "true" : "false") : number));

@@ -1,9 +1,9 @@
 #include "runners/live/loop/live_log.h"
 
-#include <algorithm>
 #include <limits>
 #include <optional>
 
+#include "analysis/statistics/extremes.h"
 #include "runners/experiment/hand/device_motors.h"
 
 namespace remote_touch {
@@ -47,8 +47,8 @@ void LiveLog::append(const LiveTick& tick, double haptic_rate_hz) {
   limited_ticks += tick.is_limited ? 1 : 0;
   contact_ticks +=
       tick.out.contact_count > 0 || tick.out.force_N.norm() > 0 || tick.command.force_N.norm() > 0 ? 1 : 0;
-  stale_ticks += static_cast<double>(tick.number - taken_at_) > kStaleFrame_s * haptic_rate_hz ? 1 : 0;
-  max_force_N = std::max(max_force_N, tick.written.force_N.norm());
+  stale_ticks += static_cast<double>(tick.number - taken_at_) > stale_s * haptic_rate_hz ? 1 : 0;
+  max_force_N = max_or_nan(max_force_N, tick.written.force_N.norm());
 }
 
 }  // namespace remote_touch

@@ -1,6 +1,7 @@
 // The record of a live run: the trace, and the times and counts of its ticks.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -32,11 +33,18 @@ struct LiveLog {
   std::int64_t zero_force_ticks = 0;  // ticks in which the gate was waiting or latched
   std::int64_t limited_ticks = 0;     // ticks in which the gate was engaged and limited force or torque
   std::int64_t contact_ticks = 0;     // ticks that touched a point, or with a force of the renderer or slave
-  std::int64_t stale_ticks = 0;       // ticks before which no new frame came for kStaleFrame_s
+  std::int64_t stale_ticks = 0;       // ticks before which no new frame came for stale_s
   std::int64_t reversed_frames = 0;   // frames taken although older than the one before; should be 0
   double max_force_N = 0;             // greatest force written to the device
 
-  static constexpr double kStaleFrame_s = 0.2;
+  static constexpr double kStaleFrame_s = 0.2, kStaleFrames = 2.5;
+  // Returns the time without a new frame after which the cloud is stale: 0.2 s, or 2.5 periods of a camera
+  // slower than 12.5 Hz.
+  static double stale_after_s(double frame_rate_hz) {
+    return frame_rate_hz > 0 ? std::max(kStaleFrame_s, kStaleFrames / frame_rate_hz)  // no NaN: above 0
+                             : kStaleFrame_s;
+  }
+  double stale_s = kStaleFrame_s;
 
   void append(const LiveTick& tick, double haptic_rate_hz);
   std::int64_t end_tick() const { return last_number_ + 1; }  // the number of the last tick plus 1

@@ -9,11 +9,13 @@
 namespace remote_touch {
 
 LiveLogger::LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionRecorder> recorder,
-                       std::function<void(const LiveTick&)> on_tick)
+                       std::function<void(const LiveTick&)> on_tick, double stale_after_s)
     : rows_(rows),
       haptic_rate_hz_(haptic_rate_hz),
       recorder_(std::move(recorder)),
-      on_tick_(std::move(on_tick)) {}
+      on_tick_(std::move(on_tick)) {
+  log_.stale_s = stale_after_s;
+}
 
 bool LiveLogger::record(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
   if (!recorder_) return true;

@@ -18,8 +18,10 @@ namespace remote_touch {
 class LiveLogger {
  public:
   // recorder: null if nothing is recorded. on_tick: receives every row; must not throw; may be empty.
+  // stale_after_s: see LiveLog.
   LiveLogger(Ring<LiveTick>& rows, double haptic_rate_hz, std::unique_ptr<SessionRecorder> recorder,
-             std::function<void(const LiveTick&)> on_tick = {});
+             std::function<void(const LiveTick&)> on_tick = {},
+             double stale_after_s = LiveLog::kStaleFrame_s);
 
   // Processes all rows and frames that have arrived, and calls the function given to ask(). Call it about
   // every kPeriod_s.

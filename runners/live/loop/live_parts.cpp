@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "runners/experiment/simulation/slave_notes.h"
@@ -65,8 +66,9 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
     contact_.add(tick, static_cast<double>(tick.number) / rate_hz_);
     if (options_.on_tick) options_.on_tick(tick);
   };
-  logger_ = std::make_unique<LiveLogger>(rows_, rate_hz_,
-                                         recorder(experiment, view, registration * view.X_WC), on_tick);
+  logger_ =
+      std::make_unique<LiveLogger>(rows_, rate_hz_, recorder(experiment, view, registration * view.X_WC),
+                                   on_tick, LiveLog::stale_after_s(view.frame_rate_hz));
   const auto sink = [this](const SensorFrame& sensed, const Frame& frame, std::uint64_t off) {
     return logger_->record(sensed, frame.captured_s, off);
   };
@@ -75,6 +77,8 @@ LiveParts::LiveParts(const Experiment& experiment, const LiveOptions& options, C
     if (options_.on_frame) options_.on_frame(frame);
   };
   const std::int64_t start_ns = clock_.now_ns();
+  source->start_at(start_ns);
+  device_->start_at(start_ns);
   ends_ns_ = end_ns(start_ns, options.duration_s);
   camera_ = std::make_unique<CameraFeed>(std::move(source), std::move(processing), *renderer_, registration,
                                          clock_, start_ns, frames_, sink, on_frame,
@@ -149,7 +153,8 @@ LiveResult LiveParts::finish() {
 
 std::string LiveParts::why_lost() const {
   if (const std::string why = logger_->failure(); !why.empty()) return why;
-  if (servo_->trouble() == Servo::kNoMemory) return Servo::kNoMemory;
+  const char* const trouble = servo_->trouble();  // null: none
+  if (trouble && std::string_view(trouble) == Servo::kNoMemory) return Servo::kNoMemory;
   return camera_->ended() == CameraFeed::kNoMemory ? "out of memory for frames" : std::string();
 }
 
@@ -235,8 +240,12 @@ std::string LiveParts::camera_trouble() const {
   const char* const held =
       camera_->has_sent() ? "the last cloud is still rendered" : "there is nothing to touch";
   if (const std::string why = camera_->ended(); !why.empty()) return "no more frames (" + why + "): " + held;
-  if (clock_.now_s() - camera_->newest_s() <= LiveLog::kStaleFrame_s) return {};
-  return std::string(camera_->has_sent() ? "no frame for 0.2 s: " : "no frame has arrived yet: ") + held;
+  const double stale_after_s = LiveLog::stale_after_s(camera_->view().frame_rate_hz);
+  if (clock_.now_s() - camera_->newest_s() <= stale_after_s) return {};
+  if (!camera_->has_sent()) return std::string("no frame has arrived yet: ") + held;
+  char line[64];
+  std::snprintf(line, sizeof line, "no frame for %.2g s: ", stale_after_s);
+  return std::string(line) + held;
 }
 
 std::string LiveParts::force_trouble() const {

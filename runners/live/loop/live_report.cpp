@@ -59,7 +59,7 @@ Table longer_than(const LiveReport::Times& times) {
     const auto at = static_cast<std::size_t>(std::lround(count * (1 - fraction)));
     if (at >= times.sorted.size() || at == last) continue;
     last = at;
-    log_us.push_back(std::log10(std::max(1e6 * times.sorted[at], 1e-2)));
+    log_us.push_back(std::log10(std::max(1e6 * times.sorted[at], 1e-2)));  // no NaN
     log_fraction.push_back(std::log10((count - static_cast<double>(at)) / count));
   }
   Table table{times.key, times.name};
@@ -122,7 +122,7 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
                    {"ticks that ended before the tool came to rest", number(log.exhausted_ticks)},
                    {"ticks without force: gate waiting or latched", number(log.zero_force_ticks)},
                    {"ticks with a force or torque limited for safety", number(log.limited_ticks)},
-                   {"ticks on a cloud older than 0.2 s", number(log.stale_ticks)},
+                   {"ticks on a cloud older than 0.2 s and 2.5 frames", number(log.stale_ticks)},
                    {"stalls, device released", number(counts.stalls)},
                    {"rows lost", number(counts.rows_lost)},
                    {"frames received", number(camera.received)},

@@ -1,12 +1,12 @@
 #include "runners/live/loop/samples.h"
 
-#include <algorithm>
+#include "analysis/statistics/extremes.h"
 
 namespace remote_touch {
 
 void Samples::push_back(double value) {
-  least_ = count_ == 0 ? value : std::min(least_, value);
-  greatest_ = count_ == 0 ? value : std::max(greatest_, value);
+  least_ = count_ == 0 ? value : min_or_nan(least_, value);
+  greatest_ = count_ == 0 ? value : max_or_nan(greatest_, value);
   if (count_++ % stride_ != 0) return;
   if (kept_.size() == kMax) {
     for (std::size_t i = 0; i < kMax / 2; ++i) kept_[i] = kept_[2 * i];
@@ -22,14 +22,14 @@ void GreatestOfPieces::push_back(double time_s, double value) {
     begin_s_.push_back(time_s), greatest_.push_back(value);
     in_last_ = 0;
   }
-  greatest_.back() = std::max(greatest_.back(), value);
+  greatest_.back() = max_or_nan(greatest_.back(), value);
   ++in_last_;
 }
 
 void GreatestOfPieces::join_pairs() {
   for (std::size_t i = 0; i < kPieces; ++i) {
     begin_s_[i] = begin_s_[2 * i];
-    greatest_[i] = std::max(greatest_[2 * i], greatest_[2 * i + 1]);
+    greatest_[i] = max_or_nan(greatest_[2 * i], greatest_[2 * i + 1]);
   }
   begin_s_.resize(kPieces), greatest_.resize(kPieces);
   length_ *= 2;

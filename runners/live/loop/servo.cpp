@@ -33,14 +33,14 @@ Servo::Servo(const ServoLinks& links, const DevicePlacement& placement, const Sa
 std::int64_t Servo::next_number(std::int64_t now_ns) {
   const auto since_ns = static_cast<double>(now_ns - start_ns_);
   const auto by_clock = static_cast<std::int64_t>(std::ceil(since_ns * rate_hz_ / 1e9));
-  return last_number_ = std::max(last_number_ + 1, by_clock);
+  return last_number_ = std::max<std::int64_t>(last_number_ + 1, by_clock);
 }
 
 // A frame belongs to the first tick at or after its time, as in a simulated run.
 void Servo::move_on_to(double time_s, LiveTick& row) {
   auto number = static_cast<std::int64_t>(std::ceil(time_s * rate_hz_));
   while (static_cast<double>(number) / rate_hz_ < time_s) ++number;  // the quotient is rounded
-  row.number = last_number_ = std::max(row.number, number);
+  row.number = last_number_ = std::max(row.number, number);          // no NaN: integers
 }
 
 // Changes are made before a frame of the same tick, as in a simulated run. Changes that cannot be recorded
@@ -69,6 +69,7 @@ void Servo::take_frame(LiveTick& row) {
   taken.frame.arrives_s = static_cast<double>(row.number) / rate_hz_;
   links_.renderer.on_frame(taken.frame);
   row.taken = taken.frame.index;
+  taken_s_ = links_.clock.now_s();
   ++frames_taken_;
   row.hash = taken.hash;
 }
@@ -117,6 +118,15 @@ bool Servo::end_for(const DeviceFault& trouble) noexcept {
   return false;
 }
 
+// A device that was released stays where it was read last, because the next beat reports the release.
+DeviceFault Servo::read(DeviceReading& reading) noexcept {
+  const DeviceFault fault = links_.device.read(reading);
+  if (!fault) last_reading_ = reading;
+  if (!is_released(fault)) return fault;
+  reading = last_reading_.value_or(DeviceReading{});
+  return {};
+}
+
 void Servo::one_tick() {
   const std::int64_t begin_ns = links_.clock.now_ns();
   if (!heartbeat_.beat(begin_ns)) {
@@ -130,11 +140,10 @@ void Servo::one_tick() {
   row_.number = next_number(begin_ns);
 
   DeviceReading reading;
-  DeviceFault fault = links_.device.read(reading);
-  if (is_released(fault)) reading = last_reading_, fault = {};  // the next beat reports it
-  last_reading_ = reading;
-  if (fault) reading.position_m.setConstant(kNoNumber);  // the renderer stops and sets its force to zero
+  const DeviceFault fault = read(reading);
   row_.device = placement_.in_world(reading);
+  // The renderer stops and sets its force to zero.
+  if (fault || !last_reading_) row_.device.position_W.setConstant(kNoNumber);
 
   const double read_s = links_.clock.now_s();
   take_frame(row_);
@@ -149,8 +158,10 @@ void Servo::one_tick() {
   const double command_time_s = links_.clock.now_s();
   row_.step_s = static_cast<float>(command_time_s - read_s);
 
+  // A dead-band of frames, which needs the places of the slave, sends none while nothing moves.
+  const double frame_age_s = links_.places ? 0 : command_time_s - taken_s_.value_or(command_time_s);
   row_.written = gate_.pass(command_time_s, reading, fault, placement_.to_device(row_.command),
-                            1e-9 * static_cast<double>(begin_ns));
+                            1e-9 * static_cast<double>(begin_ns), frame_age_s);
   const DeviceFault refused = links_.device.write(row_.written);
   if (refused) {
     row_.written = {};

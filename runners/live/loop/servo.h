@@ -98,6 +98,7 @@ class Servo final : public DeviceCycle {
 
  private:
   void one_tick();
+  DeviceFault read(DeviceReading& reading) noexcept;
   bool end_for(const DeviceFault& trouble) noexcept;  // returns false
   const char* text_of(const char* reason) noexcept;
   bool is_over() const noexcept;
@@ -117,8 +118,9 @@ class Servo final : public DeviceCycle {
   Heartbeat heartbeat_;
   std::int64_t last_number_ = -1;
   std::int32_t frames_taken_ = 0;
+  std::optional<double> taken_s_;  // time of the clock at which the newest frame was taken
   std::int64_t last_tick_ns_ = 0;
-  DeviceReading last_reading_;
+  std::optional<DeviceReading> last_reading_;  // the newest that succeeded
   LiveTick row_;
   std::atomic<std::int64_t> rows_lost_ = 0;
   std::array<char, 512> exception_text_{};  // text of the exception that ended the loop; written once

@@ -1,6 +1,7 @@
 // The interface of every depth camera.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "runners/experiment/sessions/sensor_frame.h"
@@ -17,6 +18,9 @@ class DepthSource {
   virtual ~DepthSource() = default;
 
   virtual const SensorView& view() const = 0;
+  // Called at most once, before the first next(): the run begins at start_ns, a time of the clock. A
+  // simulated camera counts its time from there; a real one ignores it.
+  virtual void start_at([[maybe_unused]] std::int64_t start_ns) {}
   // Waits for the next frame, timeout_s at most. Reuses the memory of the given frame. Throws InputError,
   // which names the frame, if a frame cannot be used: the run then ends. If the camera was lost, it returns
   // `failed` instead: the last frame remains in use.

@@ -9,7 +9,8 @@
 
 namespace remote_touch {
 
-// Delivers the frames of the scenario at its frame rate; time 0 is the first next(). If several frames are
+// Delivers the frames of the scenario at its frame rate; time 0 is start_at(), or else
+// the first next(). If several frames are
 // due, only the newest is delivered. Depths are rounded, as a sensor does, see FrameEncoder. The last frame
 // is repeated after the end of the scenario, so the camera never ends.
 class ScenarioCamera final : public DepthSource {
@@ -18,6 +19,7 @@ class ScenarioCamera final : public DepthSource {
                  const FrameEncoder::Settings& settings = {});
 
   const SensorView& view() const override { return encoder_.view(); }
+  void start_at(std::int64_t start_ns) override { start_s_ = 1e-9 * static_cast<double>(start_ns); }
   // Throws InputError, which names the frame, if a frame cannot be read or does not fit the view.
   SensorState next(SensorFrame& frame, double timeout_s) override;
 

@@ -42,7 +42,7 @@ Column over_runs(const Column& column, std::size_t runs, PlaceOf place_of) {
 // Returns the kinds of notes on each run, separated by "; ".
 std::vector<std::string> notes_of(const SweepResult& result) {
   std::vector<std::string> texts;
-  for (const std::int32_t bits : result.notes) {
+  for (const std::uint64_t bits : result.notes) {
     std::string& text = texts.emplace_back();
     for (std::size_t kind = 0; kind < result.note_kinds.size(); ++kind)
       if ((bits >> kind & 1) != 0) text += (text.empty() ? "" : "; ") + result.note_kinds[kind];

@@ -1,6 +1,7 @@
 #include "runners/presentation/view/shown_run.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -24,7 +25,9 @@ namespace remote_touch {
 
 namespace {
 
-constexpr double kRoom_m = 0.03;
+constexpr double kRoom_m = 0.03, kStatedError_m = 5e-4;
+constexpr const char* kSheetIsOff =
+    "The sheet of the true surface is drawn from heights at some places and times. Between them it is off by at least ";
 constexpr const char* kOtherFrames =
     "These are not the frames of the run: from its configuration this program makes other frames than the program that ran it.";
 constexpr const char* kOtherRadii =
@@ -219,6 +222,12 @@ struct ShownRun::State {
     for (const ShownMesh& mesh : *meshes) run["true_meshes"].push_back(json_of(mesh, numbers));
     const TrueHeights heights = true_heights(*scenario, shown_box_W, path.time_s);
     if (heights.empty()) return;
+    if (heights.error_m > kStatedError_m && note.find(kSheetIsOff) == std::string::npos) {
+      char size[32];
+      std::snprintf(size, sizeof size, "%.2g mm", 1e3 * heights.error_m);
+      add_note(kSheetIsOff + std::string(size));
+      run["note"] = note;
+    }
     run["truth"] = {{"columns", TrueHeights::kColumns},
                     {"stays", heights.stays},
                     {"low_m", json_of(shown_box_W.min())},
@@ -275,6 +284,11 @@ std::size_t ShownRun::frame_count() const {
 }
 
 void ShownRun::mark_divergence_from(const ShownRun& other) {
+  const auto rate = [](const ShownRun& run) { return run.state_->experiment.settings().haptic_rate_hz; };
+  if (rate(*this) != rate(other))
+    throw InputError(other.source().name, "has " + Json(rate(other)).dump() + " ticks per second, but " +
+                                              source().name + " has " + Json(rate(*this)).dump() +
+                                              ": expected two runs with the same haptic_rate_hz");
   const TraceComparison comparison =
       compare_traces(*state_->source.columns, *other.state_->source.columns, {},
                      configuration_differences(stored_configuration(state_->of("config")),

@@ -39,7 +39,8 @@ class ShownRun {
   const BoundingBox& box_W() const;
   void set_box(const BoundingBox& box_W);
 
-  // Adds the first tick with any difference from another run to the events.
+  // Adds the first tick with any difference from another run to the events. Throws InputError if the runs
+  // have different tick rates, because the page pairs their ticks.
   void mark_divergence_from(const ShownRun& other);
 
   // The first call makes the frames of the run again; later calls leave out points. wanted_others: see

@@ -12,7 +12,7 @@ class FailedCells {
   FailedCells(const SweepResult& result, const std::vector<double>& measure, double threshold)
       : result_(result), measure_(measure), threshold_(threshold) {}
 
-  bool has_failed_run(std::size_t cell) const { return tally_of(cell).events > 0; }
+  bool has_failed_run(std::size_t cell) const { return counts_of(cell).events > 0; }
   bool at_limit(std::size_t cell) const {
     if (!mostly_failed(cell)) return false;
     for (std::size_t axis = 0; axis < result_.axes.size(); ++axis)
@@ -27,10 +27,10 @@ class FailedCells {
   }
 
  private:
-  Tally tally_of(std::size_t cell) const { return tally(result_, measure_, cell, threshold_); }
+  EventCounts counts_of(std::size_t cell) const { return event_counts(result_, measure_, cell, threshold_); }
   bool mostly_failed(std::size_t cell) const {
-    const Tally t = tally_of(cell);
-    return 2 * t.events > t.runs;
+    const EventCounts counts = counts_of(cell);
+    return counts.events > counts.without + counts.unknown;
   }
   bool passes_next_to(std::size_t cell, std::size_t axis, int way) const {
     std::vector<std::size_t> indices = result_.axis_indices(cell);
@@ -38,7 +38,7 @@ class FailedCells {
     while (way < 0 ? indices[axis] > 0 : indices[axis] < last) {
       indices[axis] += static_cast<std::size_t>(way);
       const std::size_t next = result_.cell_at(indices);
-      if (tally_of(next).runs > 0) return !mostly_failed(next);
+      if (counts_of(next).runs() > 0) return !mostly_failed(next);
     }
     return false;
   }

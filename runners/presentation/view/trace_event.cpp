@@ -22,11 +22,16 @@ std::vector<T> values_or_none(const ColumnSource& trace, const std::string& name
 }
 
 void find_pop_throughs(const ColumnSource& trace, double held_depth_m, std::vector<TraceEvent>& events) {
-  const auto distance_m = values_or_none<double>(trace, "signed_distance");
+  const bool is_measured = trace.has("measured_distance");  // see judged_distance_m()
+  const auto distance_m =
+      values_or_none<double>(trace, is_measured ? "measured_distance" : "signed_distance");
+  const auto frame = values_or_none<std::int32_t>(trace, "frame_index");
   SurfaceSide side(held_depth_m);
   for (std::size_t i = 0; i < distance_m.size(); ++i)
-    if (side.add(distance_m[i]))
-      events.push_back({i, "pop-through", "The proxy's centre passes behind the true surface."});
+    if ((i >= frame.size() || frame[i] >= 0) && side.add(distance_m[i]))
+      events.push_back({i, "pop-through",
+                        is_measured ? "The proxy's centre passes behind the measured surface."
+                                    : "The proxy's centre passes behind the true surface."});
 }
 
 void find_first_contact(const ColumnSource& trace, std::vector<TraceEvent>& events) {

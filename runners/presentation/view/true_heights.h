@@ -17,12 +17,16 @@ struct TrueHeights {
   bool stays = false;
   std::vector<double> time_s;   // one, where the surface does not move
   std::vector<float> height_m;  // y; x runs fastest, then z, then time; NaN: not known
+  // The largest difference between the drawn sheet and the surface that was found: half-way between the times
+  // (if the surface moves evenly between them), and half-way between the nodes at three of the times. m.
+  // It is no bound: elsewhere the sheet may be off by more.
+  double error_m = 0;
   bool empty() const { return height_m.empty(); }
 };
 
 // time_s: the times of the ticks, at least one. Returns an empty result if the height is known nowhere. A
-// surface that moves evenly has at most 200 times. One that stays has all times at which it changes, but at
-// most 2000.
+// surface that moves evenly has at most 200 times, and up to 600 if the sheet would be off by more than 0.2
+// mm half-way between them. One that stays has all times at which it changes, but at most 2000.
 TrueHeights true_heights(const Scenario& scenario, const BoundingBox& box_W, std::span<const double> time_s);
 
 }  // namespace remote_touch

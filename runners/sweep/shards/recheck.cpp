@@ -123,7 +123,7 @@ Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOption
         values.push_back(std::get<std::vector<double>>(measure.values)[place]);
       const std::uint64_t run = made.run_at(place);
       if (made.state[place] == RunState::done)
-        now.add_done(layout, run, values, static_cast<std::uint32_t>(made.notes[place]));
+        now.add_done(layout, run, values, made.notes[place]);
       else
         now.add_failed(run, made.error[place]);
     });

@@ -7,9 +7,11 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/replacement_rule.h"
 #include "analysis/sweeps/run_spool.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/shards/seen_shards.h"
 #include "runners/sweep/stored_sweep.h"
@@ -87,13 +89,19 @@ void add_runs(const std::string& file, const Hdf5Reader& hdf5, const MergeReques
   spool.add(file, part.held_count(), values_in(part));
 }
 
-// Calls `each` with the runs of the spool, in blocks.
+std::vector<RunState> states_of(const std::vector<std::int32_t>& numbers) {
+  std::vector<RunState> states;
+  for (const std::int32_t number : numbers) states.push_back(static_cast<RunState>(number));
+  return states;
+}
+
+// Calls `each` with the runs of the spool, in blocks; with an empty block if there are none.
 void for_each_block(RunSpool& spool, const EachBlock& each) {
   const SweepResult& outline = spool.outline();
   SweepResult block;
   block.axes = outline.axes, block.replicates = outline.replicates;
   block.measures = outline.measures, block.note_kinds = outline.note_kinds;
-  for (std::size_t first = 0; first < outline.held_count(); first += RunSpool::kWindow) {
+  for (std::size_t first = 0; first == 0 || first < outline.held_count(); first += RunSpool::kWindow) {
     const std::size_t count = std::min(RunSpool::kWindow, outline.held_count() - first);
     const auto numbers = [&](const char* array) {
       return std::get<std::vector<std::int32_t>>(spool.values(array, first, count));
@@ -101,57 +109,73 @@ void for_each_block(RunSpool& spool, const EachBlock& each) {
     block.part.emplace(count);
     for (std::size_t i = 0; i < count; ++i) (*block.part)[i] = outline.run_at(first + i);
     for (Column& measure : block.measures) measure.values = spool.values(measure.name, first, count);
-    block.state.clear();
-    const std::vector<std::int32_t> states = numbers("state");
-    for (const std::int32_t state : states) block.state.push_back(static_cast<RunState>(state));
+    block.state = states_of(numbers("state"));
     block.error = std::get<std::vector<std::string>>(spool.values("error", first, count));
-    if (!block.note_kinds.empty()) block.notes = numbers("notes");
+    if (!block.note_kinds.empty())
+      block.notes = std::get<std::vector<std::uint64_t>>(spool.values("notes", first, count));
     if (spool.is_refined()) block.round = numbers("round");
     each(block);
   }
 }
 
-// Returns the states of the sweep in the file; nothing if the file is absent or empty, or if --force lets
-// another file be replaced. The other arrays of a finished sweep may be larger than the memory. Throws
-// InputError for another file.
-std::optional<SweepResult> states_in(const std::string& file, bool force) {
-  std::error_code unreachable;
-  if (!std::filesystem::is_regular_file(file, unreachable) ||
-      std::filesystem::file_size(file, unreachable) == 0)
-    return std::nullopt;
-  try {
-    const Hdf5Reader hdf5(file);
-    if (hdf5.has("/sweep/checksum")) return read_sweep(hdf5).result;
-    SweepResult there = read_sweep_outline(hdf5).result;
-    if (hdf5.has("/sweep/run")) there.part = hdf5.values<std::uint64_t>("/sweep/run");
-    const Column states = hdf5.column("/sweep/state");
-    for (const std::int32_t state : std::get<std::vector<std::int32_t>>(states.values))
-      there.state.push_back(static_cast<RunState>(state));
-    return there;
-  } catch (const InputError&) {
-    if (!force) throw;
-    return std::nullopt;
-  }
+// Adds the runs of `result` that are done; each place has one state.
+void add_done(const SweepResult& result, const std::vector<RunState>& states, std::size_t first_place,
+              RunRanges& done) {
+  for (std::size_t i = 0; i < states.size(); ++i)
+    if (states[i] == RunState::done) {
+      const std::uint64_t run = result.run_at(first_place + i);
+      done.add({run, run + 1});
+    }
 }
 
-// Throws InputError if the file holds runs that the shards do not, because its sweep was refined or
-// continued. Such a file is not replaced, not even with --force.
-void require_nothing_more(const MergeRequest& request, RunSpool& spool) {
-  const std::optional<SweepResult> there = states_in(request.output, request.force);
-  if (!there) return;
-  const SweepResult& outline = spool.outline();
-  for (std::size_t at = 0; at < there->state.size(); ++at) {
-    if (there->state[at] != RunState::done) continue;
-    const auto place = outline.place_of(there->run_at(at));
-    const bool is_done = place && *place < outline.held_count() &&
-                         std::get<std::vector<std::int32_t>>(spool.values("state", *place, 1)).front() ==
-                             static_cast<std::int32_t>(RunState::done);
-    if (!is_done)
-      throw InputError(request.output, "holds runs that the shards do not: expected another file");
+// Returns the runs that a sweep or a tally holds. The arrays of a finished sweep may be larger than the
+// memory, so only their states are read.
+RunRanges runs_in(const std::string& file) {
+  const Hdf5Reader hdf5(file);
+  if (is_tally(hdf5)) return read_tally(hdf5).tally.held;
+  SweepResult there;
+  if (hdf5.has("/sweep/checksum")) {
+    there = read_sweep(hdf5).result;
+  } else {
+    there = read_sweep_outline(hdf5).result;
+    if (hdf5.has("/sweep/run")) there.part = hdf5.values<std::uint64_t>("/sweep/run");
+    there.state = states_of(std::get<std::vector<std::int32_t>>(hdf5.column("/sweep/state").values));
   }
+  RunRanges done;
+  add_done(there, there.state, 0, done);
+  return done;
+}
+
+RunRanges runs_in(RunSpool& spool) {
+  const SweepResult& outline = spool.outline();
+  RunRanges done;
+  for (std::size_t first = 0; first < outline.held_count(); first += RunSpool::kWindow) {
+    const std::size_t count = std::min(RunSpool::kWindow, outline.held_count() - first);
+    add_done(outline, states_of(std::get<std::vector<std::int32_t>>(spool.values("state", first, count))),
+             first, done);
+  }
+  return done;
 }
 
 }  // namespace
+
+void require_nothing_more(const MergeRequest& request, const std::function<RunRanges()>& merged) {
+  std::error_code unreachable;
+  if (!std::filesystem::is_regular_file(request.output, unreachable) ||
+      std::filesystem::file_size(request.output, unreachable) == 0)
+    return;
+  RunRanges there;
+  try {
+    there = runs_in(request.output);
+  } catch (const InputError&) {
+    if (!request.force) throw;
+  }
+  if (there.ranges().empty()) return;
+  const RunRanges held = merged();
+  for (const RunRange& range : there.ranges())
+    if (held.count_in(range) < range.end - range.first)
+      throw KeptFile(request.output, "holds runs that the shards do not: expected another file");
+}
 
 std::string merge_shards(const MergeRequest& request, const EachBlock& each_block) {
   require_no_device(request.output);
@@ -179,7 +203,7 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
   TextAttributes attributes = first->outline.attributes;
   if (!seen.are_complete()) attributes.emplace_back("shard", seen.all().text());
   spool->complete(seen.are_complete());
-  require_nothing_more(request, *spool);
+  require_nothing_more(request, [&] { return runs_in(*spool); });
   for_each_block(*spool, each_block);
   const auto values = [&](const std::string& array, std::size_t at, std::size_t count) {
     return spool->values(array, at, count);

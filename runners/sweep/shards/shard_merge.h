@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/tally/run_ranges.h"
 #include "analysis/trace/column.h"
 #include "core/parameters/input_error.h"
 
@@ -36,7 +37,13 @@ std::string or_unchanged(const Write& write) {
   }
 }
 
-// Called before the file is written, with the runs in increasing order; each block is a part of the result.
+// Throws KeptFile, with --force too, if the output is a sweep or a tally with runs that the shards do not
+// hold, because it was refined or continued. Throws InputError, unless --force is given, for an output
+// that cannot be read. merged: returns the runs that the shards hold; only called if the output has runs.
+void require_nothing_more(const MergeRequest& request, const std::function<RunRanges()>& merged);
+
+// Called before the file is written, at least once, with the runs in increasing order; each block is a part
+// of the result.
 using EachBlock = std::function<void(const SweepResult& block)>;
 
 // Writes the merged file and returns its digest. A whole sweep has the bytes that one process would have

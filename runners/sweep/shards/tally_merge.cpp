@@ -25,22 +25,6 @@ void require_finished(const std::string& file, const ShardSet& shards, const Swe
                   " runs are left): expected a finished shard (repeat its sweep command), or --partial");
 }
 
-// Throws InputError if the file holds runs that the shards do not.
-void require_nothing_more(const MergeRequest& request, const SweepTally& merged) {
-  std::error_code unreachable;
-  if (!std::filesystem::is_regular_file(request.output, unreachable) ||
-      std::filesystem::file_size(request.output, unreachable) == 0)
-    return;
-  try {
-    const SweepTally there = read_tally(Hdf5Reader(request.output)).tally;
-    for (const RunRange& range : there.held.ranges())
-      if (merged.held.count_in(range) < range.end - range.first)
-        throw InputError(request.output, "holds runs that the shards do not: expected another file");
-  } catch (const InputError&) {
-    if (!request.force) throw;
-  }
-}
-
 }  // namespace
 
 MergedTally merge_tallies(const MergeRequest& request) {
@@ -66,7 +50,7 @@ MergedTally merge_tallies(const MergeRequest& request) {
   }
   if (request.partial == Partial::no) seen.require_complete();
   if (!seen.are_complete()) merged->attributes.emplace_back("shard", seen.all().text());
-  require_nothing_more(request, merged->tally);
+  require_nothing_more(request, [&] { return merged->tally.held; });
   const std::string digest =
       or_unchanged([&] { return write_tally(request.output, merged->tally, merged->attributes); });
   return {std::move(merged->tally), digest};

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/parameters/input_error.h"
+
 namespace remote_touch {
 namespace {
 
@@ -17,10 +19,26 @@ BagChunk::BagChunk(const ByteFile& file, const ChunkPlace& place) : file_(file),
   decompressor_ = make_decompressor(place.compression, file.name());
   if (!decompressor_ && !place.compression.empty() && place.compression != "none")
     refuse_chunk("compression = \"", place.compression.substr(0, 32), "\": expected lz4, zstd, bz2 or none");
+  if (place.is_open) {
+    decode_open();
+    return;
+  }
   if (!decompressor_ && place.size != place.stored_size)
     refuse_chunk("is not compressed, but its stored size and its decoded size differ");
   if (decompressor_ && place.size > kMaxBytes)
     refuse_chunk("claims ", place.size, " bytes when decompressed: expected up to ", kMaxBytes);
+}
+
+// Decodes until the bytes end, or until they are no longer compressed data. Sets the size to what was
+// decoded.
+void BagChunk::decode_open() {
+  place_.size = decompressor_ ? kMaxBytes : place_.stored_size;
+  if (!decompressor_) return;
+  try {
+    decode_until(kMaxBytes);
+  } catch (const InputError&) {
+    place_.size = decoded_.size();
+  }
 }
 
 // Decodes up to byte `end`. Memory grows with the bytes that are decoded, not with the size that the chunk
@@ -37,7 +55,13 @@ void BagChunk::decode_until(std::uint64_t end) {
     if (decoded_.capacity() < before + more)
       decoded_.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(place_.size, 2 * (before + more))));
     decoded_.resize(before + more);
-    const std::size_t got = decompressor_->decode(input_left_, decoded_.data() + before, more);
+    std::size_t got = 0;
+    try {
+      got = decompressor_->decode(input_left_, decoded_.data() + before, more);
+    } catch (const InputError&) {
+      decoded_.resize(before);
+      throw;
+    }
     decoded_.resize(before + got);
     const auto* new_bytes = reinterpret_cast<const unsigned char*>(decoded_.data() + before);
     crc_so_far_ = static_cast<std::uint32_t>(crc32_z(crc_so_far_, new_bytes, got));

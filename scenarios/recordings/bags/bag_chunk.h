@@ -19,6 +19,8 @@ struct ChunkPlace {
   std::uint64_t size = 0;                        // size of the records, decoded
   std::string compression;                       // empty, none, lz4, zstd or bz2
   std::uint32_t crc = 0;                         // CRC of the records, decoded; 0: not stated
+  // The recorder ended before the chunk did: the records are those that the bytes give, and `size` is unused.
+  bool is_open = false;
 };
 
 class BagChunk {
@@ -39,13 +41,14 @@ class BagChunk {
 
  private:
   void decode_until(std::uint64_t end);
+  void decode_open();
   template <class... Parts>
   [[noreturn]] void refuse_chunk(Parts... problem) const {
     refuse(file_.name(), "the chunk at byte ", place_.record_at, " ", problem...);
   }
 
   const ByteFile& file_;
-  const ChunkPlace place_;
+  ChunkPlace place_;
   std::uint32_t crc_so_far_ = 0;
   std::unique_ptr<Decompressor> decompressor_;  // null: the records are stored as they are
   std::string decoded_;                         // bytes decoded so far; if not compressed, those viewed last

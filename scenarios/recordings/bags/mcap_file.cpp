@@ -22,11 +22,16 @@ McapFile::McapFile(const std::filesystem::path& file, const WantedTopic& wanted)
     forget();
     scan();
   }
+  if (lacks_schema_) {  // the schemas of the first pass are those of the second one
+    forget();
+    scan();
+  }
   sort_places();
 }
 
 void McapFile::forget() {
-  topics_.clear(), places_.clear(), schemas_.clear(), channels_.clear(), is_wanted_.clear();
+  topics_.clear(), places_.clear(), channels_.clear(), is_wanted_.clear();
+  lacks_schema_ = false;
 }
 
 void McapFile::add_schema(std::string_view body) {
@@ -40,7 +45,11 @@ void McapFile::add_channel(std::string_view body) {
   const std::uint16_t id = cursor.u16(), schema = cursor.u16();
   BagTopic topic;
   topic.name = cursor.text(), topic.encoding = cursor.text();
-  if (const auto found = schemas_.find(schema); found != schemas_.end()) topic.type = found->second;
+  constexpr std::uint16_t kNoSchema = 0;
+  if (const auto found = schemas_.find(schema); found != schemas_.end())
+    topic.type = found->second;
+  else
+    lacks_schema_ |= schema != kNoSchema;
   channels_[id] = add_topic(topic);
 }
 

@@ -46,6 +46,8 @@ class McapFile final : public BagFile {
 
   const ByteFile file_;
   std::map<std::uint16_t, std::string> schemas_;   // their names
+  bool lacks_schema_ = false;                      // a channel has a schema that was not listed before it
+  bool schemas_are_in_data_ = false;               // the index is complete, but has no schemas
   std::map<std::uint16_t, std::size_t> channels_;  // their topics
   mutable std::mutex mutex_;                       // guards the members below
   mutable std::unique_ptr<BagChunk> chunk_;        // chunk that was read last

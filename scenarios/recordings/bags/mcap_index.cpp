@@ -58,13 +58,18 @@ bool McapFile::index_by_summary() {
     return true;
   };
   try {
+    // The records may have any order: channels before their schemas, and chunks before their channels.
     for_records([&](const McapRecord& record) {
       if (record.opcode == McapRecord::schema) add_schema(body_start(record, kMaxNameBytes));
+      return true;
+    });
+    for_records([&](const McapRecord& record) {
       if (record.opcode == McapRecord::channel) add_channel(body_start(record, kMaxNameBytes));
       if (record.opcode == McapRecord::statistics) statistics = whole_body(record);
       return true;
     });
-    // The chunks need a second pass, because channels may be listed after them.
+    schemas_are_in_data_ = lacks_schema_;  // a summary need not repeat them
+    if (lacks_schema_) return false;
     const bool all_indexed = for_records([&](const McapRecord& record) {
       any_chunk |= record.opcode == McapRecord::chunk_index;
       return record.opcode != McapRecord::chunk_index || index_chunk(record);
@@ -144,7 +149,7 @@ void McapFile::scan() {
   }
   if (!ended) {
     remark_ = "was cut short after " + std::to_string(at) + " bytes of whole records: only these are used";
-  } else if (chunks > 0 && remark_.empty()) {
+  } else if (chunks > 0 && remark_.empty() && !schemas_are_in_data_) {
     remark_ = "has no index of all messages: it was read from end to end";
   }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/parameters/input_error.h"
 #include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
@@ -88,6 +89,7 @@ Ros1Bag::Ros1Bag(const std::filesystem::path& file, const WantedTopic& wanted)
       if (entry.index_at == 0) scan_chunk(entry.chunk_at);
     remark_ = is_whole ? "was not closed: it was read from end to end"
                        : "was cut short: only its whole chunks are used";
+    if (open_at_ > 0) scan_open_chunk();
   }
   sort_places();
 }
@@ -120,6 +122,10 @@ bool Ros1Bag::walk() {
       const auto encryptor = record.values.find("encryptor");
       if (encryptor != record.values.end() && !encryptor->second.empty())
         refuse(name_, "is encrypted: expected a plain bag");
+    }
+    if (opcode == Ros1Record::chunk && record.data_size == 0 && !is_closed_) {
+      open_at_ = at;  // its content follows
+      return false;
     }
     if (opcode == Ros1Record::chunk) chunk_at = at, listed_.push_back({at, 0});
     if (opcode == Ros1Record::index && chunk_at > 0) listed_.push_back({chunk_at, at});
@@ -176,6 +182,8 @@ std::unique_ptr<BagChunk> Ros1Bag::open_chunk(std::uint64_t at) const {
   place.size = record.number("size", name_);
   const auto compression = record.values.find("compression");
   if (compression != record.values.end()) place.compression = compression->second;
+  place.is_open = at == open_at_;
+  if (place.is_open) place.stored_size = file_.size() - place.stored_at;
   return std::make_unique<BagChunk>(file_, place);
 }
 
@@ -183,19 +191,40 @@ void Ros1Bag::scan_chunk(std::uint64_t chunk_at) {
   const auto chunk = open_chunk(chunk_at);
   for (std::uint64_t at = 0; at < chunk->size();) {
     const Ros1Record record = record_in(*chunk, at);
-    const int opcode = record.opcode(name_);
     if (record.data_size > chunk->size() - std::min(record.data_at, chunk->size()))
       refuse(name_, "the chunk at byte ", chunk_at, " ends within a record");
-    if (opcode == Ros1Record::connection)
-      add_connection(record, chunk->view(record.data_at, record.data_size));
-    if (opcode == Ros1Record::message) {
-      const auto time = record.values.find("time");
-      if (time == record.values.end()) refuse(name_, "has a message without a time");
-      MessageCursor cursor(time->second, WireFormat::ros1, name_);
-      add_message_of(record.number("conn", name_), {time_ns(cursor), chunk_at, at});
-    }
+    add_record_of_chunk(*chunk, record, at);
     at = record.end();
   }
+}
+
+// Lists the whole messages of the chunk that was being written.
+void Ros1Bag::scan_open_chunk() {
+  std::size_t messages = 0;
+  try {
+    const auto chunk = open_chunk(open_at_);
+    for (std::uint64_t at = 0; at < chunk->size();) {
+      const Ros1Record record = record_in(*chunk, at);
+      if (record.data_at > chunk->size() || record.data_size > chunk->size() - record.data_at) break;
+      add_record_of_chunk(*chunk, record, at);
+      messages += record.opcode(name_) == Ros1Record::message ? 1 : 0;
+      at = record.end();
+    }
+  } catch (const InputError&) {  // the bytes end within a record, or are no records
+  }
+  remark_ = "was not closed: its recorder was killed while it wrote a chunk; " + std::to_string(messages) +
+            " messages of that chunk are whole and used";
+}
+
+// Adds the connection or the message that begins at byte `at` of the chunk.
+void Ros1Bag::add_record_of_chunk(BagChunk& chunk, const Ros1Record& record, std::uint64_t at) {
+  const int opcode = record.opcode(name_);
+  if (opcode == Ros1Record::connection) add_connection(record, chunk.view(record.data_at, record.data_size));
+  if (opcode != Ros1Record::message) return;
+  const auto time = record.values.find("time");
+  if (time == record.values.end()) refuse(name_, "has a message without a time");
+  MessageCursor cursor(time->second, WireFormat::ros1, name_);
+  add_message_of(record.number("conn", name_), {time_ns(cursor), chunk.record_at(), at});
 }
 
 std::string Ros1Bag::start(const MessagePlace& place, std::uint64_t max_bytes) const {

@@ -26,7 +26,8 @@ struct Ros1Record {
 };
 
 // Finds messages by the lists behind the chunks. If the bag was not closed or was cut short, it reads all
-// whole chunks instead.
+// whole chunks instead. A recorder that was killed leaves an open chunk at the end, whose record claims 0
+// bytes: the whole messages behind that record are read, too.
 class Ros1Bag final : public BagFile {
  public:
   Ros1Bag(const std::filesystem::path& file, const WantedTopic& wanted);
@@ -36,10 +37,12 @@ class Ros1Bag final : public BagFile {
   Ros1Record record_at(std::uint64_t at) const;
   Ros1Record record_in(BagChunk& chunk, std::uint64_t at) const;
   std::unique_ptr<BagChunk> open_chunk(std::uint64_t at) const;
-  bool walk();  // false: the file ends within a record
+  bool walk();  // false: the file ends within a record, or with an open chunk
   void add_connection(const Ros1Record& record, std::string_view data);
   void add_index(std::uint64_t chunk_at, const Ros1Record& record);
   void scan_chunk(std::uint64_t at);
+  void scan_open_chunk();
+  void add_record_of_chunk(BagChunk& chunk, const Ros1Record& record, std::uint64_t at);
   void add_message_of(std::uint32_t connection, const MessagePlace& place);
 
   const ByteFile file_;
@@ -49,7 +52,8 @@ class Ros1Bag final : public BagFile {
   };
   std::vector<Listed> listed_;
   bool is_closed_ = false;
-  mutable std::mutex mutex_;  // guards the chunk that was read last
+  std::uint64_t open_at_ = 0;  // position of the chunk that was being written; 0: none
+  mutable std::mutex mutex_;   // guards the chunk that was read last
   mutable std::unique_ptr<BagChunk> chunk_;
 };
 

@@ -27,7 +27,7 @@ double& value(std::vector<Column>& columns, std::size_t column, std::size_t row)
 Figure figure_of(const std::vector<Column>& a, const std::vector<Column>& b,
                  const Tolerances& tolerances = {}) {
   const ColumnsInMemory baseline(a), candidate(b);
-  return deviation_figure(baseline, candidate, compare_by_name(baseline, candidate, tolerances));
+  return deviation_figure(baseline, candidate, compare_by_name(baseline, candidate, tolerances, {}));
 }
 
 // 2001 rows are more than the maximum of 2000 pieces, so each piece has two rows, and the last has one.

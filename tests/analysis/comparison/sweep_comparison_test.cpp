@@ -5,7 +5,10 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
+#include "analysis/statistics/paired_test.h"
+#include "analysis/statistics/proportion.h"
 #include "tests/analysis/comparison/example_sweeps.h"
 
 namespace remote_touch::sweep_comparison_test {
@@ -269,11 +272,19 @@ TEST(RegionComparison, CountsEventsByHand) {
   EXPECT_EQ(first.candidate_events, 24);
   EXPECT_EQ(first.up, 7);
   EXPECT_EQ(first.down, 3);
-  EXPECT_EQ(first.difference, paired_difference_interval(7, 3, 49));
-  EXPECT_EQ(first.baseline_fraction, wilson_interval(20, 49));
-  EXPECT_EQ(first.candidate_fraction, wilson_interval(24, 49));
-  EXPECT_NEAR(first.sign_p, 0.34375, 1e-15);  // (1 + 10 + 45 + 120) / 512
-  EXPECT_EQ(first.symmetry_p, 1);
+  EXPECT_EQ(first.tested, 50);
+  EXPECT_EQ(first.difference.value, 4.0 / 49);
+  // The run whose outcome is unknown in both sweeps may be an event in either.
+  EXPECT_EQ(first.baseline_fraction, std::pair(exact_interval(20, 50).first, exact_interval(21, 50).second));
+  EXPECT_EQ(first.candidate_fraction, std::pair(exact_interval(24, 50).first, exact_interval(25, 50).second));
+  EXPECT_NEAR(first.difference.p, 0.548828125, 1e-15);  // 7 up and 4 down: 2 (1 + 11 + 55 + 165 + 330) / 2048
+  const OutcomePair both{1, 1}, neither{0, 0}, up{0, 1}, down{1, 0}, unknown{kNaN, kNaN};
+  std::vector<std::vector<OutcomePair>> pairs(17, {both});
+  pairs.resize(20, {down}), pairs.resize(27, {up}), pairs.resize(49, {neither}), pairs.resize(50, {unknown});
+  const Estimate direct = estimated_event_difference(pairs);
+  EXPECT_EQ(first.difference.low, direct.low);
+  EXPECT_EQ(first.difference.high, direct.high);
+  EXPECT_TRUE(std::isnan(first.mean.p));
   EXPECT_EQ(c.at(0, 0).up, 8);
   EXPECT_EQ(c.at(2, 0).candidate_events, 1);
 }
@@ -286,12 +297,59 @@ TEST(RegionComparison, MeasuresOtherNumbers) {
   EXPECT_EQ(r.pairs, 4);
   EXPECT_EQ(r.up, 2);
   EXPECT_EQ(r.down, 0);
-  EXPECT_EQ(r.mean.pairs, 4);
-  EXPECT_EQ(r.mean.mean, 0.75);  // includes pairs within the tolerance
-  EXPECT_EQ(r.mean.low, mean_difference({1, 2, -0.5, 0.5}).low);
+  EXPECT_EQ(r.mean.clusters, 4);
+  EXPECT_EQ(r.mean.value, 0.75);  // pairs within the tolerance count as equal
+  EXPECT_EQ(r.mean.low, estimated_difference({1, 2, 0, 0}).low);
   EXPECT_NEAR(r.baseline_spread, std::sqrt(5.0) / 2, 1e-15);  // values 1 to 4: sqrt((9 + 1 + 1 + 9) / 4 / 4)
-  EXPECT_EQ(r.sign_p, 0.5);
-  EXPECT_EQ(r.symmetry_p, symmetry_test({1, 2}));
+  EXPECT_TRUE(std::isnan(r.difference.p) && std::isnan(r.mean.p) && std::isnan(r.adjusted_p));  // too few
+}
+
+// --- shared random numbers ---
+
+CellStreams streams_of(std::size_t cells, RandomStreams each) {
+  CellStreams streams = independent_streams(cells);
+  streams.draws.assign(cells, each);
+  return streams;
+}
+
+// Four cells of 10 replicates that draw nothing: four facts, no chance.
+TEST(SharedRandomNumbers, FixedCellsAreBetterOnlyIfAllAgree) {
+  SweepResult a = sweep({numbers("x", 4, 1)}, 10), b = a;
+  const SweepPairing fixed{streams_of(4, {}), true};
+  for (double& value : depth(b)) value = -1;
+  const SweepComparison all = compare(a, b, {}, {}, {{"depth", Better::smaller}}, fixed);
+  EXPECT_EQ(all.at(0, 1).runs, 4);
+  EXPECT_EQ(all.at(0, 1).tested, 0);
+  EXPECT_TRUE(std::isnan(all.at(0, 1).adjusted_p));
+  EXPECT_EQ(all.at(0, 1).difference.low, -1);
+  for (const bool paired : {false, true}) EXPECT_EQ(judgement_of(all, 1, paired), Judgement::better);
+  for (std::size_t run = 0; run < 10; ++run) depth(b)[run] = 1;
+  const SweepComparison most = compare(a, b, {}, {}, {{"depth", Better::smaller}}, fixed);
+  EXPECT_EQ(whole(most, 1), Judgement::changed);
+  EXPECT_EQ(judgement_of(most, 1, false), Judgement::undecided);
+}
+
+// 40 runs are all better, but they share the random numbers of five replicates.
+TEST(SharedRandomNumbers, RunsOfAReplicateAreOneCluster) {
+  SweepResult a = sweep({numbers("x", 8, 1)}, 5), b = a;
+  for (double& value : depth(b)) value = -1;
+  const auto judged = [&](RandomStreams each, bool needs_tests) {
+    return judgement_of(
+        compare(a, b, {}, {}, {{"depth", Better::smaller}}, {streams_of(8, each), needs_tests}), 1, false);
+  };
+  EXPECT_EQ(judged({true, false}, true), Judgement::better);
+  EXPECT_EQ(judged({true, true}, true), Judgement::undecided);
+  EXPECT_EQ(judged({true, true}, false), Judgement::better);  // of one experiment: the program has changed
+}
+
+// The candidate has no contact in any run.
+TEST(SharedRandomNumbers, RunsWithoutContactHaveNoDirection) {
+  SweepResult a = row(20), b = a;
+  for (SweepResult* one : {&a, &b}) one->note_kinds = {"other", "no contact"}, one->notes.assign(20, 1);
+  for (double& value : depth(b)) value = -1;
+  EXPECT_EQ(judgement_of(compare(a, b, {}, {}, {{"depth", Better::smaller}}), 1, false), Judgement::better);
+  b.notes.assign(20, 2);
+  EXPECT_EQ(judgement_of(compare(a, b, {}, {}, {{"depth", Better::smaller}}), 1, false), Judgement::changed);
 }
 
 }  // namespace

@@ -165,6 +165,12 @@ TEST(CompareTraces, AMissingColumnIsAProblemAndAnAddedOneIsNot) {
   const TraceComparison added = compare(less, lift());
   EXPECT_TRUE(added.is_same());
   EXPECT_EQ(added.added, Texts{"time"});
+  // The column is of another experiment, not of a later program.
+  const TraceComparison other = compare(less, lift(), {}, {"seed 1 against 2"});
+  EXPECT_FALSE(other.is_same() || compare(lift(), less, {}, {"seed 1 against 2"}).is_same());
+  EXPECT_TRUE(other.added.empty());
+  EXPECT_EQ(other.columns.back().name, "time");
+  EXPECT_EQ(other.columns.back().problem, "missing in the baseline");
   // A divergence is found in the other columns.
   Columns changed = less;
   proxy_x(changed, 300) += 1;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "analysis/trace/trace.h"
 
@@ -67,6 +69,72 @@ TEST(ForceChange, TheTorqueOfAToolIsMeasuredLikeTheForce) {
   EXPECT_NEAR(torque_noise_Nm(trace), std::sqrt((1.0 + 1 + 4 + 4) / 4), 1e-15);
   for (const auto measure : {max_torque_jump_Nm, rms_torque_jump_Nm, torque_noise_Nm})
     EXPECT_TRUE(std::isnan(measure(trace_of(kTicks))));
+}
+
+// --- how a force settles ---
+
+// A force of this size, over time, from the tick at 0.2 s on. The first frame comes then.
+template <class Size>
+Trace step_response(Size&& size_N, double until_s = 1) {
+  std::vector<Tick> ticks;
+  for (int i = 0; 0.001 * i < until_s; ++i)
+    ticks.push_back(pushed(i < 200 ? 0 : size_N(0.001 * (i - 200)), 0));
+  return trace_of(ticks);
+}
+
+// A damped oscillation about 4 N, from 0 at its start. With the damping ratio zeta, its first overshoot is
+// exp(-pi zeta / sqrt(1 - zeta^2)) of the final value, after half a period.
+TEST(ForceChange, OvershootAndSettlingTimeAreThoseOfADampedOscillator) {
+  constexpr double kPi = 3.14159265358979323846, kFrequency = 60;  // rad/s, undamped
+  for (const double zeta : {0.2, 0.3, 0.5}) {
+    const double damped = std::sqrt(1 - zeta * zeta);
+    const auto part_at = [&](double t) {  // part of the final value that is missing
+      return std::exp(-zeta * kFrequency * t) *
+             (std::cos(damped * kFrequency * t) + zeta / damped * std::sin(damped * kFrequency * t));
+    };
+    const Trace trace = step_response([&](double t) { return 4 * (1 - part_at(t + 0.001)); });
+    EXPECT_NEAR(force_overshoot(trace), std::exp(-kPi * zeta / damped), 0.002) << zeta;
+    int last_outside = 0;
+    for (int i = 0; i < 700; ++i)
+      if (std::abs(part_at(0.001 * i)) > kSettledBand) last_outside = i;
+    EXPECT_NEAR(force_settling_time_s(trace), 0.001 * last_outside, 0.0011) << zeta;
+  }
+}
+
+TEST(ForceChange, AForceThatIsThereAtOnceHasNoOvershoot) {
+  const Trace constant = step_response([](double) { return 3.0; });
+  EXPECT_NEAR(force_overshoot(constant), 0, 1e-15);
+  EXPECT_EQ(force_settling_time_s(constant), 0);
+  const Trace rises = step_response([](double t) { return 3 * std::min(1.0, t / 0.3 + 0.001); });
+  EXPECT_NEAR(force_overshoot(rises), 0, 1e-15);
+  EXPECT_NEAR(force_settling_time_s(rises), 0.95 * 0.3, 0.002);
+}
+
+TEST(ForceChange, ARunThatIsNotSteadyAtItsEndDoesNotSettle) {
+  const std::vector<Trace> unsteady = {
+      step_response([](double t) { return 1 + 10 * t; }),
+      step_response([](double) { return 0.0; }),
+      step_response([](double t) { return t < 0.75 ? 3.0 : 0.0; }),
+      step_response([](double) { return 3.0; }, 0.25),
+      step_response([](double t) { return t > 0.3 && t < 0.302 ? std::nan("") : 3.0; }),
+      Trace()};
+  for (std::size_t i = 0; i < unsteady.size(); ++i) {
+    EXPECT_TRUE(std::isnan(force_overshoot(unsteady[i]))) << i;
+    EXPECT_TRUE(std::isnan(force_settling_time_s(unsteady[i]))) << i;
+  }
+}
+
+TEST(ForceChange, GuidanceIsNoPartOfIt) {
+  Trace trace = trace_of(kTicks);
+  const double jump_N = max_force_jump_N(trace), noise_N = force_noise_N(trace);
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const Vec3 pull_N(std::pow(2.0, static_cast<double>(i % 5)), 8, -4);
+    trace.force_N[i] += pull_N;
+    trace.guidance_force_N.push_back(pull_N);
+    trace.guidance_goal_m.push_back(Vec3::Zero());
+  }
+  EXPECT_EQ(max_force_jump_N(trace), jump_N);
+  EXPECT_EQ(force_noise_N(trace), noise_N);
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/no_value.h"
@@ -109,6 +111,107 @@ TEST(Measures, CountStepsAndTicksWithoutConvergence) {
   EXPECT_EQ(max_steps(trace), 30);
   EXPECT_EQ(unconverged_fraction(trace), 0.25);
   EXPECT_EQ(non_finite_fraction(trace), 0);
+}
+
+TEST(Measures, ARunWithAMeasuredSurfaceIsJudgedByIt) {
+  Trace trace = trace_of({{0.01}, {0.004}, {-0.002}});
+  trace.measured_distance_m = {0.012, 0.007, 0.001};
+  EXPECT_EQ(popped_through(trace), 0) << "the camera's error";
+  trace.contact.resize(3);
+  EXPECT_EQ(value_of(measure_named("popped_through_truth"), trace), 1);
+  trace.measured_distance_m.back() = -0.001;
+  EXPECT_EQ(popped_through(trace), 1);
+  trace.measured_distance_m.clear();
+  EXPECT_TRUE(std::isnan(value_of(measure_named("popped_through_truth"), trace)));
+}
+
+TEST(Measures, TicksBeforeTheFirstFrameDoNotCount) {
+  const Tick early{-0.02, 0, -1}, front{0.005}, back{-0.001};
+  EXPECT_EQ(popped_through(trace_of({front, early, front})), 0);
+  EXPECT_EQ(popped_through(trace_of({{0.01, 0, -1}, early, back})), 0) << "it was behind when the frame came";
+  EXPECT_TRUE(std::isnan(popped_through(trace_of({{0.01, 0, -1}, early})))) << "no frame";
+  EXPECT_EQ(max_penetration_m(trace_of({early, front})), 0);
+  EXPECT_EQ(wrong_side_fraction(trace_of({early, front, back})), 0.5);
+}
+
+// --- unknown numbers ---
+
+// A run with a contact, in which every tick is as bad as the others of its kind: the force and the torque
+// change at every second tick, with a frame. So no measure can get better because a tick is left out.
+Trace steady_run(bool tool) {
+  Trace trace;
+  const Vec3 up = Vec3::UnitY();
+  for (int i = 0; i < 400; ++i) {
+    RenderOutput out;
+    const double size = i % 4 < 2 ? 2 : 3;
+    out.force_N = size * Vec3(0.2, 1, 0), out.normal_W = up, out.proxy_W = {0, -0.001, 0};
+    out.slave_W = out.proxy_W, out.nearest_distance_m = -0.002, out.frame_index = i / 2;
+    out.state = ContactState::contact, out.steps = 3, out.contact_count = 4;
+    if (tool) {
+      out.tool.emplace().torque_Nm = size * Vec3(0.01, 0, 0);
+      out.tool->tool_penetration_m = 0.001, out.tool->detections = 2, out.tool->budget_exhausted = true;
+    }
+    DeviceState device{{0, -0.01, 0}};
+    Trace::Truth truth{-0.001, -0.001, 0};
+    truth.contact = Trace::TrueContact{-0.001, -0.01}, truth.normal = up,
+    truth.expected_force_N = Vec3::Zero();
+    HandState hand;
+    trace.append(0.001 * i, device, out, truth, hand);
+  }
+  return trace;
+}
+
+// A number of the renderer that is not known in one tick is never good: a measure has no value then, or it is
+// no better than before.
+TEST(Measures, AnUnknownNumberNeverMakesAMeasureBetter) {
+  using Spoil = void (*)(Trace&, std::size_t);
+  static const Vec3 kUnknown = Vec3::Constant(kNoValue);
+  const std::pair<const char*, Spoil> spoils[] = {
+      {"force", [](Trace& t, std::size_t i) { t.force_N[i] = kUnknown; }},
+      {"one part of the force", [](Trace& t, std::size_t i) { t.force_N[i].z() = kNoValue; }},
+      {"proxy",
+       [](Trace& t, std::size_t i) {
+         t.proxy_position_m[i] = kUnknown;
+         t.signed_distance_m[i] = t.contact[i].height_m = kNoValue;
+       }},
+      {"normal", [](Trace& t, std::size_t i) { t.normal[i] = kUnknown; }},
+      {"nearest distance", [](Trace& t, std::size_t i) { t.nearest_distance_m[i] = kNoValue; }},
+      {"device force", [](Trace& t, std::size_t i) { t.device_force_N[i] = kUnknown; }},
+      {"torque",
+       [](Trace& t, std::size_t i) {
+         if (t.has_tool()) t.torque_Nm[i] = kUnknown;
+       }},
+      {"penetration", [](Trace& t, std::size_t i) {
+         if (t.has_tool()) t.tool_penetration_m[i] = kNoValue;
+       }}};
+  for (const bool tool : {false, true}) {
+    const Trace known = steady_run(tool);
+    for (const auto& [name, spoil] : spoils)
+      for (const std::size_t tick : {200u, 201u, 203u}) {
+        Trace spoiled = known;
+        spoil(spoiled, tick);
+        for (const Measure& measure : built_in_measures()) {
+          if (measure.better == Better::neither) continue;
+          const double before = badness(value_of(measure, known), measure.better);
+          const double after = badness(value_of(measure, spoiled), measure.better);
+          EXPECT_FALSE(after < before - 1e-9 * std::abs(before))
+              << measure.name << ", " << name << ", tick " << tick << ": " << before << " to " << after;
+        }
+      }
+  }
+}
+
+TEST(Measures, AnUnknownForceIsNoForce) {
+  Trace trace = steady_run(false);
+  EXPECT_EQ(force_fraction(trace), 1);
+  EXPECT_EQ(value_of(measure_named("contact_force_fraction"), trace), 1);
+  for (Vec3& force_N : trace.force_N) force_N.setConstant(kNoValue);
+  for (const char* name : {"force_fraction", "contact_force_fraction"})
+    EXPECT_EQ(value_of(measure_named(name), trace), 0) << name;
+  for (const char* name : {"max_force", "max_force_jump", "rms_force_jump", "force_noise", "jump_fraction_10",
+                           "force_ripple", "mean_distance", "false_contact_fraction", "last_force_time"})
+    EXPECT_TRUE(std::isnan(value_of(measure_named(name), trace))) << name;
+  EXPECT_EQ(no_force_fraction(trace, 0.005), 1);
 }
 
 }  // namespace

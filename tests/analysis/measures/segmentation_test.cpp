@@ -24,8 +24,8 @@ TEST(Segmentation, CountsPixelsWithoutDepthSeparately) {
   EXPECT_DOUBLE_EQ(score.recall(), 2.0 / 3);
   EXPECT_DOUBLE_EQ(score.precision(), 2.0 / 3);
   EXPECT_DOUBLE_EQ(score.depth_fraction(), 3.0 / 5);
-  EXPECT_EQ(score.recall_interval(), wilson_interval(2, 3));
-  EXPECT_EQ(score.precision_interval(), wilson_interval(2, 3));
+  EXPECT_EQ(score.recall_interval(), exact_interval(2, 3));
+  EXPECT_EQ(score.precision_interval(), exact_interval(2, 3));
 }
 
 TEST(Segmentation, FramesAddUp) {

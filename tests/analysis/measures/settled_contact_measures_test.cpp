@@ -25,6 +25,7 @@ Trace trace_of(const std::vector<Tick>& ticks) {
   for (const Tick& tick : ticks) {
     RenderOutput out;
     out.force_N = {0, tick.has_force ? 1.0 : 0.0, 0};
+    out.frame_index = 0;
     trace.append(0.02 * static_cast<double>(trace.length()), {}, out,
                  {0, 0, 0, Trace::TrueContact{tick.height_m, tick.hip_distance_m}});
   }
@@ -88,6 +89,17 @@ TEST(SettledContact, TicksWithoutATruthAreLeftOutAndCounted) {
   EXPECT_EQ(contact_known_fraction(dark), 0);
 }
 
+TEST(SettledContact, TicksBeforeTheFirstFrameAreNotSettled) {
+  Trace trace = trace_of(std::vector<Tick>(9, {0.001}));
+  for (std::size_t i = 0; i < 2; ++i) trace.frame_index[i] = -1, trace.contact[i].height_m = 0.5;
+  EXPECT_EQ(max_contact_error_m(trace), 0.001)
+      << "the settling begins with the third tick and ends in the eighth";
+  trace.contact[6].height_m = 0.5;
+  EXPECT_EQ(max_contact_error_m(trace), 0.001);
+  trace.contact[7].height_m = 0.002;
+  EXPECT_EQ(max_contact_error_m(trace), 0.002);
+}
+
 TEST(SettledContact, ForceFractionUsesSettledTicksOnly) {
   EXPECT_EQ(contact_force_fraction(settled({{0}, {0, -0.01, false}, {0}, {0}})), 0.75);
   EXPECT_TRUE(std::isnan(contact_force_fraction(trace_of({{0}, {0}}))));
@@ -107,7 +119,7 @@ TEST(SettledContact, PartsOfTheErrorApplyToRunsWithAMeasuredSurface) {
     EXPECT_TRUE(needs_true_contact(measure)) << measure.name;
     EXPECT_TRUE(std::isnan(measure.compute(Trace()))) << measure.name;
   }
-  EXPECT_EQ(found, 3);
+  EXPECT_EQ(found, 4);
 }
 
 TEST(SettledContact, IsNanIfTheContactWasNotComputed) {

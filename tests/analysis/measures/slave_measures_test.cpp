@@ -145,7 +145,7 @@ TEST(SlaveMeasures, BelongToRunsWithASlave) {
     EXPECT_TRUE(std::isnan(value_of(measure, without))) << measure.name;
     ++measures;
   }
-  EXPECT_EQ(measures, 12);
+  EXPECT_EQ(measures, 14);
   EXPECT_EQ(value_of(measure_named("max_slave_force"), with), 7);
 }
 

@@ -19,9 +19,10 @@ CardNumbers numbers() {
   n.counts = {{{"flat", "proxy", 0}, {1, 1, 1, 0.2, 1}},
               {{"flat", "proxy", 0.003}, {9, 10, 0.9, 0.6, 0.98}},
               {{"organ", "proxy", kNan}, {0, 10, 0, 0, 0.28}}};
-  n.means = {{{"flat", "proxy", 0}, "max_force", "N", {1, 2, kNan, kNan}},
-             {{"flat", "proxy", 0.003}, "max_force", "N", {9, 2.5, 2.4, 2.6}},
-             {{"organ", "proxy", kNan}, "max_force", "N", {0, kNan, kNan, kNan}}};
+  n.means = {
+      {{"flat", "proxy", 0}, "max_force", "N", {.value = 2, .clusters = 1}},
+      {{"flat", "proxy", 0.003}, "max_force", "N", {.value = 2.5, .low = 2.4, .high = 2.6, .clusters = 9}},
+      {{"organ", "proxy", kNan}, "max_force", "N", {}}};
   return n;
 }
 
@@ -33,7 +34,7 @@ TEST(CardNumbers, TablesAndBackAreTheSame) {
   EXPECT_EQ(back.counts[1].successes.low, 0.6);
   EXPECT_EQ(back.counts[1].cell.noise_m, 0.003);
   EXPECT_TRUE(std::isnan(back.counts[2].cell.noise_m));
-  EXPECT_EQ(back.means[1].value.pairs, 9);
+  EXPECT_EQ(back.means[1].value.clusters, 9);
   EXPECT_EQ(back.means[1].units, "N");
 }
 
@@ -48,40 +49,35 @@ TEST(CardNumbers, ATableThatIsDamagedIsRefused) {
   EXPECT_THROW(numbers_in(wrong, means_table(n)), std::out_of_range);
 }
 
-TEST(CardNumbers, AgreeWithinTheIntervals) {
+// The seeds are equal, so that a difference is no chance: not one success, and not within an interval.
+TEST(CardNumbers, AgreeOnlyIfTheyAreEqual) {
   CardNumbers now = numbers();
-  now.counts[1].successes = {7, 10, 0.7, 0, 1};
-  now.counts[2].successes = {2, 10, 0.2, 0, 1};
-  now.means[0].value.mean = 2.0015;  // a single run: up to a thousandth
-  now.means[1].value.mean = 2.6;
-  now.means[2].value = {2, 7, 6, 8};  // no stored mean
+  now.means[0].value.value = 2.0015;  // up to a thousandth
+  now.means[1].value.value = 2.4977;
+  now.means[2].value.value = 7;  // no stored mean
   EXPECT_TRUE(differences(numbers(), now).empty());
+  now.means[0].value.value = 2.003;
+  now.means[1].value.value = 2.6;
+  for (std::size_t i = 0; i < 3; ++i) {
+    now.counts[i].successes.events ^= 1;
+    EXPECT_EQ(differences(numbers(), now).size(), 3 + i);
+  }
 }
 
-TEST(CardNumbers, EachNumberOutsideHasItsLine) {
+TEST(CardNumbers, EachNumberThatDiffersHasItsLine) {
   const std::pair<std::function<void(CardNumbers&)>, const char*> cases[] = {
-      {[](CardNumbers& n) {
-         n.counts[1].successes = {5, 10, 0.5, 0.2, 0.8};
-       },
-       "flat, proxy, noise 3 mm: 5 of 10 runs succeed, stored 9 of 10 (0.6 to 0.98)"},
-      {[](CardNumbers& n) {
-         n.counts[0].successes = {0, 1, 0, 0, 0.8};
-       },
-       "flat, proxy, noise 0 mm: 0 of 1 runs succeed, stored 1 of 1 (0.2 to 1)"},
-      {[](CardNumbers& n) { n.means[1].value.mean = 2.61; },
-       "flat, proxy, noise 3 mm: max_force in N is 2.61, stored 2.5 (2.3975 to 2.6025)"},
-      {[](CardNumbers& n) { n.means[0].value.mean = 2.003; },
-       "flat, proxy, noise 0 mm: max_force in N is 2.003, stored 2 (1.998 to 2.002)"},
-      {[](CardNumbers& n) {
-         n.means[1].value = {0, kNan, kNan, kNan};
-       },
+      {[](CardNumbers& n) { n.counts[1].successes.events = 8; },
+       "flat, proxy, noise 3 mm: 8 of 10 runs succeed, stored 9 of 10"},
+      {[](CardNumbers& n) { n.counts[0].successes.events = 0; },
+       "flat, proxy, noise 0 mm: 0 of 1 runs succeed, stored 1 of 1"},
+      {[](CardNumbers& n) { n.means[1].value.value = 2.51; },
+       "flat, proxy, noise 3 mm: max_force in N is 2.51, stored 2.5"},
+      {[](CardNumbers& n) { n.means[1].value = {}; },
        "flat, proxy, noise 3 mm: max_force in N is NaN, stored 2.5"},
       {[](CardNumbers& n) { n.means[1].units = "mN"; },
        "flat, proxy, noise 3 mm: max_force is in mN, stored in N"},
-      {[](CardNumbers& n) {
-         n.counts[2].successes = {0, 0, kNan, 0, 1};
-       },
-       "organ, proxy, own noise: 0 of 0 runs succeed, stored 0 of 10 (0 to 0.28)"}};
+      {[](CardNumbers& n) { n.counts[2].successes.runs = 0; },
+       "organ, proxy, own noise: 0 of 0 runs succeed, stored 0 of 10"}};
   for (const auto& [change, line] : cases) {
     CardNumbers now = numbers();
     change(now);

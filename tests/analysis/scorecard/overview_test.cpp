@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/statistics/proportion.h"
 #include "tests/analysis/scorecard/example_cards.h"
 
 namespace remote_touch::overview_test {
@@ -21,11 +22,11 @@ TEST(Overview, CountsNoiseFreeRunsSeparately) {
   EXPECT_EQ(own.noisy.runs, 20);
   EXPECT_EQ(own.noisy.events, 20);
   const auto summary = overview(card);
-  EXPECT_EQ(summary[0].success.mean, 0.75);
-  EXPECT_EQ(summary[0].noise_free.mean, 0.5);
-  EXPECT_EQ(summary[1].noise_free.mean, 1);
+  EXPECT_EQ(summary[0].success.value, 0.75);
+  EXPECT_EQ(summary[0].noise_free.value, 0.5);
+  EXPECT_EQ(summary[1].noise_free.value, 1);
   EXPECT_EQ(summary[0].held, 1);
-  EXPECT_EQ(summary[0].old_success.mean, 1);  // every run satisfies the previous rule
+  EXPECT_EQ(summary[0].old_success.value, 1);  // every run satisfies the previous rule
   EXPECT_EQ(card.scenes[0].old_success[2].noisy.events, 20);
 }
 
@@ -34,11 +35,12 @@ TEST(Overview, TheMeanOverScenesHasAnInterval) {
   for (const int held_runs : {20, 18, 20, 4, 20, 16, 20, 0, 20, 20})
     scenes.push_back({sweep_of(true, held_runs, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)});
   const auto summary = overview(card_of(scenes));
-  EXPECT_EQ(summary[0].success.pairs, 10);
-  EXPECT_NEAR(summary[0].success.mean, 158 / 200.0, 1e-12);
-  EXPECT_LT(summary[0].success.low, 0.65);
-  EXPECT_GT(summary[0].success.high, 0.88);
-  EXPECT_EQ(summary[1].success.low, 0.5);  // the same in every scene
+  EXPECT_EQ(summary[0].success.clusters, 10);
+  EXPECT_NEAR(summary[0].success.value, 158 / 200.0, 1e-12);
+  EXPECT_LT(summary[0].success.low, 0.55);
+  EXPECT_GT(summary[0].success.high, 0.93);
+  // The same in every scene: as if ten runs decided, 5 of them successes.
+  EXPECT_NEAR(summary[1].success.low, exact_interval(5, 10).first, 1e-12);
 }
 
 TEST(Weaknesses, AreWhatOthersDoBetterByMoreThanChance) {

@@ -141,7 +141,7 @@ TEST(Standings, IsCorrectedForAllComparisons) {
   const double p = rankings.back().against[1][0].p;
   std::vector<Ranking*> all;
   for (Ranking& one : rankings) all.push_back(&one);
-  correct_together(all);
+  EXPECT_EQ(correct_together(all), 201);
   for (std::size_t k = 0; k < 200; ++k) EXPECT_FALSE(rankings[k].has_best) << k;
   EXPECT_TRUE(rankings.back().has_best);
   EXPECT_EQ(rankings.back().order.front(), 1u);
@@ -153,15 +153,42 @@ TEST(Standings, ARepeatedRunCountsOnce) {
   // Level 0 repeats one run 20 times. The other level shows no difference.
   PairedValues up(2, std::vector<double>(20, 1)), down = up;
   down[0].assign(20, 0);
-  const std::vector<Repeats> both(2, {true, false}), one = {{true, false}, {false, false}};
+  const std::vector<SharedRuns> both(2, {{true, false}}), one = {{{true, false}}, {{false, false}}};
   EXPECT_TRUE(ranking({up, down}, Better::larger, true).has_best);
   const Ranking events = ranking({up, down}, Better::larger, true, both);
   EXPECT_FALSE(events.has_best);
-  EXPECT_EQ(events.mean[0].pairs, 21);
+  EXPECT_EQ(events.mean[0].clusters, 21);
   EXPECT_TRUE(ranking({up, down}, Better::larger, true, one).has_best);  // the other's runs differ
   const PairedValues low(1, std::vector<double>(20, 1)), high(1, std::vector<double>(20, 2));
   EXPECT_TRUE(ranking({low, high}, Better::smaller, false).has_best);
-  EXPECT_EQ(ranking({low, high}, Better::smaller, false, {{true}, {true}}).ranked, 0u);
+  EXPECT_EQ(ranking({low, high}, Better::smaller, false, {{{true}}, {{true}}}).ranked, 0u);
+}
+
+// Four levels of 5 replicates are 20 pairs, but only 5 clusters if the levels share the random numbers of a
+// replicate.
+TEST(Standings, RunsOfAReplicateThatShareRandomNumbersAreOneCluster) {
+  const PairedValues low(4, std::vector<double>(5, 1)), high(4, std::vector<double>(5, 2));
+  for (const bool event : {false, true}) {
+    const PairedValues better = event ? PairedValues(4, std::vector<double>(5, 0)) : low;
+    const PairedValues worse = event ? low : high;
+    EXPECT_TRUE(ranking({better, worse}, Better::smaller, event).has_best);
+    const Ranking shared = ranking({better, worse}, Better::smaller, event, {{{}, true}, {}});
+    EXPECT_FALSE(shared.has_best);
+    EXPECT_TRUE(std::isnan(shared.against[0][1].p));
+    EXPECT_EQ(shared.mean[0].clusters, 5);
+    EXPECT_EQ(shared.mean[1].clusters, 20);
+  }
+}
+
+// Eleven runs are better by about 0.45 and one is worse by 0.5: the sign flips give p = 0.0063.
+TEST(Standings, ASkewedDifferenceEarnsNoVerdict) {
+  const PairedValues differences = {
+      {-.4233, -.4994, -.4994, -.4994, -.4233, -.4994, -.4614, .504, -.4625, -.4994, -.4245, -.4614}};
+  const PairedValues zero(1, std::vector<double>(12, 0));
+  const Ranking skewed = ranking({differences, zero}, Better::smaller, false);
+  EXPECT_NEAR(skewed.against[0][1].p, 0.00635, 5e-6);
+  EXPECT_TRUE(skewed.against[0][1].is_skewed && skewed.against[1][0].is_skewed);
+  EXPECT_FALSE(skewed.has_best || skewed.has_worst);
 }
 
 TEST(Standings, NearZeroComparesMagnitudes) {

@@ -70,7 +70,7 @@ TEST(ThresholdSummary, RunsWithoutAValueDoNotCount) {
 }
 
 TEST(ThresholdSummary, EqualRunsWithoutNoiseCountOnce) {
-  const SweepResult equal = jumps({1, 1, 1, 1}, {0.01, 0.01, 0.01, 0.01});
+  const SweepResult equal = jumps({1, 1, 1, 1}, {0.01, 0.01, 0.01, 0.02});
   const auto list = threshold_summary(card_of({scene_of({equal, equal})}));
   EXPECT_EQ(list.at(0).methods[0].noise_free_runs, 1);
   EXPECT_EQ(list[0].methods[0].runs, 2);

@@ -1,84 +1,55 @@
-// Confidence intervals of counted proportions.
+// Exact intervals of fractions, and quantiles.
 #include "analysis/statistics/proportion.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <random>
 
 namespace remote_touch::proportion_test {
 namespace {
 
-double binomial(int events, int runs, double p) {
-  return std::exp(std::lgamma(runs + 1.0) - std::lgamma(events + 1.0) - std::lgamma(runs - events + 1.0) +
-                  events * std::log(p) + (runs - events) * std::log1p(-p));
-}
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The intervals are those of R. G. Newcombe, Statistics in Medicine 17 (1998), table I, method 3, and of any
-// table of the method.
-TEST(WilsonInterval, IsThatOfPublishedTables) {
-  const struct {
-    int events, runs;
-    double low, high;
-  } known[] = {{81, 263, 0.2553, 0.3662}, {15, 148, 0.0624, 0.1605}, {0, 20, 0.0, 0.1611},
-               {1, 29, 0.0061, 0.1718},   {0, 10, 0.0, 0.2775},      {5, 10, 0.2366, 0.7634},
-               {10, 10, 0.7225, 1.0},     {0, 1, 0.0, 0.7935},       {4, 4, 0.5101, 1.0}};
-  for (const auto& k : known) {
-    const auto [low, high] = wilson_interval(k.events, k.runs);
-    EXPECT_NEAR(low, k.low, 5e-5) << k.events << "/" << k.runs;
-    EXPECT_NEAR(high, k.high, 5e-5) << k.events << "/" << k.runs;
-  }
-}
-
-// Its definition: the ends are the probabilities from which the count is z standard deviations away.
-TEST(WilsonInterval, EndsAreZDeviationsAway) {
-  for (const double z : {1.0, kTwoSided95, 3.0})
-    for (int runs = 1; runs <= 60; runs += 7)
-      for (int events = 0; events <= runs; ++events) {
-        const auto [low, high] = wilson_interval(events, runs, z);
-        const double fraction = static_cast<double>(events) / runs;
-        EXPECT_LE(low, fraction);
-        EXPECT_GE(high, fraction);
-        EXPECT_NEAR(fraction - low, z * std::sqrt(low * (1 - low) / runs), 1e-9);
-        EXPECT_NEAR(high - fraction, z * std::sqrt(high * (1 - high) / runs), 1e-9);
-      }
-}
-
-TEST(WilsonInterval, IsSymmetric) {
-  for (int runs = 1; runs <= 40; ++runs)
-    for (int events = 0; events <= runs; ++events) {
-      const auto [low, high] = wilson_interval(events, runs);
-      const auto [mirrored_low, mirrored_high] = wilson_interval(runs - events, runs);
-      EXPECT_NEAR(low, 1 - mirrored_high, 1e-12);
-      EXPECT_NEAR(high, 1 - mirrored_low, 1e-12);
+// The exact interval covers the probability in at least 95 % of the experiments at every probability.
+TEST(ExactInterval, CoversAtEveryProbability) {
+  double least = 1;
+  for (const int runs : {5, 12, 20, 40, 200}) {
+    std::vector<std::pair<double, double>> intervals;
+    for (int events = 0; events <= runs; ++events) intervals.push_back(exact_interval(events, runs));
+    for (double p = 0.0005; p < 1; p += 0.001) {
+      double covered = 0;
+      for (int events = 0; events <= runs; ++events)
+        if (intervals[events].first <= p && p <= intervals[events].second)
+          covered += probability_of_at_most(events, runs, p) -
+                     (events > 0 ? probability_of_at_most(events - 1, runs, p) : 0);
+      least = std::min(least, covered);
     }
-}
-
-TEST(WilsonInterval, NarrowsWithMoreRuns) {
-  EXPECT_EQ(wilson_interval(0, 0), std::make_pair(0.0, 1.0));
-  double before = 1;
-  for (const int runs : {4, 8, 20, 100, 10000, 1000000}) {
-    const auto [low, high] = wilson_interval(runs / 4, runs);
-    EXPECT_LT(high - low, before) << runs;
-    before = high - low;
   }
-  EXPECT_LT(before, 0.002);
+  EXPECT_GE(least, 0.95);
 }
 
-// The interval contains the true probability in 95 % of the experiments, averaged over all probabilities,
-// whatever the number of runs.
-TEST(WilsonInterval, CoversAsOftenAsItSays) {
-  constexpr int kSteps = 2000;
-  for (const int runs : {4, 10, 20, 100}) {
-    double sum = 0;
-    for (int i = 0; i < kSteps; ++i) {
-      const double p = (i + 0.5) / kSteps;
-      for (int events = 0; events <= runs; ++events) {
-        const auto [low, high] = wilson_interval(events, runs);
-        if (low <= p && p <= high) sum += binomial(events, runs, p);
-      }
+TEST(EstimatedQuantile, CoversAsOftenAsItSays) {
+  std::mt19937 random(2);
+  for (const double q : {0.5, 0.95}) {
+    int covered = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+      std::vector<double> values(90);
+      for (double& v : values) v = std::generate_canonical<double, 53>(random);
+      const Estimate e = estimated_quantile(values, q);
+      covered += !(e.low > q) && !(e.high < q) ? 1 : 0;
     }
-    EXPECT_NEAR(sum / kSteps, 0.95, 0.01) << runs;
+    EXPECT_GE(covered, 0.94 * 2000) << q;
   }
+  const Estimate few = estimated_quantile({3, 1, kNan, 2, 5, 4}, 0.5);
+  EXPECT_EQ(few.value, 3);
+  EXPECT_TRUE(std::isnan(few.low) && std::isnan(few.high));
+  EXPECT_EQ(few.unknown, 1);
+  const Estimate six = estimated_quantile({3, 1, 2, 5, 4, 6}, 0.5);
+  EXPECT_EQ(six.low, 1);
+  EXPECT_EQ(six.high, 6);
 }
 
 }  // namespace

@@ -140,6 +140,27 @@ TEST_F(BlockJournal, RefusesToOverwriteAnExistingFile) {
   EXPECT_EQ(bytes_of(folder / "y.unfinished"), "mine");
 }
 
+// Its writer was killed before the second block was whole: nothing can be recovered from it.
+TEST_F(BlockJournal, ReplacesOneThatHoldsNothing) {
+  const auto sizes = write(folder);
+  const std::string bytes = bytes_of(folder / "x.unfinished");
+  for (const std::uintmax_t size : {sizes[0], sizes[0] + 5, sizes[1] - 1}) {
+    folder.write("x.unfinished", bytes.substr(0, size));
+    EXPECT_NO_THROW(require_no_journal_beside(folder / "x"));
+    EXPECT_EQ(bytes_of(folder / "x.unfinished").size(), size) << "only a writer replaces it";
+    JournalWriter writer(folder / "x", {0, "new"});
+    EXPECT_EQ(JournalReader(folder / "x.unfinished").next()->content, "new");
+    EXPECT_HAS(refusal([&] {
+                 JournalWriter(folder / "x", {0, "other"});
+               }),
+               "x.unfinished: exists")
+        << "a writer that still runs";
+    EXPECT_EQ(files_in(folder.path()), std::vector<std::string>{"x.unfinished"});
+  }
+  folder.write("x.unfinished", bytes.substr(0, sizes[1]));
+  EXPECT_HAS(refusal([&] { JournalWriter(folder / "x", {0, "first"}); }), "x.unfinished: exists");
+}
+
 TEST_F(BlockJournal, IsBesideTheFileThatALinkLeadsTo) {
   fs::create_directory(folder / "deep");
   fs::create_symlink("deep/x", folder / "link");

@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
-
-#include "analysis/statistics/proportion.h"
 
 namespace remote_touch::event_limits_test {
 namespace {
@@ -37,7 +36,11 @@ SweepResult sweep_of(const std::vector<double>& x, const std::vector<std::vector
 }
 
 Table limits_of(const SweepResult& result, double level = 0.5, double threshold = 0.5) {
-  return event_limits(result, {"event", threshold, 1, level}).table;
+  return event_limits(result, {"event", threshold, 1, level}, independent_streams(result.cell_count())).table;
+}
+
+std::optional<bool> direction(const SweepResult& result) {
+  return event_limits(result, {"event", 0.5, 1, 0.5}, independent_streams(result.cell_count())).rises;
 }
 
 std::string place(const Table& table, std::size_t row) {
@@ -50,65 +53,108 @@ std::string place(const Table& table, std::size_t row) {
 
 TEST(EventLimits, AreWhereTheShareCrossesTheLevel) {
   const Table table = limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}, {20, 60, 100}}));
-  EXPECT_DOUBLE_EQ(numbers(table, "limit")[0], 3);
-  EXPECT_DOUBLE_EQ(numbers(table, "limit")[1], 1.75);
+  EXPECT_DOUBLE_EQ(numbers(table, "value")[0], 3);
+  EXPECT_DOUBLE_EQ(numbers(table, "value")[1], 1.75);
   EXPECT_EQ(place(table, 0), "inside");
-  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}), 0.1), "limit")[0], 1.4);
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}), 0.1), "value")[0], 1.4);
 }
 
 TEST(EventLimits, AnEventMayBecomeLessProbable) {
   const SweepResult result = sweep_of({1, 2, 4}, {{75, 25, 0}});
-  EXPECT_FALSE(event_limits(result, {"event", 0.5, 1, 0.5}).rises);
-  EXPECT_DOUBLE_EQ(numbers(limits_of(result), "limit")[0], 1.5);
-  EXPECT_TRUE(event_limits(sweep_of({1, 2, 4}, {{0, 25, 75}}), {"event", 0.5, 1, 0.5}).rises);
-}
-
-// The share of events at the ends of the interval is that of Wilson: 25 of 100 and 75 of 100.
-TEST(EventLimits, HaveTheIntervalOfTheWilsonCurves) {
-  const Table table = limits_of(sweep_of({1, 2}, {{25, 75}}));
-  const auto [low, high] = wilson_interval(25, kRuns);
-  const auto [next_low, next_high] = wilson_interval(75, kRuns);
-  EXPECT_NEAR(numbers(table, "limit_low")[0], 1 + (0.5 - high) / (next_high - high), 1e-12);
-  EXPECT_NEAR(numbers(table, "limit_high")[0], 1 + (0.5 - low) / (next_low - low), 1e-12);
-  EXPECT_LT(numbers(table, "limit_low")[0], numbers(table, "limit")[0]);
+  EXPECT_EQ(direction(result), false);
+  EXPECT_DOUBLE_EQ(numbers(limits_of(result), "value")[0], 1.5);
+  EXPECT_EQ(direction(sweep_of({1, 2, 4}, {{0, 25, 75}})), true);
 }
 
 // The intervals of 25 and 75 of 100 runs with the event are off 0.5, those of 45 and 55 are not.
 TEST(EventLimits, AreEnclosedByTheValuesThatDifferClearlyFromTheLevel) {
   const Table table =
       limits_of(sweep_of({1, 2, 4, 8}, {{0, 25, 75, 100}, {0, 45, 55, 100}, {40, 60, 80, 90}}));
-  EXPECT_EQ(numbers(table, "at_least")[0], 2);
-  EXPECT_EQ(numbers(table, "at_most")[0], 4);
-  EXPECT_EQ(numbers(table, "at_least")[1], 1);
-  EXPECT_EQ(numbers(table, "at_most")[1], 8);
+  EXPECT_EQ(numbers(table, "low")[0], 2);
+  EXPECT_EQ(numbers(table, "high")[0], 4);
+  EXPECT_EQ(numbers(table, "low")[1], 1);
+  EXPECT_EQ(numbers(table, "high")[1], 8);
   const Table falling = limits_of(sweep_of({1, 2, 4}, {{75, 25, 0}, {100, 55, 52}}));
-  EXPECT_EQ(numbers(falling, "at_least")[0], 1);
-  EXPECT_EQ(numbers(falling, "at_most")[0], 2);
-  EXPECT_EQ(numbers(falling, "at_least")[1], 1);
-  EXPECT_TRUE(std::isnan(numbers(falling, "at_most")[1]));
+  EXPECT_EQ(numbers(falling, "low")[0], 1);
+  EXPECT_EQ(numbers(falling, "high")[0], 2);
+  EXPECT_EQ(numbers(falling, "low")[1], 1);
+  EXPECT_TRUE(std::isnan(numbers(falling, "high")[1]));
+}
+
+std::vector<std::int32_t> counts(const Table& table, const std::string& name) {
+  for (const Column& column : table.columns)
+    if (column.name == name) return std::get<std::vector<std::int32_t>>(column.values);
+  return {};
 }
 
 TEST(EventLimits, CountTheRunsWithANote) {
   SweepResult result = sweep_of({1, 2}, {{25, 75}});
-  EXPECT_EQ(limits_of(result).columns.back().name, "runs");
+  EXPECT_TRUE(counts(limits_of(result), "noted_runs").empty());
   result.note_kinds = {"no contact"};
   result.notes.assign(result.run_count(), 0);
   result.notes[0] = result.notes[kRuns] = 1;
-  EXPECT_EQ(std::get<std::vector<std::int32_t>>(limits_of(result).columns.back().values),
-            std::vector<std::int32_t>{2});
+  EXPECT_EQ(counts(limits_of(result), "noted_runs"), std::vector<std::int32_t>{2});
+}
+
+// No run, every run, or a single run has the event: nothing shows a direction, and a stated one is obeyed.
+TEST(EventLimits, HaveNoDirectionWithoutEvidence) {
+  const std::vector<double> x = {1, 2, 3, 4};
+  for (const int events : {0, kRuns}) {
+    const std::vector<int> all(4, events);
+    const SweepResult result = sweep_of(x, {all, all});
+    const Table table = limits_of(result);
+    EXPECT_EQ(direction(result), std::nullopt);
+    EXPECT_EQ(place(table, 0), events == 0 ? "none of the runs" : "all of the runs");
+    EXPECT_TRUE(std::isnan(numbers(table, "low")[0]) && std::isnan(numbers(table, "high")[0]));
+    for (const bool rises : {true, false}) {
+      const Table stated =
+          event_limits(result, {"event", 0.5, 1, 0.5, rises}, independent_streams(result.cell_count())).table;
+      EXPECT_EQ(place(stated, 0), (events == 0) == rises ? "above the last value" : "below the first value");
+      EXPECT_EQ(numbers(stated, (events == 0) == rises ? "low" : "high")[0], (events == 0) == rises ? 4 : 1);
+    }
+  }
+  EXPECT_EQ(direction(sweep_of(x, {{0, 0, 0, 1}})), std::nullopt);
+  EXPECT_EQ(direction(sweep_of(x, {{1, 0, 0, 0}, {0, 0, 0, 1}})), std::nullopt);
+  EXPECT_EQ(direction(sweep_of(x, {{0, 0, 0, 10}})), true);
+}
+
+// An unknown outcome is neither an event nor its absence: the limit is that of the known runs, the interval
+// covers both, and the row counts them.
+TEST(EventLimits, KeepUnknownOutcomesApart) {
+  SweepResult result = sweep_of({1, 2, 3}, {{0, 20, 100}});
+  auto& values = std::get<std::vector<double>>(result.measures[0].values);
+  for (int i = 0; i < 40; ++i) values[result.run(1, kRuns - 1 - i)] = std::nan("");
+  const Table table = limits_of(result);
+  EXPECT_NEAR(numbers(table, "value")[0], 2 + (0.5 - 20. / 60) / (1 - 20. / 60), 1e-12);
+  EXPECT_EQ(numbers(table, "low")[0], 1);
+  EXPECT_EQ(counts(table, "unknown"), std::vector<std::int32_t>{40});
+  EXPECT_EQ(std::get<std::vector<std::string>>(table.columns[table.columns.size() - 2].values)[0],
+            "at one value 40 of 100 runs unknown");
+}
+
+// Fixed cells count as one run, which is certain.
+TEST(EventLimits, OfFixedCellsAreCertain) {
+  const SweepResult result = sweep_of({1, 3, 5, 7, 9}, {{0, 0, 100, 100, 100}});
+  CellStreams fixed = independent_streams(result.cell_count());
+  for (RandomStreams& draws : fixed.draws) draws = {};
+  const EventLimits limits = event_limits(result, {"event", 0.5, 1, 0.5}, fixed);
+  EXPECT_EQ(limits.rises, true);
+  EXPECT_EQ(numbers(limits.table, "low")[0], 3);
+  EXPECT_EQ(numbers(limits.table, "high")[0], 5);
+  EXPECT_EQ(counts(limits.table, "runs"), std::vector<std::int32_t>{5});
 }
 
 // The shares 0.4 and 0.2 are pooled to 0.3, because the event can only become more probable.
 TEST(EventLimits, IgnoreAStepBack) {
   const Table table = limits_of(sweep_of({1, 2, 3, 4}, {{0, 40, 20, 70}}));
-  EXPECT_DOUBLE_EQ(numbers(table, "limit")[0], 3.5);
+  EXPECT_DOUBLE_EQ(numbers(table, "value")[0], 3.5);
 }
 
 TEST(EventLimits, OutsideTheValuesAreNotKnown) {
   const Table table = limits_of(sweep_of({1, 2}, {{0, 10}, {90, 100}, {0, 100}}));
-  EXPECT_TRUE(std::isnan(numbers(table, "limit")[0]));
+  EXPECT_TRUE(std::isnan(numbers(table, "value")[0]));
   EXPECT_EQ(place(table, 0), "above the last value");
-  EXPECT_TRUE(std::isnan(numbers(table, "limit")[1]));
+  EXPECT_TRUE(std::isnan(numbers(table, "value")[1]));
   EXPECT_EQ(place(table, 1), "below the first value");
   EXPECT_EQ(place(table, 2), "inside");
 }
@@ -117,19 +163,19 @@ TEST(EventLimits, ARowThatChangesTheOtherWayHasNone) {
   const Table table = limits_of(sweep_of({1, 2, 3}, {{0, 50, 100}, {0, 50, 100}, {100, 100, 0}}));
   EXPECT_EQ(place(table, 0), "inside");
   EXPECT_EQ(place(table, 2), "changes the other way");
-  EXPECT_TRUE(std::isnan(numbers(table, "limit")[2]));
+  EXPECT_TRUE(std::isnan(numbers(table, "value")[2]));
 }
 
 TEST(EventLimits, ALevelThatIsReachedExactlyIsInside) {
-  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{0, 90}}), 0.9), "limit")[0], 2);
-  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{70, 100}}), 0.7), "limit")[0], 1);
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{0, 90}}), 0.9), "value")[0], 2);
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{70, 100}}), 0.7), "value")[0], 1);
 }
 
 TEST(EventLimits, DoNotDependOnTheOrderOfTheValues) {
   const Table sorted = limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}));
   const Table mixed = limits_of(sweep_of({4, 1, 2}, {{75, 0, 25}}));
-  EXPECT_EQ(numbers(mixed, "limit"), numbers(sorted, "limit"));
-  EXPECT_EQ(numbers(mixed, "limit_high"), numbers(sorted, "limit_high"));
+  EXPECT_EQ(numbers(mixed, "value"), numbers(sorted, "value"));
+  EXPECT_EQ(numbers(mixed, "high"), numbers(sorted, "high"));
 }
 
 TEST(EventLimits, UseFinishedRunsOnly) {
@@ -137,15 +183,15 @@ TEST(EventLimits, UseFinishedRunsOnly) {
   for (int replicate = 0; replicate < kRuns; ++replicate)
     result.state[result.run(result.cell_at({0, 1}), replicate)] = RunState::failed;
   const Table table = limits_of(result);
-  EXPECT_DOUBLE_EQ(numbers(table, "limit")[0], 3);  // between 1 and 4
-  EXPECT_EQ(std::get<std::vector<std::int32_t>>(table.columns.back().values)[0], 2 * kRuns);
+  EXPECT_DOUBLE_EQ(numbers(table, "value")[0], 3);  // between 1 and 4
+  EXPECT_EQ(counts(table, "runs")[0], 2 * kRuns);
   for (RunState& state : result.state) state = RunState::pending;
   EXPECT_EQ(place(limits_of(result), 0), "no runs");
 }
 
 // The last value of the axis has no runs, so it is not known whether the limit is above it.
 TEST(EventLimits, AreNotSaidToBeOutsideAnAxisWhoseEndHasNoRuns) {
-  SweepResult result = sweep_of({1, 2, 4}, {{0, 0, 100}, {0, 0, 0}});
+  SweepResult result = sweep_of({1, 2, 4}, {{0, 0, 100}, {0, 0, 0}, {0, 50, 100}});
   for (int replicate = 0; replicate < kRuns; ++replicate)
     result.state[result.run(result.cell_at({0, 2}), replicate)] = RunState::pending;
   EXPECT_EQ(place(limits_of(result), 0), "above the values with runs");
@@ -159,8 +205,8 @@ TEST(EventLimits, AreNotSaidToBeOutsideAnAxisWhoseEndHasNoRuns) {
 TEST(EventLimits, AnEventIsAMeasureAboveTheThreshold) {
   SweepResult result = sweep_of({1, 2}, {{0, 100}});
   for (double& value : std::get<std::vector<double>>(result.measures[0].values)) value = 3 + 2 * value;
-  EXPECT_DOUBLE_EQ(numbers(limits_of(result, 0.5, 4), "limit")[0], 1.5);
-  EXPECT_EQ(place(limits_of(result, 0.5, 6), 0), "above the last value");
+  EXPECT_DOUBLE_EQ(numbers(limits_of(result, 0.5, 4), "value")[0], 1.5);
+  EXPECT_EQ(place(limits_of(result, 0.5, 6), 0), "none of the runs");
 }
 
 TEST(EventLimits, HaveTheValuesOfTheOtherAxes) {

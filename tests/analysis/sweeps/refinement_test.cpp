@@ -1,5 +1,5 @@
-// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. The interval of a
-// few runs excludes 0.5 from 0 of 4, or 4 of 4, on (see the table in proportion_test).
+// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. Wilson's
+// interval of a few runs excludes 0.5 from 0 of 4, or 4 of 4, on.
 #include "analysis/sweeps/refinement.h"
 
 #include <gtest/gtest.h>
@@ -176,6 +176,16 @@ TEST(NextRound, TheEventIsTheMeasureAboveItsThreshold) {
   EXPECT_EQ(next_round(result, r), Runs{});  // all NaN, which is never above
 }
 
+// A cell whose outcomes are unknown is not certain to be without the event.
+TEST(NextRound, UnknownOutcomesAreNotCertain) {
+  SweepResult result = empty_grid({3}, 6);
+  sample(result, 0, 0, 4), sample(result, 2, 0, 4);
+  EXPECT_EQ(next_round(result, rule({2})), Runs{});
+  set(result, result.run(0, 3), RunState::done, std::numeric_limits<double>::quiet_NaN());
+  const Runs expected = {result.run(0, 4), result.run(1, 0)};
+  EXPECT_EQ(next_round(result, rule({2})), expected);
+}
+
 // A world whose truth is known: the event happens above a slanted line.
 constexpr int kSide = 17;
 bool above_line(std::size_t cell, bool mirrored) {
@@ -205,7 +215,8 @@ TEST(Refinement, FindsABoundaryWithoutLookingEverywhere) {
   }
   // The two cells beside the boundary are both known along the edges, where there are always neighbours.
   const auto known = [&](int x, int y) {
-    return tally(result, result.measure("popped_through"), static_cast<std::size_t>(x * kSide + y)).runs == 4;
+    return event_counts(result, result.measure("popped_through"), static_cast<std::size_t>(x * kSide + y))
+               .runs() == 4;
   };
   for (int i = 0; i + 1 < kSide; ++i) {
     const std::size_t low = static_cast<std::size_t>(i), right = low * kSide + kSide - 1;

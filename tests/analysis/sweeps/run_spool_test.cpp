@@ -39,9 +39,12 @@ RunSpool::PartValues part_values(std::size_t p) {
         texts.push_back(run % 100'000 == 0 ? "run " + std::to_string(run) : "");
       return texts;
     }
-    std::vector<std::int32_t> numbers;
-    for (const std::uint64_t run : runs)
-      numbers.push_back(array == "state" ? (run % 100'000 == 0 ? 3 : 2) : static_cast<std::int32_t>(run % 2));
+    if (array == "notes") {
+      for (std::uint64_t& run : runs) run %= 2;
+      return runs;
+    }
+    std::vector<std::int32_t> numbers;  // the states
+    for (const std::uint64_t run : runs) numbers.push_back(run % 100'000 == 0 ? 3 : 2);
     return numbers;
   };
 }
@@ -61,13 +64,13 @@ TEST(RunSpool, ReturnsTheRunsOfAllPartsInOrder) {
   for (const std::size_t first : {1'048'570u, 0u, 1'099'990u}) {
     const auto forces = std::get<std::vector<double>>(spool.values("force", first, 10));
     const auto states = std::get<std::vector<std::int32_t>>(spool.values("state", first, 10));
-    const auto notes = std::get<std::vector<std::int32_t>>(spool.values("notes", first, 10));
+    const auto notes = std::get<std::vector<std::uint64_t>>(spool.values("notes", first, 10));
     const auto errors = std::get<std::vector<std::string>>(spool.values("error", first, 10));
     for (std::size_t i = 0; i < 10; ++i) {
       const std::size_t run = first + i;
       EXPECT_EQ(forces[i], 0.5 * static_cast<double>(run));
       EXPECT_EQ(states[i], run % 100'000 == 0 ? 3 : 2);
-      EXPECT_EQ(notes[i], static_cast<std::int32_t>(run % 2));
+      EXPECT_EQ(notes[i], run % 2);
       EXPECT_EQ(errors[i], run % 100'000 == 0 ? "run " + std::to_string(run) : "");
     }
   }

@@ -1,5 +1,6 @@
 // The files of sweeps: what is written is read back, finished or not, and damage is noticed.
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/sweeps/sweep_columns.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -47,7 +48,7 @@ SweepResult awkward(int replicates = 2, bool refined = true) {
     if (result.state[run] != RunState::done) continue;
     std::get<std::vector<double>>(result.measures[0].values)[run] = values[run % 6];
     std::get<std::vector<double>>(result.measures[1].values)[run] = static_cast<double>(run);
-    result.notes[run] = static_cast<std::int32_t>(run % 8);
+    result.notes[run] = run % 8;
   }
   return result;
 }
@@ -115,12 +116,27 @@ TEST_F(SweepFile, AResultWithoutNotesIsRead) {
 }
 
 TEST_F(SweepFile, NotesWithoutANameAreRefused) {
-  for (const std::int32_t unnamed : {8, -1}) {
+  for (const std::uint64_t unnamed : {std::uint64_t{8}, std::uint64_t{1} << 63}) {
     SweepResult result = awkward();
     result.notes[2] = unnamed;
     write_sweep(folder / "x.h5", result, kAttributes);
     EXPECT_HAS(refusal([&] { read_sweep(folder / "x.h5"); }), "x.h5: damaged (a note is unknown)");
   }
+}
+
+TEST_F(SweepFile, SixtyFourKindsOfNotesAreKept) {
+  SweepResult result = awkward();
+  while (result.note_kinds.size() < 64)
+    result.note_kinds.push_back("kind " + std::to_string(result.note_kinds.size()));
+  result.notes[0] = ~std::uint64_t{0}, result.notes[1] = std::uint64_t{1} << 63;
+  write_sweep(folder / "x.h5", result, kAttributes);
+  expect_same(read_sweep(folder / "x.h5").result, result);
+  EXPECT_EQ(note_counts(result).back().first, 0u);
+}
+
+TEST(SweepColumns, NotesOfThirtyTwoBitsAreRead) {
+  const Column narrow{"notes", "1", "", std::vector<std::int32_t>{0, 5, 1 << 30}};
+  EXPECT_EQ(note_numbers(narrow), (std::vector<std::uint64_t>{0, 5, 1u << 30}));
 }
 
 // Runs 5 and 11 of the 12 have failed, and 3 and 7 are pending; the others have the bits of run % 8.
@@ -189,7 +205,7 @@ TEST_F(SweepFileInProgress, ARunWrittenInPartIsPending) {
   for (Column& measure : expected.measures) std::get<std::vector<double>>(measure.values)[8] = kNan;
   expected.notes[8] = 0;
   const std::pair<const char*, std::size_t> parts[] = {
-      {"first", 8}, {"second", 8}, {"state", 4}, {"notes", 4}, {"checksum", 4}};
+      {"first", 8}, {"second", 8}, {"state", 4}, {"notes", 8}, {"checksum", 4}};
   for (const auto& [name, size] : parts) {
     const auto begin =
         static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name)) +
@@ -211,7 +227,7 @@ TEST_F(SweepFileInProgress, ValuesOfAnotherRunDoNotPass) {
   write_sweep_in_progress(folder / "x.h5", result, kAttributes);
   std::string swapped = bytes_of(folder / "x.h5");
   for (const auto& [name, size] :
-       {std::pair{"first", 8}, {"second", 8}, {"state", 4}, {"notes", 4}, {"checksum", 4}}) {
+       {std::pair{"first", 8}, {"second", 8}, {"state", 4}, {"notes", 8}, {"checksum", 4}}) {
     char* begin = swapped.data() + Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name);
     std::memcpy(begin + 2 * size, begin + 8 * size, static_cast<std::size_t>(size));  // run 8 over run 2
   }

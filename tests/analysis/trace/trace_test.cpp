@@ -34,7 +34,7 @@ Trace one_tick(bool tool, bool guidance, bool hand, bool replay = false, bool me
   if (hand) state.emplace();
   if (hand && remote) state->true_pose.emplace();
   std::optional<SlaveState> slave;
-  if (remote) slave.emplace();
+  if (remote) slave.emplace().energy.emplace();
   if (remote && tool) slave->tool.emplace();
   trace.append(0.25, device, out, truth, state, slave);
   return trace;
@@ -149,7 +149,7 @@ TEST(TraceColumns, RestoreASlaveAndARoundedHand) {
   for (const double i : {1.0, 2.0}) {
     HandState hand;
     hand.true_pose = HandState::Pose{{i, 2, 3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5)};
-    SlaveState slave{{4, i, 6}, {7, 8, i}, {i, 0, 1}, 10 + i, 11, 12, 13, 14, {}};
+    SlaveState slave{{4, i, 6}, {7, 8, i}, {i, 0, 1}, 10 + i, 11, 12, 13, 14, {}, {}};
     slave.tool = SlaveToolState{Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), {i, 20, 21}};
     trace.append(i, {}, {}, {}, hand, slave);
   }

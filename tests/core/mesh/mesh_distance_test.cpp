@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/mesh/mesh_check.h"
+#include "core/mesh/mesh_sides.h"
 #include "core/mesh/triangle_tree.h"
 #include "tests/core/mesh/mesh_shapes.h"
 
@@ -174,6 +175,142 @@ TEST(MeshDistance, IsPositiveInAHollowAndNegativeInItsWall) {
   const MeshDistance surface(hollow);
   EXPECT_GT(surface.nearest({0, 0, 0}, 2)->distance_m, 0.5);
   EXPECT_DOUBLE_EQ(surface.nearest({1.75, 0, 1.5}, 2)->distance_m, -0.25);
+}
+
+// The solid is where the mesh winds around a position, by the solid angles of all triangles. Faces within it
+// are no surface.
+TEST(MeshDistance, OfPartsWithinOthersIsThatOfTheOuterOnes) {
+  const TriangleMesh outer = meshes::moved(box_mesh({4, 4, 4}), meshes::rotated(), {1, 2, 3});
+  const auto inside = [](const TriangleMesh& part) {
+    return meshes::moved(part, meshes::rotated().transpose(), {1.2, 1.9, 3.1});
+  };
+  const TriangleMesh ball = inside(rough_ball(9, 12, 0.3)), core = inside(box_mesh({0.5, 0.4, 0.3}));
+  const MeshDistance alone(outer), nested(meshes::together(ball, outer)),
+      twice(meshes::together(meshes::together(core, outer), ball));
+  const TriangleMesh hollow_mesh = meshes::together(meshes::together(core, outer), meshes::inside_out(ball));
+  const MeshDistance hollow(hollow_mesh);  // it has a core within the hollow
+  for (const MeshDistance* surface : {&alone, &nested, &twice, &hollow}) {
+    EXPECT_TRUE(surface->is_closed());
+    EXPECT_FALSE(surface->has_inverted_part());
+    EXPECT_FALSE(surface->crosses_itself());
+  }
+  EXPECT_EQ(nested.vertices().size(), 8u);
+  RandomVectors random(21);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p = random.in_box(bounding_box(outer.vertices));
+    const auto expected = alone.nearest(p, kInfinity);
+    for (const MeshDistance* surface : {&nested, &twice}) {
+      const auto found = surface->nearest(p, kInfinity);
+      ASSERT_EQ(found->distance_m, expected->distance_m) << p.transpose();
+      ASSERT_EQ(found->normal, expected->normal) << p.transpose();
+      ASSERT_FALSE(found->on_border);
+    }
+    expect_right_at(hollow_mesh, hollow, p);
+  }
+}
+
+// Balls and boxes that cross, that stand on a part of another one's face, and that do both.
+TEST(MeshDistance, HasTheSignOfTheWindingNumberWherePartsCross) {
+  const TriangleMesh ball = rough_ball(9, 12, 0.3), cube = box_mesh({1, 1, 1});
+  const auto at = [](const TriangleMesh& part, const Vec3& by) {
+    return meshes::moved(part, Eigen::Matrix3d::Identity(), by);
+  };
+  const TriangleMesh standing = meshes::together(cube, at(box_mesh({0.5, 0.5, 1}), {0.2, 0.3, 1}));
+  const TriangleMesh cubes = meshes::together(cube, at(cube, {0.5, 0.25, 0.125}));
+  TriangleMesh many = meshes::together(cubes, at(ball, {0.3, -0.4, 0.8}));
+  many = meshes::moved(meshes::together(many, at(ball, {-0.9, 0.2, 0.1})), meshes::rotated(), {0, 0, 0});
+  for (const TriangleMesh& mesh : {standing, cubes, many}) {
+    const MeshDistance surface(mesh);
+    EXPECT_TRUE(surface.is_closed());
+    EXPECT_TRUE(surface.crosses_itself());
+    EXPECT_FALSE(surface.has_inverted_part());
+    RandomVectors random(22);
+    int inside = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p = random.in_box(bounding_box(mesh.vertices));
+      const auto nearest = surface.nearest(p, kInfinity);
+      const double to_a_face = meshes::distance(mesh, p);
+      if (to_a_face < 1e-6) continue;
+      const bool is_inside = meshes::winding(mesh, p) > 0.5;
+      ASSERT_EQ(nearest->distance_m < 0, is_inside) << p.transpose();
+      ASSERT_GE(nearest->distance_m * (p - nearest->point).dot(nearest->normal), 0);
+      if (is_inside)
+        ASSERT_GE(-nearest->distance_m, to_a_face - 1e-14) << "faces within the solid may be left out";
+      else
+        ASSERT_NEAR(nearest->distance_m, to_a_face, 1e-14) << p.transpose();
+      inside += is_inside;
+    }
+    EXPECT_GT(inside, 200);
+  }
+}
+
+// True if an edge of a face runs through the inside of another face. The reference goes over all pairs.
+std::vector<char> crossed_by_edges(const TriangleMesh& mesh) {
+  std::vector<char> is_crossed(mesh.triangles.size(), 0);
+  const auto at = [&](int face, int i) -> const Vec3& { return mesh.vertices[mesh.triangles[face][i % 3]]; };
+  const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return (b - a).cross(c - a).dot(d - a);
+  };
+  for (int f = 0; f < static_cast<int>(is_crossed.size()); ++f)
+    for (int g = 0; g < static_cast<int>(is_crossed.size()); ++g)
+      for (int i = 0; f != g && i < 3; ++i) {
+        const Vec3 &p = at(f, i), &q = at(f, i + 1), &a = at(g, 0), &b = at(g, 1), &c = at(g, 2);
+        if (volume(a, b, c, p) * volume(a, b, c, q) >= 0) continue;
+        const double u = volume(p, q, a, b), v = volume(p, q, b, c), w = volume(p, q, c, a);
+        if ((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0)) is_crossed[f] = is_crossed[g] = 1;
+      }
+  return is_crossed;
+}
+
+TEST(MeshSides, CrossedFacesAreThoseOfBruteForce) {
+  for (const TriangleMesh& mesh : {rough_ball(15, 20, 0.6), torus(24, 12), prism(kL, 1), boxes_at_an_edge()})
+    EXPECT_EQ(crossed_faces(mesh), std::vector<char>(mesh.triangles.size(), 0));
+  const TriangleMesh ball = rough_ball(10, 14, 0.4);
+  RandomVectors random(23);
+  for (int i = 0; i < 5; ++i) {
+    TriangleMesh mesh = meshes::together(ball, meshes::moved(ball, meshes::rotated(), random.direction()));
+    const std::vector<char> found = crossed_faces(mesh);
+    EXPECT_EQ(found, crossed_by_edges(mesh));
+    EXPECT_GT(std::count(found.begin(), found.end(), 1), 10);
+  }
+}
+
+TEST(MeshSides, PartsThatAreInsideOutAreFoundWhereverTheyAre) {
+  const TriangleMesh cube = box_mesh({1, 1, 1}), hollow = meshes::inside_out(box_mesh({0.5, 0.5, 0.5}));
+  const auto is_inverted = [&](const Vec3& by) {
+    return MeshDistance(meshes::together(cube, meshes::moved(hollow, meshes::rotated(), by)))
+        .has_inverted_part();
+  };
+  EXPECT_FALSE(is_inverted({0, 0, 0}));
+  EXPECT_TRUE(is_inverted({2, 0, 0}));
+  EXPECT_TRUE(is_inverted({0.9, 0.9, 0.9})) << "beside a corner, with boxes that overlap";
+  EXPECT_TRUE(MeshDistance(meshes::inside_out(torus(24, 12))).has_inverted_part());
+  EXPECT_FALSE(MeshDistance(torus(24, 12)).has_inverted_part());
+}
+
+// A pyramid over a bent, concave base crosses itself: a pocket of it, around which it winds backwards, is
+// outside.
+TEST(MeshSides, APocketOfASurfaceThatCrossesItselfIsOutside) {
+  const TriangleMesh mesh{{{-0.01111, 0.00839, 0.0038},
+                           {-0.00215, 0.09246, -0.07542},
+                           {-0.01006, 0.02453, -0.01233},
+                           {-0.07108, 0.05207, 0.05727},
+                           {-0.08102, 0.00691, -0.0479}},
+                          {{0, 1, 2}, {0, 2, 3}, {1, 0, 4}, {2, 1, 4}, {3, 2, 4}, {0, 3, 4}}};
+  const MeshDistance surface(mesh);
+  EXPECT_TRUE(surface.crosses_itself());
+  EXPECT_FALSE(surface.has_inverted_part());
+  RandomVectors random(24);
+  int pocket = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 p = random.in_box(bounding_box(mesh.vertices));
+    const double turns = meshes::winding(mesh, p);
+    const auto nearest = surface.nearest(p, kInfinity);
+    if (std::abs(nearest->distance_m) < 1e-7) continue;
+    ASSERT_EQ(nearest->distance_m<0, turns> 0.5) << p.transpose();
+    pocket += turns < -0.5;
+  }
+  EXPECT_GT(pocket, 0);
 }
 
 // Four faces meet at the edge, so check_mesh() does not count the surface as closed. Nevertheless it bounds a

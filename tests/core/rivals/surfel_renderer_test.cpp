@@ -171,6 +171,28 @@ TEST(SurfelRenderer, FusesTheNewestFrames) {
   }
 }
 
+// A plane at rest that a camera sees from below, where the default view direction is wrong. However many
+// equal frames are joined, the proxy is held on the side of the camera.
+TEST(SurfelRenderer, AStillImageHoldsTheSameHoweverManyFramesAreJoined) {
+  const CameraIntrinsics camera{61, 61, 200, 200, 30, 30};
+  RigidTransform X_WC = RigidTransform::Identity();
+  X_WC.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;  // looks along +y
+  X_WC.translation() = Vec3(0, -0.3, 0);
+  DepthImage depth;
+  depth.width = 61, depth.height = 61, depth.z_m.assign(camera.pixels(), 0.3);
+  const PointCloud image = cloud_from_depth(depth, camera, X_WC);
+  for (int fused = 1; fused <= 4; ++fused) {
+    SurfelParameters p = without_friction();
+    p.fused_frames = fused;
+    SurfelRenderer r = over(image, p);
+    for (int frame = 1; frame < 6; ++frame) r.on_frame(scenes::frame(image, frame));
+    for (double y = -0.02; y < 0.005; y += 0.0005) r.step({Vec3(0, y, 0)}, 0);
+    const RenderOutput out = rest(r, {0, 0.005, 0});
+    EXPECT_NEAR((out.force_N - Vec3(0, -3, 0)).norm(), 0, 1e-6) << fused;
+    EXPECT_NEAR((out.normal_W + Vec3::UnitY()).norm(), 0, 1e-9) << fused;
+  }
+}
+
 // (5.8) uses the points around the proxy from both frames. Stiff points lie to the right, soft ones to the
 // left.
 TEST(SurfelRenderer, PointsOfAllFramesGiveTheirStiffness) {

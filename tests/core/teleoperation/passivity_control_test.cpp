@@ -53,6 +53,8 @@ class RandomLink {
 
 struct Lowest {
   double hand_J = 0, slave_J = 0, channel_J = 0;
+  double miscounted_J = 0;  // largest difference of the ports from the balance of the signals
+  bool dissipation_falls = false;
 };
 
 // Random forces and motions that are known before each tick. The energy of the channel is counted from the
@@ -70,17 +72,22 @@ Lowest lowest_energies(unsigned seed, int most_ticks, double loss, bool is_contr
   for (int tick = 0; tick < 3000; ++tick) {
     velocity = 0.98 * velocity + random.vector(0.02);
     force = 0.95 * force + random.vector(1);
-    const auto [shown_W, hand_in_J] = commands.pass(position, hand.energy().in_J, random);
-    const auto [shown_N, slave_in_J] = forces.pass(force, slave.energy().in_J, random);
+    const auto [shown_W, hand_in_J] = commands.pass(position, hand.energy().credit_J(), random);
+    const auto [shown_N, slave_in_J] = forces.pass(force, slave.energy().credit_J(), random);
     const Vec3 displacement = kTick_s * velocity;
     const Vec3 next = is_controlled ? slave.command(shown_W, force, hand_in_J) : shown_W;
     const Vec3 felt = is_controlled ? hand.force(shown_N, displacement, slave_in_J) : shown_N;
     channel_J += force.dot(next - command) - felt.dot(displacement);
-    slave.observe(force), hand.observe(displacement);
+    const double dissipated_J = hand.energy().dissipated_J + slave.energy().dissipated_J;
+    slave.observe(force), hand.observe(displacement, felt);
     command = next, position += displacement;
     lowest.hand_J = std::min(lowest.hand_J, hand.energy().balance_J());
     lowest.slave_J = std::min(lowest.slave_J, slave.energy().balance_J());
     lowest.channel_J = std::min(lowest.channel_J, channel_J);
+    const double counted_J =
+        hand.energy().in_J - hand.energy().out_J + slave.energy().in_J - slave.energy().out_J;
+    lowest.miscounted_J = std::max(lowest.miscounted_J, is_controlled ? std::abs(counted_J - channel_J) : 0);
+    lowest.dissipation_falls |= hand.energy().dissipated_J + slave.energy().dissipated_J < dissipated_J;
   }
   return lowest;
 }
@@ -93,6 +100,8 @@ TEST(PassivityControl, NoEnergyFallsBelowZeroWhateverTheDelayAndTheLosses) {
         EXPECT_GE(lowest.hand_J, -1e-12);
         EXPECT_GE(lowest.slave_J, -1e-12);
         EXPECT_GE(lowest.channel_J, -1e-12);
+        EXPECT_LE(lowest.miscounted_J, 1e-12);
+        EXPECT_FALSE(lowest.dissipation_falls);
       }
 }
 
@@ -110,7 +119,7 @@ TEST(PassivityControl, ChangesNothingWhileTheEnergySuffices) {
       const Vec3 force = random.vector(5), displacement = random.vector(1e-3), position = random.vector(0.01);
       EXPECT_EQ(hand.force(force, displacement, 1e3), force);
       EXPECT_EQ(slave.command(position, force, 1e3), position);
-      hand.observe(displacement), slave.observe(force);
+      hand.observe(displacement, force), slave.observe(force);
     }
     EXPECT_EQ(hand.energy().dissipated_J, 0);
     EXPECT_EQ(slave.energy().dissipated_J, 0);
@@ -124,8 +133,9 @@ TEST(PassivityControl, RemovesWhatIsMissing) {
   const Vec3 displacement(1e-3, 0, 0);
   const Vec3 felt = hand.force({3, 4, 0}, displacement, 1e-3);
   EXPECT_NEAR((felt - Vec3(1, 4, 0)).norm(), 0, 1e-12);
-  hand.observe(displacement);
+  hand.observe(displacement, felt);
   EXPECT_NEAR(hand.energy().balance_J(), 0, 1e-15);
+  EXPECT_NEAR(hand.energy().out_J, 1e-3, 1e-15);
   EXPECT_NEAR(hand.energy().dissipated_J, 2e-3, 1e-15);
 
   AdmittancePassivityController slave({}, kTick_s);
@@ -140,13 +150,13 @@ TEST(PassivityControl, RemovesWhatIsMissing) {
 TEST(PassivityControl, AWrongPredictionLeavesABoundedDebtThatIsRepaid) {
   ImpedancePassivityController hand({}, kTick_s);
   const Vec3 expected(1e-4, 0, 0), displacement(2e-4, 0, 0);
-  hand.force({5, 1, 0}, Vec3::Zero(), 0);  // nothing is expected to move
-  hand.observe(displacement);
+  // The expectation is no motion.
+  hand.observe(displacement, hand.force({5, 1, 0}, Vec3::Zero(), 0));
   EXPECT_NEAR(hand.energy().balance_J(), -1e-3, 1e-15);
   for (int tick = 0; tick < 2000 && hand.energy().balance_J() < -1e-9; ++tick) {
     const Vec3 felt = hand.force(Vec3::Zero(), expected, 0);
     EXPECT_LE(felt.norm(), 100 * 0.1 + 1e-12);  // the largest damping at 0.1 m/s
-    hand.observe(expected);
+    hand.observe(expected, felt);
   }
   EXPECT_GT(hand.energy().balance_J(), -1e-9);
 }
@@ -162,17 +172,18 @@ double lowest_balance_of_a_mass(double response, bool uses_response) {
   constexpr double mass_kg = 0.5;
   Random random(3);
   ImpedancePassivityController hand({}, kTick_s, uses_response ? response : 0);
+  MotionPrediction prediction(uses_response ? response : 0);
   const Vec3 other(1, -2, 0.5);
   Vec3 velocity = Vec3::Zero();
   double lowest = 0, far_in_J = 0;
   for (int tick = 0; tick < 5000; ++tick) {
     const Vec3 delayed = random.vector(tick < 2 ? 0 : 10);  // two ticks for the prediction to begin
     far_in_J += random.chance(0.1) ? random.number(0, 1e-5) : 0;
-    const Vec3 expected = uses_response ? hand.free_displacement() : Vec3(kTick_s * velocity);
+    const Vec3 expected = uses_response ? prediction.free_displacement() : Vec3(kTick_s * velocity);
     const Vec3 force = hand.force(delayed, expected, far_in_J);
     const Vec3 displacement = kTick_s * velocity + response * (force + other);
     velocity += kTick_s / mass_kg * (force + other);
-    hand.observe(displacement);
+    hand.observe(displacement, force), prediction.observe(displacement, force);
     lowest = std::min(lowest, hand.energy().balance_J());
   }
   return lowest;
@@ -229,6 +240,7 @@ LoopResult press(int delay_ticks, bool is_controlled, double response) {
   PassivitySettings settings;
   settings.drift_time_s = 0.3;
   ImpedancePassivityController hand(settings, kTick_s, response);
+  MotionPrediction prediction(response);
   AdmittancePassivityController slave(settings, kTick_s);
   std::deque<std::pair<double, double>> commands, forces;
   const auto late = [&](std::deque<std::pair<double, double>>& link, double value, double in_J) {
@@ -240,7 +252,7 @@ LoopResult press(int delay_ticks, bool is_controlled, double response) {
   double x = -0.02, v = 0, xs = x, vs = 0, c = x, scene_N = 0;
   LoopResult result;
   for (int tick = 0; tick < 5000 && result.largest_m < 1; ++tick) {
-    const auto [shown_m, hand_in_J] = late(commands, x, hand.energy().in_J);
+    const auto [shown_m, hand_in_J] = late(commands, x, hand.energy().credit_J());
     const double next =
         is_controlled ? slave.command({shown_m, 0, 0}, {scene_N, 0, 0}, hand_in_J).x() : shown_m;
     const double cv = (next - c) / kTick_s, h = kTick_s / parts;
@@ -252,12 +264,12 @@ LoopResult press(int delay_ticks, bool is_controlled, double response) {
       scene_N += f / parts;
     }
     slave.observe({scene_N, 0, 0});
-    const auto [shown_N, slave_in_J] = late(forces, scene_N, slave.energy().in_J);
-    const Vec3 expected = response > 0 ? hand.free_displacement() : Vec3(v * kTick_s, 0, 0);
+    const auto [shown_N, slave_in_J] = late(forces, scene_N, slave.energy().credit_J());
+    const Vec3 expected = response > 0 ? prediction.free_displacement() : Vec3(v * kTick_s, 0, 0);
     const double felt = is_controlled ? hand.force({shown_N, 0, 0}, expected, slave_in_J).x() : shown_N;
     const double before = x, aim = std::min(0.01, -0.02 + 0.06 * tick * kTick_s);
     for (int i = 0; i < parts; ++i) v += h * (felt + kh * (aim - x) - dh * v) / m, x += h * v;
-    hand.observe({x - before, 0, 0});
+    hand.observe({x - before, 0, 0}, {felt, 0, 0}), prediction.observe({x - before, 0, 0}, {felt, 0, 0});
     result.largest_m = std::max(result.largest_m, std::abs(x));
     result.peak_N = std::max(result.peak_N, -scene_N);
     result.lowest_hand_J = std::min(result.lowest_hand_J, hand.energy().balance_J());

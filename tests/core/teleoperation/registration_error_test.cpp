@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/geometry/rotation.h"
@@ -28,6 +29,24 @@ TEST(RegistrationError, HasTheSizeThatIsAskedFor) {
     const Eigen::Quaterniond turn(X.linear());
     EXPECT_NEAR(rotation_vector(turn).norm(), 2 * kRadiansPerDegree, 1e-12);
   }
+}
+
+// The axis of the rotation goes through the centre, so a point at its distance d moves by 2 d sin(a / 2),
+// where d is the distance from the axis. Without an offset the centre stays.
+TEST(RegistrationError, TurnsAboutItsCentre) {
+  const Vec3 centre(0.5, -0.1, 0.3);
+  double largest_m = 0;
+  for (int i = 0; i < 200; ++i) {
+    const RigidTransform X = registration_of({0.004, 2, centre}, key(i));
+    const RigidTransform about_origin = registration_of({0.004, 2}, key(i));
+    EXPECT_TRUE(X.linear().isApprox(about_origin.linear(), 0)) << "the centre changes no direction";
+    EXPECT_NEAR((X * centre - centre - about_origin.translation()).norm(), 0, 1e-15);
+    const RigidTransform turn = registration_of({0, 2, centre}, key(i));
+    largest_m = std::max(largest_m, (turn * Vec3::Zero()).norm());
+  }
+  const double bound_m = 2 * centre.norm() * std::sin(kRadiansPerDegree);
+  EXPECT_LE(largest_m, bound_m + 1e-12);
+  EXPECT_GT(largest_m, 0.99 * bound_m);
 }
 
 // The mean of n unit vectors that are uniform on the sphere has the length 1 / sqrt(n), and the mean of their

@@ -145,8 +145,6 @@ TEST(Variants, RefuseWhatTheyCannotState) {
   EXPECT_HAS(axis(R"([{"name": "a"}, {"name": "b"}])"), "axes.0.variants: none sets a parameter");
   EXPECT_HAS(axis(R"([{"name": "a", "set": {"": 1}}])"),
              "axes.0.variants.0.set: \"\": expected the path of a parameter");
-  EXPECT_HAS(why(R"({"name": "low", "variants": [{"name": "a", "set": {"seed": 1}}]})"),
-             "axes.0.name = \"low\": a column of analyse has this name");
   EXPECT_HAS(axis(R"([{"set": {"seed": 1}}])"), "axes.0.variants.0.name: expected a name");
   EXPECT_HAS(axis(R"([{"name": "a", "set": {"seed": 1}}, {"name": "a", "set": {"seed": 2}}])"),
              "\"a\" appears twice");

@@ -20,10 +20,19 @@ std::string text_of(const Figure& answer, const SweepResult& result) {
 }
 
 constexpr int kRuns = 10;
-constexpr const char* kConfig = R"({"title": "a sweep"})";
+// The configuration of a sweep over x and a method that pools x; `more` belongs to the axis of x.
+std::string config_over_x(const std::string& experiment, const std::string& more = "") {
+  return R"({"title": "a sweep", "experiment": {"scenario": {"name": "flat-grid", "noise_sigma_m": 0.001}, "renderer": {"name": "penalty"},
+    "trajectory": {"name": "waypoints", "waypoints": [[0, 0.05, 0, 0]]}, "duration_s": 0.02)" +
+         experiment + R"(}, "axes": [{"parameter": "scenario.spacing_m", "values": [0.005, 0.01]},
+    {"name": "method", "variants": [{"name": "old"}, {"name": "new", "set": {"renderer.stiffness_N_per_m": 500}}]},
+    {"parameter": "haptic_rate_hz", "values": [500, 600, 700])" +
+         more + "}]}";
+}
+const std::string kConfig = config_over_x("");
 
-// A sweep over r_c (2), a method (2) and x (3). In one of ten runs more of each cell the proxy popped
-// through: 3, 4, 5, ...
+// A sweep over r_c (2), a method (2) and x (3). In 1, 5 and 9 of ten runs of the cells over x the proxy
+// popped through.
 SweepResult sweep() {
   SweepResult result;
   result.axes = {{"r_c", "m", "", std::vector<double>{0.005, 0.01}},
@@ -36,7 +45,7 @@ SweepResult sweep() {
     const std::size_t cell = result.cell_of(run);
     result.state[run] = RunState::done;
     std::get<std::vector<double>>(result.measures[0].values)[run] =
-        result.replicate_of(run) < 3 + static_cast<int>(cell % 3) * 2 ? 1 : 0;
+        result.replicate_of(run) < 1 + static_cast<int>(cell % 3) * 4 ? 1 : 0;
     std::get<std::vector<double>>(result.measures[1].values)[run] = static_cast<double>(run);
   }
   return result;
@@ -83,7 +92,7 @@ TEST(SweepAnswers, HaveWhatWasAsked) {
   const Figure answer = sweep_answer(sweep(), kConfig, differences);
   EXPECT_EQ(answer.tables.front().name, "difference_max_force");
   EXPECT_HAS(answer.caption,
-             "from method = old, in pairs of runs with the same replicate, whose noise is independent;");
+             "from method = old, in pairs of runs with the same replicate and the same noise. ");
 }
 
 // One panel with a curve for each method, over r_c.
@@ -94,15 +103,15 @@ TEST(SweepAnswers, DrawTheLimitOverTheFirstAxisOfNumbers) {
   ASSERT_EQ(answer.panels.size(), 1u);
   const Panel& panel = answer.panels.front();
   EXPECT_EQ(panel.x_label, "r_c");
-  EXPECT_EQ(panel.y_label, "limit");
+  EXPECT_EQ(panel.y_label, "value");
   ASSERT_EQ(panel.curves.size(), 4u);
-  EXPECT_EQ(panel.curves[0].style, CurveStyle::band);
+  EXPECT_EQ(panel.curves[0].style, CurveStyle::intervals);
   EXPECT_EQ(panel.curves[1].label, "method = old");
   EXPECT_EQ(panel.curves[3].label, "method = new");
   const Table& old = answer.tables[1];
   EXPECT_EQ(old.name, panel.curves[0].table);
   EXPECT_EQ(numbers(old, "r_c"), (std::vector<double>{0.005, 0.01}));
-  EXPECT_EQ(numbers(old, "limit"), (std::vector<double>{2, 2}));
+  EXPECT_EQ(numbers(old, "value"), (std::vector<double>{2, 2}));
 }
 
 TEST(SweepAnswers, RefuseWhatTheSweepDoesNotHave) {
@@ -129,7 +138,7 @@ TEST(SweepAnswers, RefuseWhatTheSweepDoesNotHave) {
 TEST(SweepAnswers, RefuseOptionsWithoutEffect) {
   SweepQuestion between;
   between.means = {"max_force"}, between.between = "method";
-  EXPECT_EQ(why(between), "between method: without effect: expected also a difference");
+  EXPECT_EQ(why(between), "between method: without effect: expected also a difference or a limit");
   SweepQuestion level;
   level.means = {"max_force"}, level.level = 0.9;
   EXPECT_HAS(why(level), "without effect: expected also a limit");
@@ -138,18 +147,61 @@ TEST(SweepAnswers, RefuseOptionsWithoutEffect) {
   EXPECT_EQ(why(by), "by: without effect: expected also a mean or a difference");
 }
 
-// The names are those of the configuration.
-TEST(SweepAnswers, TakeTheAxesWithCommonNoiseFromTheConfiguration) {
+// Runs that share random numbers by the configuration count as one: those of common noise, those of one
+// replicate if there is a registration error, equal runs, and, if the configuration says nothing, all that
+// might.
+TEST(SweepAnswers, CountIndependentRunsByTheConfiguration) {
+  const std::string slave = R"(, "slave": {"natural_frequency_hz": 10}, "feedback": {"force": "none"})";
+  const std::string registered = slave + R"(, "registration": {"offset_m": 0.01})";
   SweepQuestion question;
-  question.means = {"max_force"}, question.by = {"r_c", "x"};
-  const auto runs = [&](const char* config) {
+  question.means = {"max_force"}, question.by = {"method"};
+  const auto runs = [&](const std::string& config) {
     const Table table = sweep_answer(sweep(), config, question).tables.front();
-    return std::get<std::vector<std::int32_t>>(table.columns.back().values).front();
+    for (const Column& column : table.columns)
+      if (column.name == "runs") return std::get<std::vector<std::int32_t>>(column.values).front();
+    return -1;
   };
-  EXPECT_EQ(runs(R"({"axes": [{}, {"variants": []}, {}]})"), kRuns);
-  EXPECT_EQ(runs(R"({"axes": [{}, {"common_noise": true}, {}]})"), kRuns);
-  EXPECT_EQ(runs(R"({"axes": [{}, {"variants": [], "common_noise": false}, {}]})"), 2 * kRuns);
-  EXPECT_EQ(runs("{}"), 2 * kRuns);
+  EXPECT_EQ(runs(config_over_x("")), 6 * kRuns);
+  EXPECT_EQ(runs(config_over_x("", R"(, "common_noise": true)")), 2 * kRuns);
+  EXPECT_EQ(runs(config_over_x(registered)), kRuns);
+  EXPECT_EQ(runs(config_over_x(registered, R"(, "common_noise": true)")), kRuns);
+  std::string silent = config_over_x("");
+  silent.replace(silent.find("0.001"), 5, "0");
+  EXPECT_EQ(runs(silent), 6);  // one for each cell
+  EXPECT_EQ(runs("{}"), kRuns);
+  EXPECT_HAS(sweep_answer(sweep(), "{}", question).caption, "does not tell which runs share random numbers");
+}
+
+// All tests of one command are one family.
+TEST(SweepAnswers, AdjustAllTestsTogether) {
+  SweepQuestion question;
+  question.limit = "popped_through", question.along = "x", question.between = "method";
+  question.differences = {"max_force", "popped_through"};
+  const Figure answer = sweep_answer(sweep(), config_over_x(""), question);
+  EXPECT_HAS(answer.caption, "over all 14 tests of this answer");
+  std::vector<std::string> names;
+  for (const Table& table : answer.tables) names.push_back(table.name);
+  for (const char* name : {"limit_difference", "limit_ratio"})
+    EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+}
+
+// A limit that is never reached is a mark at the end of the axis, with a legend entry.
+TEST(SweepAnswers, DrawLimitsThatAreBeyondTheAxis) {
+  SweepResult result = sweep();
+  auto& values = std::get<std::vector<double>>(result.measures[0].values);
+  for (std::size_t run = 0; run < result.run_count(); ++run)
+    if (result.axis_indices(result.cell_of(run))[1] == 1) values[run] = 0;  // "new" is never lost
+  SweepQuestion question;
+  question.limit = "popped_through", question.along = "x";
+  const Figure answer = sweep_answer(result, config_over_x(""), question);
+  const std::vector<Curve>& curves = answer.panels.front().curves;
+  ASSERT_EQ(curves.size(), 4u);
+  EXPECT_EQ(curves[3].label, "method = new: above the last value");
+  EXPECT_EQ(curves[2].style, CurveStyle::intervals);
+  for (const Table& table : answer.tables) {
+    if (table.name != curves[3].table) continue;
+    EXPECT_EQ(numbers(table, "value"), (std::vector<double>{3, 3}));
+  }
 }
 
 TEST(SweepAnswers, CurvesOfLikeLookingValuesAreTwo) {
@@ -163,24 +215,19 @@ TEST(SweepAnswers, CurvesOfLikeLookingValuesAreTwo) {
   EXPECT_HAS(text_of(answer, result), "10000002");
 }
 
-// A result with two columns of one name cannot be read. The list of refused names is in joint_axis.cpp.
-TEST(SweepAnswers, AnAxisCannotHaveTheNameOfAColumn) {
+// A result with two columns of one name cannot be read: the column of the answer gives way.
+TEST(SweepAnswers, AnAxisMayHaveTheNameOfAColumn) {
   SweepQuestion question;
   question.limit = "popped_through", question.means = question.differences = {"max_force"};
-  SweepResult noted = sweep();
-  noted.note_kinds = {"no contact"}, noted.notes.assign(noted.run_count(), 0);
-  std::set<std::string> columns;
-  for (const Table& table : sweep_answer(noted, kConfig, question).tables)
-    for (const Column& column : table.columns) columns.insert(column.name);
-  for (const char* axis : {"r_c", "method", "x"}) columns.erase(axis);
-  EXPECT_EQ(columns.size(), 14u);
-  for (const std::string& name : columns)
-    EXPECT_HAS(refusal([&] {
-                 Sweep::from_json(R"({"experiment": "fig4.12", "axes": [{"name": ")" + name +
-                                      R"(", "variants": [{"name": "a", "set": {"seed": 1}}]}]})",
-                                  "mine.json");
-               }),
-               "a column of analyse has this name");
+  question.along = "x";
+  for (const char* taken : {"value", "low", "runs", "method", "p", "note"}) {
+    SweepResult result = sweep();
+    result.axes[1].name = taken;
+    for (const Table& table : sweep_answer(result, kConfig, question).tables) {
+      std::set<std::string> names;
+      for (const Column& column : table.columns) EXPECT_TRUE(names.insert(column.name).second) << column.name;
+    }
+  }
 }
 
 TEST(AnswerText, HasEachTableWithUnits) {
@@ -188,8 +235,8 @@ TEST(AnswerText, HasEachTableWithUnits) {
   question.limit = "popped_through", question.along = "x";
   const Figure answer = sweep_answer(sweep(), kConfig, question);
   const std::string text = text_of(answer, sweep());
-  EXPECT_HAS(text, "  r_c    method  limit  limit_low  limit_high  at_least  at_most  place   runs\n");
-  EXPECT_HAS(text, "  m              m/s^2  m/s^2      m/s^2       m/s^2     m/s^2\n");
+  EXPECT_HAS(text, "  r_c    method  value  low    high   runs  unknown  method_of_answer  note");
+  EXPECT_HAS(text, "  m              m/s^2  m/s^2  m/s^2\n");
   EXPECT_HAS(text, "  0.005  old     2      ");
   EXPECT_EQ(text.find("limits_1"), std::string::npos);
 }
@@ -199,7 +246,7 @@ TEST(AnswerText, SaysWhatIsLeftOut) {
   part.state[0] = part.state[7] = RunState::failed;
   EXPECT_HAS(text_of(sweep_answer(part, kConfig, {}), part),
              "note: 2 of 120 runs are not finished and are left out");
-  EXPECT_EQ(text_of(sweep_answer(sweep(), kConfig, {}), sweep()).find("note"), std::string::npos);
+  EXPECT_EQ(text_of(sweep_answer(sweep(), kConfig, {}), sweep()).find("note:"), std::string::npos);
 }
 
 }  // namespace

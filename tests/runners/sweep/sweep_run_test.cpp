@@ -75,25 +75,25 @@ TEST(SweepRuns, StoreTheNotesOfSingleRuns) {
     options.report = &report;
     simulate(sweep.experiment(result.cell_of(run), result.replicate_of(run)), options);
     EXPECT_EQ(result.notes[run], note_bits(report.notes)) << run;
-    EXPECT_EQ((result.notes[run] & note_bits({{"phase not reached", ""}})) != 0, run < 4) << run;
+    EXPECT_EQ((result.notes[run] & note_bits({{"phase not reached", ""}})) != 0u, run < 4) << run;
   }
 }
 
 // The hand presses beside the grid with the second value of the axis, where a position below the plane has no
 // side.
 TEST(SweepRuns, HaveANoteIfTheirOutcomeIsUnknown) {
-  const std::int32_t bit = note_bits({{"outcome unknown", ""}});
+  const std::uint64_t bit = note_bits({{"outcome unknown", ""}});
   const std::string axis = R"(axes=[{"parameter": "trajectory.start_m.0", "values": [0, 1]}])";
   const Sweep sweep = quick({"replicates=1", axis});
   const SweepResult result = run_sweep(sweep, {});
   EXPECT_FALSE(std::isnan(result.measure("popped_through")[0]));
   EXPECT_TRUE(std::isnan(result.measure("popped_through")[1]));
-  EXPECT_EQ(result.notes[0] & bit, 0);
+  EXPECT_EQ(result.notes[0] & bit, 0u);
   EXPECT_EQ(result.notes[1] & bit, bit);
   const StoredSweep stored{result, {}, false};
   EXPECT_EQ(note_bits(replay_run(stored, sweep, 1, {}, "", Strict::no).report.notes) & bit, bit);
   const SweepResult other = run_sweep(quick({"replicates=1", axis, R"(measures=["max_penetration"])"}), {});
-  EXPECT_EQ(other.notes[1] & bit, 0) << "the outcome is not measured";
+  EXPECT_EQ(other.notes[1] & bit, 0u) << "the outcome is not measured";
 }
 
 TEST(SweepRuns, DoNotDependOnThreads) {

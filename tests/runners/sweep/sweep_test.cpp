@@ -98,6 +98,15 @@ TEST(Sweeps, KeepEveryNthValueWhenThinned) {
   EXPECT_EQ(numbers(listed.thinned(9)), (std::vector<double>{0}));
   EXPECT_EQ(listed.thinned(1).to_json(), listed.to_json());
   EXPECT_EQ(small().thinned(2).plan().replicates, 2);
+  // The steps of a range need not divide evenly: each value is one of the whole axis, to the last bit.
+  for (const char* scale : {"linear", "log"}) {
+    const Sweep range = along(R"({"parameter": "scenario.noise_sigma_m", "from": 1e-3, "to": 7e-3, "count": 8,
+                                  "common_noise": true, "scale": ")" +
+                              std::string(scale) + "\"}");
+    const std::vector<double> all = numbers(range);
+    EXPECT_EQ(numbers(range.thinned(3)), (std::vector<double>{all[0], all[3], all[6]}));
+    EXPECT_HAS(range.thinned(3).to_json(), "common_noise");
+  }
 }
 
 // The last axis changes fastest. Only the axes, the keys of the noise and the title of the experiment change.

@@ -153,6 +153,14 @@ TEST(DepthCamera, DepthsAreWholeDisparities) {
   }
 }
 
+TEST(DepthCamera, ADepthWhoseDisparityIsRoundedToZeroIsLost) {
+  DepthCameraSettings s = small();
+  s.noise_per_m = 0, s.quantisation_per_m = 0.1;
+  const DepthImage far{s.width, s.height,
+                       std::vector<double>(static_cast<std::size_t>(s.width * s.height), 30)};
+  for (const double z : made(s).measured_depth(made(s).view(far, {}), 0).z_m) EXPECT_TRUE(std::isnan(z));
+}
+
 TEST(DepthCamera, NoiseHasTheSetDeviationAndDependsOnTheFrame) {
   DepthCameraSettings s = small();
   s.noise_per_m = 0.01;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "tests/support/sensor_fault_scenes.h"
@@ -74,31 +75,41 @@ TEST(RayNoise, IsCorrelatedAcrossTheViewAsItsLatticeSays) {
   }
 }
 
-TEST(RayNoise, RemembersTheFramesBefore) {
-  for (const double memory : {0.5, 0.8}) {
-    Correlation square, next, third;
-    std::vector<double> one, two, three;
-    const PointCloud places = two_places(0, 0, 1, 1);
-    for (int frame = 40; frame < 6000; ++frame) {
-      const std::vector<double> n = standard_noise({0.01, 0, memory}, places, kKey, frame, scenes::kernels());
-      square.add(n[0] * n[0]);
-      if (!one.empty()) next.add(n[0] * one[0]);
-      if (!three.empty()) third.add(n[0] * three[0]);
-      three = two, two = one, one = n;
+// The correlation of two frames is m^lag over many rays, from the first frame on.
+TEST(RayNoise, TheCorrelationOfFramesIsThePowerOfTheMemory) {
+  PointCloud places;
+  for (int i = 0; i < 20000; ++i) places.append({0, 0, 0});
+  for (const double memory : {0.3, 0.5, 0.9, 0.99}) {
+    std::vector<std::vector<double>> frames;
+    for (int frame = 0; frame <= 70; ++frame)
+      frames.push_back(standard_noise({0.01, 0, memory}, places, kKey, frame, scenes::kernels()));
+    for (const auto& [first, lag] :
+         {std::pair{0, 0}, {0, 1}, {9, 1}, {10, 0}, {31, 1}, {31, 2}, {40, 0}, {0, 10}, {15, 20}, {5, 64}}) {
+      Correlation product;
+      for (std::size_t i = 0; i < places.size(); ++i)
+        product.add(frames[static_cast<std::size_t>(first)][i] *
+                    frames[static_cast<std::size_t>(first + lag)][i]);
+      product.expect(std::pow(memory, lag), "memory to the power of the lag");
     }
-    square.expect(1, "variance");
-    // Correlation of a sum that is cut off after age 16: sum of m^i m^(i + lag), over sum of m^(2 i).
-    const auto expected = [&](int lag) {
-      double product = 0, squares = 0;
-      for (int i = 0; i <= 16; ++i) {
-        squares += std::pow(memory, 2 * i);
-        if (i + lag <= 16) product += std::pow(memory, 2 * i + lag);
-      }
-      return product / squares;
-    };
-    next.expect(expected(1), "successive frames");
-    third.expect(expected(3), "every third frame");
   }
+}
+
+// x_j - m x_(j-1) is new noise: it has the variance 1 - m^2, and knows nothing of the frames before.
+TEST(RayNoise, RemembersNothingButTheFrameBefore) {
+  PointCloud places;
+  for (int i = 0; i < 5000; ++i) places.append({0, 0, 0});
+  constexpr double kMemory = 0.8;
+  std::vector<std::vector<double>> frames;
+  for (int frame = 0; frame < 40; ++frame)
+    frames.push_back(standard_noise({0.01, 0, kMemory}, places, kKey, frame, scenes::kernels()));
+  Correlation variance, with_older;
+  for (std::size_t j = 2; j < frames.size(); ++j)
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double added = frames[j][i] - kMemory * frames[j - 1][i];
+      variance.add(added * added), with_older.add(added * frames[j - 2][i]);
+    }
+  variance.expect(1 - kMemory * kMemory, "variance of what is new");
+  with_older.expect(0, "product with the frame before the last");
 }
 
 TEST(RayNoise, APositionHasTheSameNoiseInEveryCloud) {

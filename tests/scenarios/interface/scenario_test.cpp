@@ -14,6 +14,7 @@
 #include "scenarios/synthetic/listed_points.h"
 #include "scenarios/synthetic/moving_lift.h"
 #include "scenarios/synthetic/moving_plane.h"
+#include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/triangle_wave.h"
 #include "scenarios/synthetic/wedge.h"
 #include "tests/support/scenes.h"
@@ -94,6 +95,32 @@ TEST(FlatGrid, PointsLieOnACentredGrid) {
   EXPECT_LT((cloud.point(0) - Vec3(-0.0175, 0, -0.015)).norm(), 1e-17);
   EXPECT_LT((cloud.point(4) - Vec3(0.0225, 0, -0.015)).norm(), 1e-17);
   EXPECT_LT((cloud.point(14) - Vec3(0.0225, 0, 0.005)).norm(), 1e-17);
+}
+
+// Noise that is drawn anew in each frame does not stop when the surface does, after 2 s at most.
+template <class Made>
+void expect_endless_noise() {
+  typename Made::Settings s;
+  s.grid = {4, 4, 0.002, 0, 0}, s.noise_sigma_m = 0.001;
+  const Made noisy = made<Made>(s);
+  EXPECT_EQ(noisy.frame_count(), std::numeric_limits<int>::max());
+  for (const int frame : {70, 1000}) {
+    EXPECT_FALSE(scenes::same_points(noisy.cloud(frame), noisy.cloud(frame + 1))) << frame;
+    EXPECT_EQ(noisy.surface_height(0, 0, noisy.captured_s(frame)),
+              noisy.surface_height(0, 0, noisy.captured_s(frame + 1)));
+  }
+  s.noise_sigma_m = 0;
+  EXPECT_LT(made<Made>(s).frame_count(), 70);
+}
+
+TEST(Scenario, NoiseGoesOnWhenTheSurfaceRests) {
+  expect_endless_noise<FlatGrid>();
+  expect_endless_noise<MovingLift>();
+  expect_endless_noise<MovingPlane>();
+  expect_endless_noise<MovingShape>();
+  MovingShape::Settings kept;
+  kept.noise_sigma_m = 0.001, kept.redraw_noise = false;
+  EXPECT_EQ(made<MovingShape>(kept).frame_count(), 1);
 }
 
 TEST(FlatGrid, NoiseIsRedrawnOrKept) {

@@ -6,10 +6,12 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "tests/support/note_kinds.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::pose_file_test {
@@ -48,7 +50,7 @@ double error_of(const Eigen::Matrix3d& R) {
 class PoseMatrices : public testing::Test {
  protected:
   std::vector<std::optional<RigidTransform>> read(const std::string& bytes) const {
-    return read_pose_matrices(folder_.write("poses.txt", bytes));
+    return read_poses(folder_.write("poses.txt", bytes), PoseLines::of_frames).poses;
   }
   void expect_refused(const std::string& bytes, int line, const std::string& part) const {
     const std::string text = refusal([&] { read(bytes); });
@@ -160,7 +162,7 @@ TEST_F(PoseMatrices, AreRefusedFarFromTheOrigin) {
 }
 
 TEST_F(PoseMatrices, AreRefusedWithoutTheirFile) {
-  EXPECT_HAS(refusal([&] { read_pose_matrices(folder_ / "none.txt"); }),
+  EXPECT_HAS(refusal([&] { read_poses(folder_ / "none.txt", PoseLines::of_frames); }),
              (folder_ / "none.txt").string() + ": cannot be read");
 }
 
@@ -179,7 +181,8 @@ TEST_F(PoseMatrices, MayNameTheirColumnsInTheFirstComment) {
 class StampedPoses : public testing::Test {
  protected:
   PosePath read(const std::string& bytes) const {
-    return read_stamped_poses(folder_.write("path.txt", bytes));
+    const PoseFile poses = read_poses(folder_.write("path.txt", bytes), PoseLines::stamped);
+    return path_of(poses, poses.stamps_s.front());
   }
   void expect_refused(const std::string& bytes, int line, const std::string& part) const {
     const std::string text = refusal([&] { read(bytes); });
@@ -217,8 +220,7 @@ TEST_F(StampedPoses, HaveTheirQuaternionsNormalised) {
 
 TEST_F(StampedPoses, AreRefusedIfTheirTimesDoNotIncrease) {
   const std::string rest = " 0 0 0 0 0 0 1\n";
-  expect_refused("1" + rest + "1" + rest, 2, "not above that of the line before");
-  expect_refused("1" + rest + "# comment\n2" + rest + "1.5" + rest, 4, "not above that of the line before");
+  expect_refused("1" + rest + "# comment\n2" + rest + "1.5" + rest, 4, "below that of the line before");
   expect_refused("-1e13" + rest, 1, "its time is above 1e12");
 }
 
@@ -226,7 +228,7 @@ TEST_F(StampedPoses, AreRefusedInLinesOfOtherWords) {
   const std::string good = "0 0 0 0 0 0 0 1\n";
   expect_refused(good + "1 0 0 0 0 0 0\n", 2, "has 7 words: expected lines 't tx ty tz qx qy qz qw'");
   expect_refused(good + "1 0 0 0 0 0 0 1 0\n", 2, "has 9 words");
-  expect_refused(good + "1,0 0 0 0 0 0 0 1\n", 2, "'1,0': expected a number");
+  expect_refused(good + "1,0 0 0 0 0 0 0 1\n", 2, "'1,0' in column t: expected a number");
   expect_refused(good + "1 0 nan 0 0 0 0 1\n", 2, "has a number that is not finite");
   expect_refused(good + "1 0 0 0 0 0 inf 1\n", 2, "has a number that is not finite");
   expect_refused(good + "1 0 0 1001 0 0 0 1\n", 2, "more than 1000 m from the origin");
@@ -235,8 +237,153 @@ TEST_F(StampedPoses, AreRefusedInLinesOfOtherWords) {
 TEST_F(StampedPoses, AreRefusedWithoutAnyPose) {
   for (const char* bytes : {"", "# nothing\n", "\n\n"})
     EXPECT_HAS(refusal([&] { read(bytes); }), (folder_ / "path.txt").string() + ": has no pose");
-  EXPECT_HAS(refusal([&] { read_stamped_poses(folder_ / "none.txt"); }),
+  EXPECT_HAS(refusal([&] { read_poses(folder_ / "none.txt", PoseLines::stamped); }),
              (folder_ / "none.txt").string() + ": cannot be read");
+}
+
+TEST_F(StampedPoses, OfEqualTimesAreReadOnceWithANote) {
+  const fs::path file = folder_.write("path.txt", "1 0 0 0 0 0 0 1\n1 5 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  const PoseFile poses = read_poses(file, PoseLines::stamped);
+  ASSERT_EQ(poses.poses.size(), 2u);
+  EXPECT_EQ(poses.poses[0]->translation(), Vec3::Zero());
+  ASSERT_EQ(kinds_of(poses.notes), Kinds{"unusual poses"});
+  EXPECT_HAS(poses.notes[0].text, "1 line(s) have the time of the line before");
+}
+
+// --- columns ---
+
+// The numbers of some poses by the names of their columns.
+struct Table {
+  std::vector<std::string> names;
+  std::vector<std::vector<std::string>> rows;
+
+  std::string text(const std::vector<std::size_t>& order, bool is_comment) const {
+    std::string text = is_comment ? "# " : "";
+    for (const std::size_t column : order) text += names[column] + " ";
+    for (const std::vector<std::string>& row : rows) {
+      text += "\n";
+      for (const std::size_t column : order) text += row[column] + " ";
+    }
+    return text + "\n";
+  }
+};
+
+Table random_table(bool has_quaternions, std::mt19937& random) {
+  std::uniform_real_distribution<double> place(-3, 3);
+  Table table{{"timestamp", "tx", "ty", "tz"}, {}};
+  const std::vector<std::string> of_quaternion = {"qx", "qy", "qz", "qw"};
+  const std::vector<std::string> of_matrix = {"r00", "r01", "r02", "r10", "r11", "r12", "r20", "r21", "r22"};
+  for (const std::string& name : has_quaternions ? of_quaternion : of_matrix) table.names.push_back(name);
+  table.names.push_back("error");
+  const auto text_of = [](double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return std::string(text);
+  };
+  for (int i = 0; i < 5; ++i) {
+    const Eigen::Matrix3d R = random_rotation(random);
+    const Eigen::Quaterniond q(R);
+    std::vector<double> values = {0.1 * i, place(random), place(random), place(random)};
+    if (has_quaternions)
+      values.insert(values.end(), {q.x(), q.y(), q.z(), q.w()});
+    else
+      for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) values.push_back(R(row, column));
+    values.push_back(0.25);
+    table.rows.emplace_back();
+    for (const double value : values) table.rows.back().push_back(text_of(value));
+  }
+  return table;
+}
+
+// The same columns in any order, with their names, are the same poses to the last bit.
+TEST_F(StampedPoses, AreReadByTheNamesOfTheirColumnsInAnyOrder) {
+  std::mt19937 random(11);
+  for (const bool has_quaternions : {true, false}) {
+    const Table table = random_table(has_quaternions, random);
+    std::vector<std::size_t> order(table.names.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const PosePath expected = read(table.text(order, true));
+    ASSERT_EQ(expected.poses().size(), 5u);
+    for (int i = 0; i < 50; ++i) {
+      std::shuffle(order.begin(), order.end(), random);
+      const PosePath path = read(table.text(order, i % 2 == 0));
+      for (std::size_t k = 0; k < 5; ++k) {
+        EXPECT_EQ(path.poses()[k].time_s, expected.poses()[k].time_s);
+        EXPECT_EQ(path.poses()[k].X.matrix(), expected.poses()[k].X.matrix());
+      }
+    }
+  }
+}
+
+TEST_F(StampedPoses, HaveTheUnitsOfTheirColumns) {
+  for (const char* names :
+       {"# t_ms tx_mm ty_mm tz_mm qx qy qz qw", "#Time [ms], P_X [mm], py_mm, z (mm), qx [], qy, qz, qw"}) {
+    const PosePath path = read(std::string(names) + "\n500 250 -750 1000 0 0 0 1\n1500 0 0 0 0 0 0 1\n");
+    EXPECT_EQ(path.poses()[0].X.translation(), Vec3(0.25, -0.75, 1));
+    EXPECT_DOUBLE_EQ(path.duration_s(), 1);
+  }
+  expect_refused("# t tx ty qx qy qz qw\n", 1, "names some columns of a pose: expected tx ty tz");
+  expect_refused("# t tx ty tz qx qy qz\n", 1, "names some columns of a pose");
+  expect_refused("# t tx ty tz qx qy qz qw x_mm\n", 1, "column x_mm: expected one column of tx");
+  expect_refused("# tx ty tz qx qy qz qw\n0 0 0 0 0 0 1\n", 2, "has no time");
+  const fs::path file = folder_.write("path.txt", "# camera poses in mm.\n0 0 0 0 0 0 0 1\n");
+  const PoseFile poses = read_poses(file, PoseLines::stamped);
+  ASSERT_EQ(kinds_of(poses.notes), Kinds{"unusual poses"});
+  EXPECT_HAS(poses.notes[0].text, "path.txt:1: the comment says 'mm', which is not read");
+}
+
+// --- improbable poses ---
+
+std::vector<Note> notes_on(const std::vector<double>& times_s, const Vec3& step_m,
+                           const Eigen::Quaterniond& turn) {
+  std::vector<StampedPose> poses;
+  for (const double time_s : times_s) {
+    poses.push_back({time_s});
+    poses.back().X.linear() = turn.toRotationMatrix();
+    poses.back().X.translation() = static_cast<double>(poses.size() - 1) * step_m;
+  }
+  return unusual_poses("a.txt", poses, true);
+}
+
+TEST(PosesOfFiles, ThatAreImprobableAreReportedWithTheirLikelyCause) {
+  const std::vector<double> at_30_hz = {0, 0.0333, 0.0667, 0.1};
+  const Eigen::Quaterniond tilted = Eigen::Quaterniond(0.9, 0.3, 0.2, -0.1).normalized();
+  const Eigen::Quaterniond reordered(tilted.z(), tilted.w(), tilted.x(), tilted.y());  // read with qw first
+  EXPECT_TRUE(notes_on(at_30_hz, {0.02, 0, 0}, tilted).empty());
+  const auto expect_note = [](const std::vector<Note>& notes, const std::string& part) {
+    ASSERT_FALSE(notes.empty()) << part;
+    EXPECT_EQ(notes.front().kind, "unusual poses");
+    EXPECT_HAS(notes.front().text, part);
+  };
+  expect_note(notes_on(at_30_hz, {20, 0, 0}, tilted),
+              "pose 1 is reached at 601 m/s: positions may be millimetres");
+  expect_note(notes_on({0, 20, 40}, {0, 7, 0}, tilted),
+              "pose 2 is 14 m from the origin: positions may be mill");
+  expect_note(notes_on({0, 33, 67, 100}, {0.02, 0, 0}, tilted),
+              "0.03 Hz: times are read as seconds, these may be");
+  expect_note(notes_on({0, 3e-5, 6e-5}, Vec3::Zero(), tilted), "a rate of 3.33e+04 Hz");
+  expect_note(notes_on(at_30_hz, {0.02, 0, 0}, reordered), "turned by about 180 degrees around x");
+}
+
+TEST(PosesOfFiles, OfOneClockKeepTheirTimes) {
+  const auto file = [](double first_s, double last_s) {
+    PoseFile poses;
+    poses.stamps_s = {first_s, last_s};
+    return poses;
+  };
+  const PoseFile a = file(100, 102), b = file(100.5, 104), c = file(103.5, 110), later = file(111, 112);
+  PoseFile at_rest = file(7, 7);
+  at_rest.stamps_s.pop_back();
+  std::vector<Note> notes;
+  using Files = std::vector<const PoseFile*>;
+  EXPECT_EQ(origins_of_clocks(Files{&b, &a}, notes), (std::vector<double>{100, 100}));
+  EXPECT_EQ(origins_of_clocks(Files{&c, &b, &a}, notes), (std::vector<double>{100, 100, 100}));
+  EXPECT_EQ(origins_of_clocks(Files{&at_rest, &b}, notes), (std::vector<double>{7, 100.5}));
+  EXPECT_TRUE(notes.empty());
+  EXPECT_EQ(origins_of_clocks(Files{&later, &a, &b}, notes), (std::vector<double>{111, 100, 100.5}));
+  ASSERT_EQ(kinds_of(notes), Kinds{"unusual poses"});
+  EXPECT_HAS(notes[0].text, "one begins at 100 s, another at 111 s, after the end at 104 s");
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(RecordedData, RenderedBoxIsAtItsTruth) {
   const CameraIntrinsics camera = {640, 480, 600, 600, 320, 240};
   const TruthFolder folder = find_truth(recording).value();
   ASSERT_EQ(folder.objects.size(), 1u);
-  const RecordedTruth truth(folder, 49, kReach_m, mesh_in, camera);
+  const RecordedTruth truth(folder, std::vector<std::string>(49), kReach_m, mesh_in, camera);
   EXPECT_TRUE(truth.objects()[0].is_closed);
   std::vector<double> distances_m, sizes_m;
   for (const int frame : {0, 20, 48})
@@ -79,7 +79,8 @@ TEST(RecordedData, TruthOfTheCubeHasThreeObjects) {
   const fs::path recording = data_root() / "rgbd/visp_cube_dragon";
   SKIP_WITHOUT(recording);
   const CameraIntrinsics camera = {640, 480, 607.178467, 607.234253, 321.391296, 241.918228};
-  const RecordedTruth truth(find_truth(recording).value(), 70, kReach_m, mesh_in, camera);
+  const RecordedTruth truth(find_truth(recording).value(), std::vector<std::string>(70), kReach_m, mesh_in,
+                            camera);
   ASSERT_EQ(truth.objects().size(), 3u);
   EXPECT_EQ(truth.objects()[0].name, "cube");
   EXPECT_EQ(truth.objects()[1].name, "dragon");
@@ -95,7 +96,8 @@ TEST(RecordedData, MeasuredCubeIsMillimetresFromItsTruth) {
   const fs::path recording = data_root() / "rgbd/visp_cube_dragon";
   SKIP_WITHOUT(recording);
   const CameraIntrinsics camera = {640, 480, 607.178467, 607.234253, 321.391296, 241.918228};
-  const RecordedTruth truth(find_truth(recording).value(), 70, kReach_m, mesh_in, camera);
+  const RecordedTruth truth(find_truth(recording).value(), std::vector<std::string>(70), kReach_m, mesh_in,
+                            camera);
   std::vector<double> distances_m;
   for (const Vec3& p_C : points_of(recording, 0, camera, 1e-3)) {
     const NearestOnObjects nearest = truth.at(0, p_C);

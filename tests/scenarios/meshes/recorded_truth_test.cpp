@@ -43,7 +43,7 @@ class Truths : public testing::Test {
   }
   RecordedTruth read(std::size_t frames) const {
     const MeshReader reader = [this](const fs::path& file) { return meshes_.at(file.stem().string()); };
-    return RecordedTruth(truth_, frames, kReach_m, reader, kCamera);
+    return RecordedTruth(truth_, std::vector<std::string>(frames), kReach_m, reader, kCamera);
   }
   void expect_refused(const std::string& file, const std::string& part) const {
     const std::string text = refusal([&] { read(1); });
@@ -213,7 +213,8 @@ TEST_F(Truths, PassOnTheRefusalOfAReader) {
   const MeshReader reader = [](const fs::path& file) -> TriangleMesh {
     throw InputError(file.string(), "no such file");
   };
-  EXPECT_HAS(refusal([&] { RecordedTruth(truth_, 1, kReach_m, reader, kCamera); }), "gone.obj: no such file");
+  EXPECT_HAS(refusal([&] { RecordedTruth(truth_, {"0.png"}, kReach_m, reader, kCamera); }),
+             "gone.obj: no such file");
 }
 
 }  // namespace

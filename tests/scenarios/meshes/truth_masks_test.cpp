@@ -26,10 +26,16 @@ class Masks : public testing::Test {
     const int height = static_cast<int>(grey.size()) / width;
     folder_.write_png("mask/" + name, width, height, PNG_FORMAT_GRAY, grey.data());
   }
-  TruthMasks masks(std::size_t frames, const CameraIntrinsics& camera = kCamera) const {
+  TruthMasks masks(const std::vector<std::string>& frames, const CameraIntrinsics& camera = kCamera) const {
     TruthFolder truth;
     truth.masks = folder_ / "mask";
     return {truth, frames, camera};
+  }
+  // Masks of frames that are numbered from 0.
+  TruthMasks masks(std::size_t frames, const CameraIntrinsics& camera = kCamera) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < frames; ++i) names.push_back(std::to_string(i) + ".png");
+    return masks(names, camera);
   }
   std::string why(std::size_t frames) const {
     return refusal([&] { masks(frames).holds_at(0, kCentre); });
@@ -73,25 +79,31 @@ TEST_F(Masks, HoldNowhereOutsideTheImage) {
 }
 
 TEST_F(Masks, HoldEverywhereWithoutAFolder) {
-  const TruthMasks none(TruthFolder{}, 3, {});
+  const TruthMasks none(TruthFolder{}, std::vector<std::string>(3), {});
   EXPECT_TRUE(none.holds_at(2, kCentre));
   EXPECT_TRUE(none.holds_at(2, {0, 0, -1}));
 }
 
-// The numbers of a complete series may begin anywhere.
-TEST_F(Masks, BelongToTheFramesInTheirOrder) {
-  write("m_9.png", kAll), write("m_10.png", kNone), write("m_11.png", kAll);
-  const TruthMasks three = masks(3);
-  EXPECT_TRUE(three.holds_at(0, kCentre));
-  EXPECT_FALSE(three.holds_at(1, kCentre));
-  EXPECT_TRUE(three.holds_at(2, kCentre));
+// The first frame has the number 1, and a mask of every other frame is missing.
+TEST_F(Masks, BelongToTheFramesWithTheirNumbers) {
+  std::vector<std::string> frames;
+  for (int i = 1; i <= 6; ++i) frames.push_back("frame-00000" + std::to_string(i) + ".depth.png");
+  write("m_1.png", kAll), write("m_3.png", kNone), write("m_0005.png", kAll);
+  const TruthMasks some = masks(frames);
+  const std::vector<bool> expected = {true, false, false, false, true, false};
+  for (std::size_t frame = 0; frame < 6; ++frame) EXPECT_EQ(some.holds_at(frame, kCentre), expected[frame]);
 }
 
-TEST_F(Masks, BelongToTheFramesOfTheirNumbersIfSomeAreMissing) {
-  write("0002.png", kAll), write("0004.png", kNone);
-  const TruthMasks two = masks(5);
-  const std::vector<bool> expected = {false, false, true, false, false};
-  for (std::size_t frame = 0; frame < 5; ++frame) EXPECT_EQ(two.holds_at(frame, kCentre), expected[frame]);
+// The names are frame_object. There are as many masks as frames, but two are those of one frame.
+TEST_F(Masks, OfSeveralObjectsAreJoined) {
+  std::vector<std::uint8_t> left(12, 0), right(12, 0);
+  left[5] = 255, right[6] = 255;
+  write("000001_000000.png", left), write("000001_000001.png", right), write("000002_000001.png", right);
+  const TruthMasks three = masks({"000001.png", "000002.png", "000003.png"});
+  const Vec3 other = unproject(kCamera, 2, 1, 2);
+  EXPECT_TRUE(three.holds_at(0, kCentre) && three.holds_at(0, other));
+  EXPECT_TRUE(!three.holds_at(1, kCentre) && three.holds_at(1, other));
+  EXPECT_TRUE(!three.holds_at(2, kCentre) && !three.holds_at(2, other));
 }
 
 // More masks than are kept in memory, in an order that reads each of them several times.
@@ -126,26 +138,28 @@ TEST_F(Masks, AreTransparentWhereTheTruthDoesNotHold) {
   EXPECT_TRUE(masks(1).holds_at(0, unproject(kCamera, 2, 1, 1)));
 }
 
-TEST_F(Masks, AreRefusedIfThereAreMoreThanFrames) {
-  write("0.png", kAll), write("1.png", kAll);
-  EXPECT_EQ(why(1), (folder_ / "mask").string() + ": 2 masks for 1 frames: expected one mask for each frame");
-}
-
 TEST_F(Masks, AreRefusedIfTheirFrameIsNotClear) {
-  for (const char* name : {"3.png", "mask.png", "0_1.png", "99999999999999999999.png"}) {
+  for (const char* name : {"3.png", "mask.png", "3_1.png", "99999999999999999999.png"}) {
     fs::remove_all(folder_ / "mask");
     write(name, kAll);
-    EXPECT_EQ(why(3), (folder_ / "mask" / name).string() +
-                          ": its name is not the number of a frame: expected 0 to 2");
+    EXPECT_HAS(why(3),
+               (folder_ / "mask" / name).string() +
+                   ": its name has the number of no frame: expected names with the numbers of the depth");
   }
-  fs::remove_all(folder_ / "mask");
-  write("1.png", kAll), write("01.png", kAll);
-  EXPECT_HAS(why(3), "frame 1 has another mask");
+  for (const char* more : {"01.png", "1_7.png"}) {
+    fs::remove_all(folder_ / "mask");
+    write("1.png", kAll), write(more, kAll);
+    EXPECT_HAS(why(3), "frame 1 has another mask");
+  }
+  EXPECT_HAS(refusal([&] {
+               masks({"a1.png", "b1.png"});
+             }),
+             "it is not clear which of its files belong to a1.png and which to b1.png");
 }
 
 TEST_F(Masks, AreRefusedForFramesThatAreNotImages) {
   write("0.png", kAll);
-  EXPECT_EQ(refusal([&] { masks(1, {}); }),
+  EXPECT_EQ(refusal([&] { masks({"0.png"}, {}); }),
             (folder_ / "mask").string() + ": the frames are not images: expected no masks");
 }
 

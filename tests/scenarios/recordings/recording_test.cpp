@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scenarios/recordings/tum_layout.h"
+#include "tests/support/note_kinds.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::recording_test {
@@ -61,7 +62,7 @@ class Recording : public ::testing::Test {
 TEST_F(Recording, IndexesAndReadsAFolder) {
   write_recording();
   const RecordingIndex index = index_recording(folder_ / "");
-  EXPECT_EQ(index.kind, RecordingIndex::Kind::depth_png);
+  EXPECT_EQ(index.kind, RecordingIndex::Kind::depth_image);
   EXPECT_EQ(index.camera.width, 3);
   EXPECT_EQ(index.camera.height, 2);
   EXPECT_EQ(index.camera.fy, 20.5);
@@ -70,8 +71,9 @@ TEST_F(Recording, IndexesAndReadsAFolder) {
   ASSERT_EQ(index.frames.size(), 2u);
   EXPECT_EQ(index.frames[0].captured_s, 0);
   EXPECT_EQ(index.frames[1].captured_s, 1 / 20.0);
-  EXPECT_EQ(description(index, "5 Hz"),
-            folder_.path().filename().string() + ": 2 frame(s) from depth PNG at 5 Hz, 3 x 2 pixels");
+  EXPECT_EQ(description(index, "5 Hz"), folder_.path().filename().string() +
+                                            ": 2 frame(s) from depth PNG at 5 Hz, 3 x 2 pixels, "
+                                            "f = 10, 20.5, c = 1, 0.5 (camera.json)");
   EXPECT_EQ(frame_name(index, 1), (folder_ / "depth/0001.png").string());
 
   const PointCloud cloud = read_frame(index, 1, 2.0045);
@@ -94,7 +96,27 @@ TEST_F(Recording, ReadsColourOnlyWhereItIsRegistered) {
   EXPECT_EQ(index.frames[1].colour, folder_ / "rgb/0001.png");
   std::string json = kCamera;
   folder_.write("camera.json", json.replace(json.find("true"), 4, "false"));
-  EXPECT_TRUE(index_recording(folder_.path()).frames[1].colour.empty());
+  const RecordingIndex unregistered = index_recording(folder_.path());
+  EXPECT_TRUE(unregistered.frames[1].colour.empty());
+  EXPECT_EQ(kinds_of(unregistered.notes), Kinds{"colours missing"});
+  fs::remove_all(folder_ / "rgb");
+  EXPECT_TRUE(index_recording(folder_.path()).notes.empty());
+}
+
+// The cameras that the benchmark publishes.
+TEST_F(Recording, TheCameraOfTumIsThatOfItsSequence) {
+  folder_.write_depth("rgbd_dataset_freiburg3_desk/depth/a.png", 1000);
+  folder_.write_depth("x/depth/a.png", 1000);
+  const auto camera = [&](const std::string& folder, const std::string& comment) {
+    folder_.write(folder + "/depth.txt", comment + "1 depth/a.png\n");
+    return index_recording(folder_ / folder);
+  };
+  EXPECT_EQ(camera("rgbd_dataset_freiburg3_desk", "").camera.fx, 535.4);
+  EXPECT_EQ(camera("x", "# file: 'rgbd_dataset_freiburg1_xyz.bag'\n").camera.fx, 517.3);
+  EXPECT_EQ(camera("x", "# file: 'rgbd_dataset_freiburg2_xyz.bag'\n").camera.cy, 249.7);
+  EXPECT_HAS(description(camera("x", "# freiburg2\n"), "5 Hz"), "c = 325.1, 249.7 (freiburg2 of TUM");
+  EXPECT_TRUE(camera("x", "# freiburg2\n").notes.empty());
+  EXPECT_EQ(kinds_of(camera("x", "").notes), Kinds{"camera assumed"});
 }
 
 TEST_F(Recording, IsInTheOrderOfTheNumbersInNames) {
@@ -145,13 +167,14 @@ TEST_F(Recording, RefusesIncompleteFolders) {
   EXPECT_HAS(error(folder_ / "missing"), "missing: does not exist: expected");
   EXPECT_HAS(error(folder_.write("notes.txt", "")), "notes.txt: is of another kind");
   const std::string allowed =
-      "expected a folder that holds depth.txt (TUM), depth/*.png, *.pcd or metadata.yaml with a ROS 2 bag";
+      "expected a folder that holds depth.txt (TUM), depth/*.png or depth/*.npy, *.depth.png (7-Scenes), *.pcd or "
+      "metadata.yaml with a ROS 2 bag";
   const std::string no_recording = folder_.path().string() + ": is not a recording: " + allowed;
   EXPECT_EQ(error(folder_.path()), no_recording);
   folder_.write("camera.json", kCamera);
   EXPECT_EQ(error(folder_.path()), no_recording);
   fs::create_directories(folder_ / "depth");
-  expect_error("depth", "holds no .png file");
+  expect_error("depth", "holds no .png and no .npy file");
   folder_.write_depth("depth/0000.png", 1000);
   fs::remove(folder_ / "camera.json");
   expect_error("camera.json", "is missing: depth images need {width, height, fx");
@@ -268,6 +291,54 @@ TEST(TumLists, ManyLinesAreAssociatedQuickly) {
   ASSERT_EQ(frames.size(), depth.size());
   for (std::size_t i = 0; i < frames.size(); ++i)
     ASSERT_EQ(frames[i].colour, i % 2 == 0 ? std::to_string(i) : "") << i;
+}
+
+// A wall at 2 m, as depths and as distances along the rays, in a NumPy file of floats.
+TEST_F(Recording, DepthsAreFloatsAndDistancesIfCameraJsonSaysSo) {
+  constexpr int kWidth = 6, kHeight = 4;
+  const CameraIntrinsics camera{kWidth, kHeight, 5, 5, 2.5, 1.5};
+  const auto wall = [&](bool along_ray) {
+    std::string file = "\x93NUMPY" + std::string("\1\0", 2), values;
+    const std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 6), }\n";
+    for (int v = 0; v < kHeight; ++v)
+      for (int u = 0; u < kWidth; ++u) values += raw(along_ray ? unproject(camera, u, v, 2).norm() : 2.0);
+    return file + raw(static_cast<std::uint16_t>(header.size())) + header + values;
+  };
+  const std::string json = R"({"width": 6, "height": 4, "fx": 5, "fy": 5, "cx": 2.5, "cy": 1.5, )"
+                           R"("depth_scale_m": 1, "frame_rate_hz": 30)";
+  for (const bool along_ray : {false, true}) {
+    folder_.write("camera.json",
+                  json + (along_ray ? R"(, "depth_along": "ray"})" : R"(, "depth_along": "axis"})"));
+    folder_.write("depth/1.npy", wall(along_ray));
+    const RecordingIndex index = index_recording(folder_.path());
+    EXPECT_HAS(description(index, "30 Hz"), "1 frame(s) from depth NumPy at 30 Hz");
+    const PointCloud cloud = read_frame(index, 0, 2.01);  // the corners are 2.3 m away
+    ASSERT_EQ(cloud.size(), camera.pixels());
+    for (std::size_t i = 0; i < cloud.size(); ++i) EXPECT_NEAR(cloud.z[i], 2, 1e-15);
+    EXPECT_TRUE(std::isnan(read_frame(index, 0, 1.99).z[0]));
+  }
+  // The layouts of TUM and ScanNet.
+  folder_.write("depth.txt", "1 depth/1.npy\n");
+  EXPECT_NEAR(read_frame(index_recording(folder_.path()), 0, kNoLimit).z[0], 2, 1e-15);
+  fs::remove(folder_ / "depth.txt"), fs::remove(folder_ / "camera.json");
+  folder_.write("intrinsic/intrinsic_depth.txt", "5 0 2.5 0\n0 5 1.5 0\n0 0 1 0\n0 0 0 1\n");
+  EXPECT_EQ(index_recording(folder_.path()).camera.width, kWidth);
+  folder_.write("camera.json", json + R"(, "depth_along": "z"})");
+  expect_error("camera.json", "depth_along = \"z\": expected \"axis\", \"ray\"");
+  folder_.write("camera.json", json + "}");
+  folder_.write_depth("depth/2.png", 1000);
+  expect_error("depth", "holds .png and .npy files: expected one kind");
+}
+
+TEST_F(Recording, NamesWithEqualNumbersAreANote) {
+  write_pcd("frame_2.pcd", "2"), write_pcd("frame_1.pcd", "1");
+  EXPECT_TRUE(index_recording(folder_.path()).notes.empty());
+  write_pcd("frame_01.pcd", "1");
+  const RecordingIndex index = index_recording(folder_.path());
+  EXPECT_EQ(index.frames.size(), 3u);
+  ASSERT_EQ(index.notes.size(), 1u);
+  EXPECT_EQ(index.notes[0].kind, "equal numbers");
+  EXPECT_EQ(index.notes[0].text, "frame_01.pcd and frame_1.pcd have equal numbers: all are frames");
 }
 
 TEST_F(Recording, StreamsPcdFiles) {

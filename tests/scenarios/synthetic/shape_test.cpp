@@ -166,6 +166,23 @@ TEST(Shape, NormalsAreUprightOnTheSurface) {
   }
 }
 
+// A sphere or corner that is larger than the grid has no points beyond it, and no back there.
+TEST(Shape, HasNoBackWhereTheGridDoesNotReach) {
+  for (const Kind kind : {Kind::sphere, Kind::corner}) {
+    Shape::Settings s = settings_of(kind);
+    s.radius_m = 0.5;
+    const Shape shape(s, kGrid);
+    for (const double x : {-0.1, -0.045, -0.03, 0.0, 0.03, 0.045, 0.1}) {
+      const double y = shape.height(x, 0.001), below = shape.signed_distance({x, y - 0.002, 0.001});
+      EXPECT_GT(shape.signed_distance({x, y + 0.002, 0.001}), 0.001) << x;
+      if (std::abs(x) > 0.044)
+        EXPECT_TRUE(std::isnan(below)) << static_cast<int>(kind) << " " << x;
+      else
+        EXPECT_LT(below, -0.001) << static_cast<int>(kind) << " " << x;
+    }
+  }
+}
+
 // The distance is NaN below the plane that ends at the border. For a ridge that is the plane of its flank, at
 // 35 degrees.
 TEST(Shape, HasNoBackBesideItsBorder) {

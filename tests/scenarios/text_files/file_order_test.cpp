@@ -32,6 +32,23 @@ TEST(FileOrder, EqualNumbersAreInTheOrderOfTheirTexts) {
   expect_order({"a0", "a00", "a001", "a01", "a1", "a01b", "a1b"});
 }
 
+TEST(FileOrder, NamesWithEqualNumbersAreFound) {
+  const auto found = [](std::vector<std::filesystem::path> files) {
+    sort_by_name(files);
+    return equal_numbers(files);
+  };
+  EXPECT_EQ(found({"frame_1.pcd", "frame_2.pcd", "frame_01.pcd"}),
+            "frame_01.pcd and frame_1.pcd have equal numbers: all are frames");
+  EXPECT_EQ(found({"3.png", "0003.png", "7.PNG", "7.png", "8.png"}),
+            "0003.png and 3.png have equal numbers, and so have 1 more pair(s): all are frames");
+  for (const std::vector<std::filesystem::path>& files :
+       {std::vector<std::filesystem::path>{},
+        {"1.png", "10.png", "100.png"},
+        {"a1.png", "b1.png", "1.png"},
+        {"1305031102.5.png", "1305031102.05.png", "1305031102.50.png"}})
+    EXPECT_EQ(found(files), "");
+}
+
 TEST(FileOrder, TimesOfAClockHaveDecimals) {
   expect_order({"1305031102.16.png", "1305031102.160407.png", "1305031102.5.png", "1305031103.1.png"});
   expect_order({"2.5.png", "2.16.png"});

@@ -29,6 +29,16 @@ TEST(JsonText, ReportsWhereItIsNotJson) {
   EXPECT_HAS(refused("{\"a\":\n nul}"), "line 2, column 5");
 }
 
+// Otherwise all that follows the byte would be ignored.
+TEST(JsonText, TheByteZeroIsRefused) {
+  const std::string zero(1, '\0');
+  for (const std::string& text :
+       {"{}" + zero, "{}" + zero + "{\"a\": 1}", zero + "{}", "{\"a\": \"" + zero + "\"}"}) {
+    EXPECT_HAS(refused(text), "x.json: has the byte 0 at byte ");
+    EXPECT_FALSE(json_or_none(text, "x"));
+  }
+}
+
 TEST(JsonText, AKeyTwiceIsRefused) {
   EXPECT_HAS(refused(R"({"seed": 1, "seed": 2})"), R"(x.json: the key "seed" appears twice in one object)");
   EXPECT_HAS(refused(R"([{"a": {"b": 1, "c": [{"b": 2}], "b": 3}}])"), R"(the key "b" appears twice)");

@@ -253,6 +253,19 @@ test("a run without a slave beside one with a slave", async () => {
   });
 });
 
+test("the clock goes on when the first of two runs has ended", async () => {
+  remoteTouch("view", "slave.h5", "a.h5", "-o", "longer.html");
+  await withPage("longer.html", {}, async (page) => {
+    const [first, second] = await page.evaluate(() => window.remoteTouch.runs.map((run) => run.ticks)), last = second - 1;
+    assert.ok(second > first, `${first} and ${second} ticks`);
+    await page.click("summary");
+    await goTo(page, last);
+    const [time] = columns("a.h5", [last], "time").time, row = page.locator(".values tr", { has: page.locator("th", { hasText: /^time$/ }) });
+    assert.equal(await page.textContent("footer output"), `${time.toFixed(3)} s, tick ${last}`);
+    assert.deepEqual((await row.locator("td").allTextContents()).slice(0, 2), ["-", String(time)]);
+  });
+});
+
 const recording = `${process.env.REMOTE_TOUCH_DATA}/rgbd/visp_cube_dragon`;
 test("true meshes are drawn at their poses", { skip: !existsSync(recording) && "recorded data are missing" }, async () => {
   remoteTouch("run", "fig4.16-moving", "--set", `scenario.path=${recording}`, "--set", "trajectory.row=310", "--set",

@@ -13,6 +13,14 @@ constexpr double kRounding = 1 + 1e-5;  // larger than the rounding of normals
 // Detection reaches a little less far than the field.
 constexpr double kMaxReach_m = kFieldMargin_m - 2e-4;
 
+// Returns cell_and_octant() in cells whose edges are longer by the factor 2^doublings. Each of the three
+// coordinates has 20 bits; the octant has the last three.
+std::uint64_t in_larger_cells(std::uint64_t cell_and_octant, int doublings) {
+  constexpr std::uint64_t kLastOfEach =
+      std::uint64_t{1} << 43 | std::uint64_t{1} << 23 | std::uint64_t{1} << 3;
+  return cell_and_octant & ~(kLastOfEach * ((std::uint64_t{1} << doublings) - 1));
+}
+
 }  // namespace
 
 ContactList::ContactList(std::shared_ptr<const VoxelTool> tool, const ToolParameters& parameters,
@@ -53,16 +61,21 @@ void ContactList::append_contacts(double side) {
   disks_.append_contacts(chosen_, finder_, kernels_, side, contacts_);
 }
 
-// Finds the nearest disk of every cell of the tool; disks are compared by their bounds.
+// Finds the nearest disk of every cell of the tool; disks are compared by their bounds. If there is no room
+// for all cells, it begins again with larger ones.
 void ContactList::gather_cells() {
   const NearDisks& disks = disks_;
-  thinning_.begin();
-  nearest_.clear();
+  int doublings = 0;
+  const auto begin = [&] { thinning_.begin(), nearest_.clear(); };
+  begin();
   cells_.resize(disks.size());
   for (std::uint32_t disk = 0; disk < disks.size(); ++disk) {
-    const std::size_t cell = thinning_.cell(disks.cell(disk));
+    const std::size_t cell = thinning_.cell(in_larger_cells(disks.cell(disk), doublings));
+    if (cell == ContactThinning::kNoCell) {
+      ++doublings, begin(), disk = ~std::uint32_t{0};
+      continue;
+    }
     cells_[disk] = static_cast<std::uint32_t>(cell);
-    if (cell == ContactThinning::kNoCell) continue;
     const double bound_m = disks.bound_m(disk);
     if (cell == nearest_.size()) nearest_.push_back({bound_m, disk});
     Nearest& nearest = nearest_[cell];
@@ -83,8 +96,7 @@ void ContactList::gather_deepest(double side) {
   chosen_.clear();
   for (std::uint32_t disk = 0; disk < disks.size(); ++disk) {
     const std::uint32_t cell = cells_[disk];
-    const bool can_be_deeper = cell < nearest_.size() && disk != nearest_[cell].disk &&
-                               -disks.bound_m(disk) > contacts_[cell].depth_m;
+    const bool can_be_deeper = disk != nearest_[cell].disk && -disks.bound_m(disk) > contacts_[cell].depth_m;
     if (can_be_deeper) chosen_.push_back(disk);
   }
   append_contacts(side);

@@ -59,16 +59,18 @@ void ContactThinning::thin(std::vector<ToolContact>& contacts, std::size_t max) 
 
 void ContactThinning::thin_in_cells(std::vector<ToolContact>& contacts, double cell_m) {
   begin();
-  std::size_t kept = 0;
-  for (const ToolContact& contact : contacts) {  // only contacts already read are overwritten
+  std::size_t kept = 0, read = 0;
+  for (; read < contacts.size(); ++read) {  // only contacts already read are overwritten
+    const ToolContact& contact = contacts[read];
     const std::size_t place = cell(cell_and_octant(contact.r_T, contact.n_T, 1 / cell_m));
-    if (place == kNoCell) continue;
+    if (place == kNoCell) break;
     if (place == kept)
       contacts[kept++] = contact;
     else if (contact.depth_m > contacts[place].depth_m)
       contacts[place] = contact;
   }
-  contacts.resize(kept);
+  const auto first_unread = contacts.begin() + static_cast<std::ptrdiff_t>(read);
+  contacts.erase(contacts.begin() + static_cast<std::ptrdiff_t>(kept), first_unread);
 }
 
 }  // namespace remote_touch

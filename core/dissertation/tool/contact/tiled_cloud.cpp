@@ -258,11 +258,12 @@ void TiledCloud::measure_spacing(const PointCloud& cloud) {
     // Pixels on a slanted surface are farther apart. The factor is limited, because a depth camera measures
     // little beyond 70 degrees.
     const Vec3 camera_W = cloud.image->X_WC.translation(), axis_W = cloud.image->X_WC.linear().col(2);
+    const double focal_px = std::min(cloud.image->camera.fx, cloud.image->camera.fy);  // the longer side
     for (std::uint32_t i = 0; i < x_.size(); ++i) {
       if (x_[i] == kFarAway) continue;
       const Vec3 ray = point(i) - camera_W;
       const double slant = std::max(1.0 / 3, std::abs(ray.normalized().dot(normal(i))));  // NaN: 1/3
-      spacing_m_[i] = ray.dot(axis_W) / cloud.image->camera.fx / slant;
+      spacing_m_[i] = ray.dot(axis_W) / focal_px / slant;
     }
     return;
   }

@@ -99,6 +99,7 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
   const Vec3 start_W = pose.p_W;
   MotionProgress progress(p_.rest_threshold_m, kGodObjectPatience);
   int stopped = 0;
+  bool is_stopped = false;  // a new contact ended the last step
   near_.begin(contacts);
   settling_ |= updated;
   while (true) {
@@ -108,7 +109,10 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
     if (near.contacts.empty()) side_ = 1;  // the tool has left the surface that held it
     gather_touched(near);
     const Vector6 a_gu = displacement(pose, device);
-    const Vector6 a_c = constrained(a_gu, pose, report);
+    // An error of second order can end the touch of the contact that ended the last step. It holds the tool
+    // all the same, so the report stays.
+    const bool is_off = is_stopped && touched_.empty();
+    const Vector6 a_c = is_off ? a_gu : constrained(a_gu, pose, report);
     report.allowed_W = a_c;
     progress.update(max_point_displacement_m(a_gu, reach_m_));
     const bool stops = max_point_displacement_m(a_c, reach_m_) <= p_.rest_threshold_m ||
@@ -117,12 +121,13 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
     if (stops || report.steps >= p_.steps_per_tick) break;
     const Vector6 step = capped(a_c, reach_m_, max_step_m_);
     const double free = free_fraction(step, pose, near);
+    is_stopped = free < 1;
     stopped = free * max_point_displacement_m(step, reach_m_) <= p_.rest_threshold_m ? stopped + 1 : 0;
     pose = free == 1 && step == a_gu ? device : moved(pose, free * step);
     ++report.steps;
     if (report.steps == 1) report.first_step_m = pose.p_W - start_W;
   }
-  if (pose == device) report.allowed_W.setZero();
+  if (report.at_rest) report.allowed_W.setZero();  // contacts prevent all that is left
   return report;
 }
 

@@ -10,7 +10,9 @@
 // velocity). The tool moves along a_c until continuous collision detection finds the first new contact, which
 // is a row of J in the next step. Steps are made until the tool is at rest, or until the budget is used up.
 // Force and torque on the hand are those of the constraints at the last pose, k M (a_c - a_u). They are zero
-// for the part of the motion that no contact hinders, even if the tool has not reached the device yet.
+// for the part of the motion that no contact hinders, even if the tool has not reached the device yet. If the
+// tool is at rest, the contacts prevent all of the motion. They include those that stopped the last step and
+// are not touched any more, because of an error of second order.
 //
 // The mesh of the scene. The source has two meshes at rest. Its contacts are corners against faces and edges
 // against edges. Here the faces of the scene are the small disks around its points (disk_contact.h). A

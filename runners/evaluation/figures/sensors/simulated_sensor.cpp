@@ -87,10 +87,9 @@ DepthSensorSettings sensor_settings(DepthSensorKind kind, const CameraIntrinsics
 
 DepthSensorSettings with_own_focal_length(DepthSensorSettings settings, double own_focal_px) {
   const double factor = settings.camera.focal_px / own_focal_px;
-  const Triangulation published = triangulation(settings);
-  settings.noise_px = published.noise_px * factor;
-  settings.disparity_step_px = published.step_px * factor;
-  settings.window_px = static_cast<int>(std::max(1.0, std::floor(published.window_px * factor + 0.5)));
+  settings.disparity_focal_px = own_focal_px;
+  settings.window_px =
+      static_cast<int>(std::max(1.0, std::floor(triangulation(settings).window_px * factor + 0.5)));
   return settings;
 }
 

@@ -29,8 +29,8 @@ struct Study {
   std::vector<LawLimit> half, few;  // limits at which 50 % and 5 % have popped through
 
   double share(std::size_t cell) const {
-    const Tally counted = event_count(tally, 0, cell);
-    return static_cast<double>(counted.events) / counted.runs;
+    const EventCounts counted = event_counts(tally, 0, cell);
+    return static_cast<double>(counted.events) / static_cast<double>(counted.known());
   }
 };
 
@@ -38,7 +38,7 @@ Study study_of(SweepTally tally) {
   Study study{std::move(tally), {}, {}, {}, {}};
   study.outline = outline_of(study.tally);
   study.axes = law_axes(study.outline);
-  const CellCounts counts{[&](std::size_t cell) { return event_count(study.tally, 0, cell); }};
+  const CellCounts counts{[&](std::size_t cell) { return event_counts(study.tally, 0, cell); }};
   study.half = law_limits(study.outline, counts, 0.5);
   study.few = law_limits(study.outline, counts, 0.05);
   return study;
@@ -110,7 +110,7 @@ void add_map(Figure& figure, const Study& study, std::size_t spacing) {
   figure.tables.push_back(table_of(name, "share of lifts that pop through, " + title,
                                    {{"noise", "r_c", "standard deviation of the noise"},
                                     {"acceleration", "r_c f_c^2", "acceleration of the lift"},
-                                    {"popped_through", "fraction", "share of lifts that pop through"}},
+                                    {"popped_through", "1", "share of lifts that pop through"}},
                                    rows));
   figure.panels.push_back(plot(
       "Share that pops through, " + title, "noise (r_c)", "acceleration (r_c f_c^2)",
@@ -137,7 +137,7 @@ int different_cells(FigureContext& context, const Study& study, const Sweep& swe
     for (int i = 0; i < study.outline.replicates; ++i) runs.push_back(study.outline.run(cell, i));
     const std::vector<double> popped = context.part(sweep, std::move(runs)).measure("popped_through");
     const auto events = std::count(popped.begin(), popped.end(), 1.0);
-    different += events != event_count(study.tally, 0, cell).events;
+    different += events != event_counts(study.tally, 0, cell).events;
   }
   return different;
 }
@@ -152,7 +152,7 @@ double difference_to_30_steps(FigureContext& context, const Study& study, const 
        R"(axes.1={"parameter": "scenario.start_velocity_m_per_s", "values": [0.1]})",
        R"(axes.2={"parameter": "scenario.noise_sigma_m", "values": [0.0005, 0.0025, 0.005]})"}));
   const CellCounts counts{
-      [&](std::size_t cell) { return tally(lifts, lifts.measure("popped_through"), cell); }};
+      [&](std::size_t cell) { return event_counts(lifts, lifts.measure("popped_through"), cell); }};
   const LawAxes axes = law_axes(lifts);
   std::vector<double> differences;
   for (const LawLimit& each : law_limits(lifts, counts, 0.5))

@@ -32,9 +32,11 @@ LawAxes law_axes(const SweepResult& outline) {
 
 std::vector<LawLimit> law_limits(const SweepResult& outline, const CellCounts& events, double level) {
   const LawAxes axes = law_axes(outline);
-  const Table table = event_limits(outline, events, {"popped_through", 0.5, kAccelerations, level}).table;
-  const auto &limit = numbers(table, "limit"), &low = numbers(table, "limit_low"),
-             &high = numbers(table, "limit_high");
+  // The lifts of a cell are independent, and cells share no noise.
+  const Table table = event_limits(outline, events, {"popped_through", 0.5, kAccelerations, level, true},
+                                   independent_streams(outline.cell_count()))
+                          .table;
+  const auto &limit = numbers(table, "value"), &low = numbers(table, "low"), &high = numbers(table, "high");
   const double unit = kLawRadius_m * kLawRate_hz * kLawRate_hz;
   std::vector<LawLimit> limits;
   for (std::size_t row = 0; row < limit.size(); ++row) {

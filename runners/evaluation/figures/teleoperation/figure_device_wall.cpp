@@ -32,7 +32,10 @@ Wall wall(std::size_t renderer, double damping_Ns_per_m, int delay_ticks) {
                          "device.delay_ticks=" + std::to_string(delay_ticks)});
   };
   return {renderer, damping_Ns_per_m, delay_ticks,
-          WallLimit(experiment, linear_wall(damping_Ns_per_m, delay_ticks))};
+          WallLimit(experiment, {.mass_kg = 0.3,
+                                 .damping_Ns_per_m = damping_Ns_per_m,
+                                 .spring_share = 0.25,
+                                 .delay_ticks = delay_ticks})};
 }
 
 std::vector<Wall> walls(FigureContext& context) {
@@ -69,7 +72,9 @@ Panel panel(Figure& figure, const std::vector<Wall>& all, int delay_ticks) {
         name, std::string("limits of ") + kRenderers[renderer], list,
         {{"damping", "N s/m", "damping of the device", [](const Wall& w) { return w.damping_Ns_per_m; }},
          {"stiffness", "N/m", "largest stable stiffness", [](const Wall& w) { return w.limit.middle(); }},
-         {"expected", "N/m", "limit of a linear wall", [](const Wall& w) { return w.limit.expected(); }}}));
+         {"expected", "N/m", "limit of a linear wall, law", [](const Wall& w) { return w.limit.expected(); }},
+         {"exact", "N/m", "limit of a linear wall, eigenvalues",
+          [](const Wall& w) { return w.limit.exact(); }}}));
     if (renderer == 0)
       made.curves.push_back({name, "damping", "expected", CurveStyle::line, "b / (T / 2 + delay)"});
     made.curves.push_back({name, "damping", "stiffness", CurveStyle::dots, kRenderers[renderer]});

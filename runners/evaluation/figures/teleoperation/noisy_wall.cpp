@@ -11,6 +11,7 @@ namespace remote_touch {
 namespace {
 
 constexpr double kNoisyDamping_Ns_per_m = 2, kNoisyMass_kg = 0.3, kNoisyFrame_s = 1.0 / 30;
+constexpr SampledWall kNoisyWall{.mass_kg = kNoisyMass_kg, .damping_Ns_per_m = kNoisyDamping_Ns_per_m};
 constexpr double kAtRest_s = 1.6;  // time from which the hand rests
 constexpr double kSoft_N_per_m = 200;
 constexpr int kNoiseSeeds = 4, kNoiseHalvings = 7;
@@ -66,8 +67,7 @@ std::vector<double> mean_variances(FigureContext& context, const std::vector<Noi
 double expected_variance_m2(double plane_noise_m, double stiffness_N_per_m) {
   const double half = std::sqrt(1.25 * stiffness_N_per_m / kNoisyMass_kg) * kNoisyFrame_s / 2;
   const double q = std::sin(half) / half;
-  const double damping =
-      kNoisyDamping_Ns_per_m * (1 - stiffness_N_per_m / linear_wall(kNoisyDamping_Ns_per_m, 0));
+  const double damping = kNoisyDamping_Ns_per_m * (1 - stiffness_N_per_m / wall_law_N_per_m(kNoisyWall));
   return plane_noise_m * plane_noise_m * stiffness_N_per_m * kNoisyFrame_s * q * q / (2.5 * damping);
 }
 
@@ -93,7 +93,7 @@ std::vector<NoisyWall> noisy_walls(FigureContext& context, const std::vector<dou
   for (std::size_t i = 0; i < walls.size(); ++i) {
     NoisyWall& wall = walls[i];
     wall.plane_noise_m = std::sqrt(plane_m2[i]);
-    wall.expected_N_per_m = last_calm(1, linear_wall(kNoisyDamping_Ns_per_m, 0), 40, [&](double stiffness) {
+    wall.expected_N_per_m = last_calm(1, wall_law_N_per_m(kNoisyWall), 40, [&](double stiffness) {
       return expected_variance_m2(wall.plane_noise_m, stiffness) <= kMost_m2;
     });
     calm.push_back(0.4 * wall.expected_N_per_m), not_calm.push_back(2.5 * wall.expected_N_per_m);

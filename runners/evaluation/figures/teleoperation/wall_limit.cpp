@@ -1,14 +1,15 @@
 #include "runners/evaluation/figures/teleoperation/wall_limit.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch {
 
 namespace {
 
-constexpr double kTick_s = 0.001;
 constexpr int kHalvings = 7;
 
 // The hand is in contact, on a path at rest, from 1.6 s on. An oscillation that grows is larger in the second
@@ -31,21 +32,22 @@ double swing(const Trace& trace, const Value& value, double from_s, double to_s)
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     if (trace.time_s[i] < from_s || trace.time_s[i] >= to_s) continue;
-    low = std::min(low, value(trace, i)), high = std::max(high, value(trace, i));
+    low = min_or_nan(low, value(trace, i)), high = max_or_nan(high, value(trace, i));
   }
   return high - low;
 }
 
+// An unknown position, or a run that ends before its windows, is no proof of stability.
 template <class Value>
 bool grows(const Trace& trace, const Value& value, double least) {
   const double first = swing(trace, value, kWindow_s[0], kWindow_s[1]);
   const double second = swing(trace, value, kWindow_s[1], kWindow_s[2]);
-  return second > least && second > first;
+  return !std::isfinite(first) || !std::isfinite(second) || (second > least && second > first);
 }
 
 bool opens(const Trace& trace, double from_s) {
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (trace.time_s[i] >= from_s && trace.force_N[i].isZero(0)) return true;
+    if (trace.time_s[i] >= from_s && !(trace.force_N[i].squaredNorm() > 0)) return true;
   return false;
 }
 
@@ -57,10 +59,6 @@ bool is_unstable(const Trace& trace) {
 }
 
 }  // namespace
-
-double linear_wall(double damping, int delay_ticks) {
-  return damping / (kTick_s / 2 + delay_ticks * kTick_s);
-}
 
 void bisect(FigureContext& context, const std::vector<WallLimit*>& limits) {
   for (int halving = 0; halving < kHalvings; ++halving) {

@@ -12,15 +12,15 @@ std::vector<double> CarrySweep::values(std::size_t axis) const {
   return of_settings;
 }
 
-Tally CarrySweep::lost(std::size_t setting, std::size_t strength, Carrier rule) const {
-  return tally(result_, result_.measure("tool_popped_through"), cell(setting, strength, rule));
+EventCounts CarrySweep::lost(std::size_t setting, std::size_t strength, Carrier rule) const {
+  return event_counts(result_, result_.measure("tool_popped_through"), cell(setting, strength, rule));
 }
 
 CarrySweep::Limit CarrySweep::limit(std::size_t setting, Carrier rule) const {
   Limit limit;
   for (std::size_t i = 0; i < strengths().size(); ++i) {
-    const Tally lost_here = lost(setting, i, rule);
-    const bool any = lost_here.events > 0, all = lost_here.runs > 0 && lost_here.events == lost_here.runs;
+    const EventCounts lost_here = lost(setting, i, rule);
+    const bool any = lost_here.events > 0, all = lost_here.known() > 0 && lost_here.without == 0;
     if (any && limit.lost > strengths()[i]) limit.lost = strengths()[i];
     if (strengths()[i] < limit.lost) limit.carried = strengths()[i];
     if (!all)

@@ -37,7 +37,7 @@ class CarrySweep {
   }
   // Value of a numeric axis for each setting.
   std::vector<double> values(std::size_t axis) const;
-  Tally lost(std::size_t setting, std::size_t strength, Carrier rule) const;
+  EventCounts lost(std::size_t setting, std::size_t strength, Carrier rule) const;
   struct Limit {
     // Every run is carried up to this strength; NaN: none is known.
     double carried = std::numeric_limits<double>::quiet_NaN();

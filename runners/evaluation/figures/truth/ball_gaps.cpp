@@ -49,11 +49,13 @@ DepthError depth_error(const Experiment& experiment, double z_m) {
   };
   DepthSensorSettings settings;
   settings.sensor = DepthSensorKind::structured_light;
+  settings.camera.focal_px = number("focal_px");
   settings.baseline_m = number("baseline_m");
+  settings.disparity_focal_px = number("disparity_focal_px");
   settings.noise_px = number("noise_px");
   settings.disparity_step_px = number("disparity_step_px");
   const Triangulation sensor = triangulation(settings);
-  const double per_px = z_m * z_m / (number("focal_px") * sensor.baseline_m);
+  const double per_px = z_m * z_m / (sensor.focal_px * sensor.baseline_m);
   return {per_px * sensor.noise_px, 0.5 * per_px * sensor.step_px};
 }
 

@@ -53,7 +53,7 @@ std::vector<std::string> exact_sensor();
 
 // The error of a depth along the optical axis.
 struct DepthError {
-  double sigma_m = 0;     // standard deviation of the noise
+  double sigma_m = 0;     // standard deviation, that of the rounding included
   double rounding_m = 0;  // half of a step of the depth
   double largest_m() const { return 3 * sigma_m + rounding_m; }
 };

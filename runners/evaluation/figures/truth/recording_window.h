@@ -59,6 +59,9 @@ class RecordingWindow final : public Scenario {
   double frame_rate_hz() const override { return scene_.frame_rate_hz(); }
   int frame_count() const override { return static_cast<int>(frames_.size()); }
   double captured_s(int frame) const override { return scene_.captured_s(frame); }
+  // The last frame is not repeated, so that the contact is judged in all frames alike: only while the frame
+  // is the newest.
+  bool ends() const override { return true; }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override { return frame_at(frame).points; }
   PointCloud cloud(int frame) const override;
   double signed_distance(const Vec3& p_W, double time_s) const override;

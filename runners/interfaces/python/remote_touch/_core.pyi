@@ -156,6 +156,7 @@ def analyse(
     by: _List[_Text],
     difference: _List[_Text],
     between: _Text,
+    direction: _Text,
 ) -> dict[str, Any]: ...
 def open(file: _Text) -> dict[str, Any]: ...
 def compare_files(

@@ -5,7 +5,7 @@ import os
 
 from remote_touch import _core
 from remote_touch._core import InputError
-from remote_touch.classes import Renderer, name_of
+from remote_touch.classes import Renderer, identify, name_of
 
 _list = list  # which is a function of this file, below
 
@@ -22,6 +22,7 @@ def run(experiment, *, seed=None, set=None, output=None, force=False, timing=Fal
     file: config, command, recipe, version, digest and so on.
     """
     from remote_touch import dataset
+    identify()
     subject, text = _subject(experiment)
     result = _core.run(subject, text, _overrides(set, seed), _path(output), bool(force), bool(timing),
                        _report(progress, subject))
@@ -42,6 +43,7 @@ def sweep(sweep, *, set=None, threads=None, output=None, progress=None, executor
     does no more work, and RuntimeError if a run made twice differs; the same call continues.
     """
     from remote_touch import dataset
+    identify()
     subject, text = _subject(sweep)
     if executor is not None:
         return dataset.warned(_sweep_by(executor, chunk, subject, text, set, threads, output, progress), os.fsdecode(subject))
@@ -69,14 +71,17 @@ def _sweep_by(executor, chunk, subject, text, set, threads, output, progress):
 def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None):
     """Repeats one run of a sweep as a full trace. sweep: a file, or what sweep() returned.
 
-    cell: the place on each axis from 0, as a tuple, or the value of each axis, as a dict. output: as of run().
+    cell: the place on each axis from 0, as a tuple, or the value of each axis, as a dict. replicate: its place. In a data set
+    of which parts were selected, places are those in the selection, of the axes that it still has. output: as of run().
     """
     from remote_touch import dataset
+    identify()
     file, attributes = "", []
     if isinstance(sweep, (str, os.PathLike)):
         file = _native(sweep)
     elif "config" in getattr(sweep, "attrs", {}):
         attributes = [(name, value) for name, value in sweep.attrs.items() if isinstance(value, str)]
+        cell, replicate = dataset.run_in(sweep, cell, replicate)
     else:
         raise InputError(f"{type(sweep).__name__}: expected a file, or what rt.sweep returned")
     result = _core.replay(file, attributes, _cell(cell), _integer("replicate", replicate, 0, 2**31 - 1), _path(output),
@@ -84,13 +89,16 @@ def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None)
     return dataset.of_trace(_warned(result, file))
 
 
-def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=(), difference=(), between=None):
-    """Answers questions about a sweep; returns tables as a dict of Datasets: limits, mean_MEASURE, difference_MEASURE.
+def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=(), difference=(), between=None,
+            direction=None):
+    """Answers questions about a sweep; returns tables as a dict of Datasets: limits, mean_MEASURE, difference_MEASURE, and
+    limit_difference and limit_ratio.
 
     sweep: a file, or what sweep() returned. limit: the measure of an event, which happens above the value `above`: where
     along the axis `along` does it become more probable than `level`? mean: measures whose means are wanted, by the axes
     `by` (all if empty). difference: measures whose differences between the first and each other value of the axis
-    `between` are wanted. Without a question: the limit of popped_through, with a tool of tool_popped_through, and
+    `between` are wanted; with `limit` and `between`, also the differences and ratios of the limits. direction: "rises" if
+    the event becomes more probable along the axis, "falls" if less; None: as the runs show it. Without a question: the limit of popped_through, with a tool of tool_popped_through, and
     all means. The intervals are of 95 %.
     """
     from remote_touch import dataset
@@ -100,7 +108,7 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
     else:
         parts, config = dataset.parts_of_sweep(sweep), str(sweep.attrs.get("config", "{}"))
     result = _core.analyse(file, parts, config, _name(limit), _name(along), _number("above", above), _number("level", level),
-                           _names(mean), _names(by), _names(difference), _name(between))
+                           _names(mean), _names(by), _names(difference), _name(between), _name(direction))
     return dataset.of_figure(_warned(result, file))
 
 
@@ -195,6 +203,7 @@ def scorecard(methods=(), *, scenes=(), seeds=10, output, threads=None, progress
     """
     import tempfile
     import warnings
+    identify()
     folder = _native(output)
     with tempfile.TemporaryDirectory() as files:
         names = [_method(method, files) for method in methods]
@@ -281,7 +290,7 @@ def _overrides(given, seed=None):
     pairs = [*_items("set", given)]
     if seed is not None:
         pairs.append(("seed", seed))
-    return [_native(f"{path}={_text(value, path)}") for path, value in pairs]
+    return [_native(f"{path}={_setting(value, path)}") for path, value in pairs]
 
 
 def _text(value, path):
@@ -289,6 +298,18 @@ def _text(value, path):
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     return _json(value, f"{path} = ")
+
+
+def _setting(value, path):
+    """A text stays a text, also one that reads as another value of JSON, such as "1"."""
+    text = _text(value, path)
+    if isinstance(value, str):
+        try:
+            json.loads(text)
+        except ValueError:
+            return text
+        return _json(value)
+    return text
 
 
 def _path(output):

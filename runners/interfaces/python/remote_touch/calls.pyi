@@ -51,6 +51,7 @@ def analyse(
     by: str | Iterable[str] = (),
     difference: str | Iterable[str] = (),
     between: str | None = None,
+    direction: Literal["rises", "falls"] | None = None,
 ) -> dict[str, xarray.Dataset]: ...
 def open(path: _Path) -> Any: ...
 

@@ -19,7 +19,11 @@ from remote_touch._core import InputError
 CHUNK_S = 1.0  # time that a chunk should take
 LOSSES = 5  # times that a chunk is submitted again while no other succeeds
 
-_worker_sweep = functools.lru_cache(maxsize=2)(_core.WorkerSweep)
+
+@functools.lru_cache(maxsize=2)
+def _worker_sweep(config, build):
+    """The sweep, with the classes that this process has in this build."""
+    return _core.WorkerSweep(config)
 
 
 def do_runs(config, runs, number):
@@ -30,11 +34,13 @@ def do_runs(config, runs, number):
     """
     made = {"build": _core.build(), "worker": f"{socket.gethostname()}/{os.getpid()}", "thread": threading.get_native_id()}
     try:
-        sweep = _worker_sweep(config)
+        sweep = _worker_sweep(config, tuple(made["build"]))
     except InputError as error:  # of another build, or without the recording
         return {**made, "problem": str(error)}
     begin_s = time.perf_counter()
     states, values, notes, errors = sweep.do_runs(runs)
+    if _core.build() != made["build"]:
+        return {**made, "problem": "a class was registered while the worker made these runs"}
     return {**made, "inputs": sweep.inputs, "states": states, "values": values, "notes": notes, "errors": errors,
             "seconds": time.perf_counter() - begin_s}
 
@@ -218,7 +224,7 @@ def _is_whole(made, count):
     if "problem" in made:
         return True
     states, values, notes = made["states"], made["values"], made["notes"]
-    return (states.shape == notes.shape == (count,) and states.dtype.kind == notes.dtype.kind == "i" and values.ndim == 2
+    return (states.shape == notes.shape == (count,) and states.dtype.kind == "i" and notes.dtype.kind == "u" and values.ndim == 2
             and values.shape[1] == count and values.dtype == np.float64 and made["seconds"] >= 0
             and len(made["errors"]) == count and all(isinstance(text, str) for text in made["errors"]))
 

@@ -1,5 +1,11 @@
 """Base classes of own renderers, scenarios and trajectories, and their place in the catalog."""
+import dis
+import hashlib
 import math
+import os
+import pathlib
+import sys
+import types
 
 from remote_touch import _core
 from remote_touch._core import InputError
@@ -121,7 +127,8 @@ def register(cls=None, name=None, *, summary=None):
     text = summary or (lines[0] if lines else f"a {kind} in Python")
     _core.register_class(kind, name, text, cls, _settings_of(cls, f"{kind} {name}"))
     _registered[kind, name] = cls
-    _identify()
+    _read_files(cls)
+    identify()
     return cls
 
 
@@ -168,31 +175,115 @@ def _settings_of(cls, subject):
     return [*found.values()]
 
 
-def _identify():
-    """Tells the results which classes take part, by file, and the hash of those files."""
-    import hashlib
-    files, sources = {}, {}
+_BASES = (_Base, Renderer, Scenario, Trajectory, object)
+_of_files = {}  # class -> the name of its file, and the bytes that this had when the class was registered
+_identity = []  # what the results record now
+
+
+def identify():
+    """Tells the results which classes take part, by file, and the hash of those files. Called again before each run and sweep:
+    a cell of a notebook may have changed what a method calls."""
+    files, sources = {}, set()
     for cls in _registered.values():
-        file, source = _source_of(cls)
-        files.setdefault(file, []).append(cls.__qualname__)
-        sources.setdefault(file, set()).add(source)
+        own = [_of_files.get(part) or (part.__module__, _Definition(part).text.encode("utf-8", "surrogatepass"))
+               for part in cls.__mro__ if part not in _BASES]
+        files.setdefault(own[0][0], set()).add(cls.__qualname__)
+        sources.update(own)
     digest = hashlib.sha256()
-    for file in sorted(sources):
-        for source in sorted(sources[file]):
-            digest.update(source)
-    text = "; ".join(f"{file}: {', '.join(sorted(set(names)))}" for file, names in sorted(files.items()))
-    _core.identify_program(f"Python {text}", digest.hexdigest())
+    for _, source in sorted(sources):
+        digest.update(source)
+    text = "; ".join(f"{file}: {', '.join(sorted(names))}" for file, names in sorted(files.items()))
+    identity = [f"Python {text}", digest.hexdigest()]
+    if files and identity != _identity:
+        _core.identify_program(*identity)
+        _identity[:] = identity
 
 
-def _source_of(cls):
-    """The name of its file and the bytes of that, or of its own source where there is none, as in a notebook."""
-    import inspect
-    import pathlib
-    import sys
-    file = getattr(sys.modules.get(cls.__module__), "__file__", None)
-    try:
-        if file is not None:
-            return pathlib.Path(file).name, pathlib.Path(file).read_bytes()
-        return cls.__module__, inspect.getsource(cls).encode()
-    except (OSError, TypeError):
-        return f"{cls.__module__} (no source)", b""
+def _read_files(cls):
+    """Reads the files of the class and of those that it is derived from. A class of a notebook has none, nor has it in a worker that
+    got it from there, where its module is the file that started the worker."""
+    for part in cls.__mro__:
+        file = getattr(sys.modules.get(part.__module__), "__file__", None)
+        codes = [getattr(getattr(value, "__func__", value), "__code__", None) for value in vars(part).values()]
+        places = {os.path.basename(code.co_filename) for code in codes if code}
+        if part in _BASES or file is None or (places and os.path.basename(file) not in places):
+            continue
+        try:
+            _of_files[part] = os.path.basename(file), pathlib.Path(file).read_bytes()
+        except OSError:  # its definition stands for it
+            pass
+
+
+class _Definition:
+    """A text that differs if a class without a file computes something else: the code of its methods, and the values and functions
+    that they use. Modules, and what is from their files, have their names only."""
+
+    _unknown = []  # values of which no text can be made; they live as long as the process, so that no other has their place
+    _process = os.urandom(16).hex()
+
+    def __init__(self, cls):
+        self.seen = [cls]
+        self.text = self._of_class(cls)
+
+    def _of(self, value):
+        if value is None or value is ... or isinstance(value, (bool, int, float, complex, str, bytes, range, slice)):
+            return f"{type(value).__name__} {value!r}"
+        if isinstance(value, (frozenset, set)):  # each process has another order
+            return f"{type(value).__name__} {sorted(map(self._of, value))}"
+        if isinstance(value, tuple):
+            return f"({', '.join(map(self._of, value))})"
+        if isinstance(value, types.CodeType):
+            parts = ("co_flags", "co_code", "co_exceptiontable", "co_names", "co_varnames", "co_consts")
+            return f"code {value.co_name} {self._of(tuple(getattr(value, part, None) for part in parts))}"
+        if isinstance(value, types.ModuleType):
+            return f"module {value.__name__} {getattr(value, '__version__', '')}"
+        if type(value).__module__ == "numpy" and hasattr(value, "tobytes") and not value.dtype.hasobject:
+            return f"array {value.dtype} {value.shape} {value.tobytes().hex()}"
+        if isinstance(value, types.MemberDescriptorType) or type(value).__name__ == "ufunc":
+            return f"{type(value).__name__} {value.__name__}"
+        if _is_of_a_module(value):
+            return f"{value.__module__}.{getattr(value, '__qualname__', value.__name__)}"
+        if any(value is one for one in self.seen):
+            return f"again {getattr(value, '__qualname__', type(value).__name__)}"
+        self.seen.append(value)
+        return self._of_new(value)
+
+    def _of_new(self, value):
+        if isinstance(value, list):
+            return f"list {self._of(tuple(value))}"
+        if isinstance(value, dict):
+            return f"dict {self._of(tuple(value.items()))}"
+        if isinstance(value, Setting):
+            return f"Setting {self._of(vars(value))}"
+        if isinstance(value, (staticmethod, classmethod)):
+            return f"{type(value).__name__} {self._of(value.__func__)}"
+        if isinstance(value, property):
+            return f"property {self._of((value.fget, value.fset, value.fdel))}"
+        if isinstance(value, types.FunctionType):
+            cells = tuple(cell.cell_contents for cell in value.__closure__ or () if cell != types.CellType())
+            names = sorted(_globals_of(value.__code__))
+            used = {name: value.__globals__[name] for name in names if name in value.__globals__}
+            return f"function {self._of((value.__code__, value.__defaults__, value.__kwdefaults__, cells, used))}"
+        if isinstance(value, type):
+            return self._of_class(value)
+        if not any(value is one for one in self._unknown):
+            self._unknown.append(value)
+        return f"unknown {self._process} {[value is one for one in self._unknown].index(True)}"
+
+    def _of_class(self, cls):
+        of_every_class = ("__dict__", "__weakref__", "__module__", "__doc__", "__firstlineno__", "__static_attributes__", "_abc_impl")
+        own = {name: value for name, value in vars(cls).items() if name not in of_every_class}
+        return f"class {cls.__qualname__} {self._of((own, cls.__bases__))}"
+
+
+def _is_of_a_module(value):
+    """True for functions and classes that are from a file or a library, not from a notebook or a script."""
+    module = getattr(value, "__module__", None)
+    has_name = isinstance(module, str) and hasattr(value, "__name__")
+    return has_name and module != "__main__" and module in sys.modules
+
+
+def _globals_of(code):
+    """The names of the global variables that the code reads, in functions inside it, too."""
+    names = {step.argval for step in dis.get_instructions(code) if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")}
+    return names.union(*(_globals_of(inner) for inner in code.co_consts if isinstance(inner, types.CodeType)))

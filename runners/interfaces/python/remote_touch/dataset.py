@@ -72,13 +72,34 @@ def of_sweep(result):
                  for name, units, long_name, values, value_names in result["measures"]}
     if "notes" in variables:  # as CF says of numbers that are sets of flags
         kinds = dict(result["attributes"])["note_kinds"].split(",")
-        variables["notes"][2].update(flag_masks=np.array([1 << bit for bit in range(len(kinds))], dtype=np.int32),
+        variables["notes"][2].update(flag_masks=np.array([1 << bit for bit in range(len(kinds))], dtype=np.uint64),
                                      flag_meanings=" ".join(kind.replace(" ", "_") for kind in kinds))
     if any(result["error"]):
         shape = variables["state"][1].shape
         variables["error"] = (dimensions, np.array(result["error"], dtype=object).reshape(shape),
                               _attributes("1", "why the run failed", []))
     return xr.Dataset(variables, coordinates, dict(result["attributes"]))
+
+
+def run_in(sweep, cell, replicate):
+    """The cell, by the values of its axes, and the number of the replicate, of a place in a data set of a sweep."""
+    places = [*sweep[next(iter(sweep.data_vars))].dims] if isinstance(sweep, xr.Dataset) and sweep.data_vars else []
+    axes = [name for name in places if name != "replicate"]
+    if not isinstance(cell, dict):
+        given = [*cell] if hasattr(cell, "__iter__") and not isinstance(cell, str) else [cell]
+        if len(given) != len(axes) or not all(name in sweep.coords for name in axes):
+            raise InputError(f"cell = {cell!r}: expected the place on {', '.join(axes) or 'no axis'}, or a dict of the values of all axes")
+        cell = {name: _at(sweep[name], place, f"cell: {name}") for name, place in zip(axes, given)}
+    chosen = {name: value.item() for name, value in sweep.coords.items() if value.ndim == 0 and name != "replicate"}
+    if "replicate" in sweep.coords:
+        numbers = np.atleast_1d(sweep["replicate"].values)
+        replicate = _at(numbers, replicate, "replicate")
+    return {**chosen, **cell}, replicate
+
+
+def _at(values, place, name):
+    from remote_touch.calls import _integer
+    return values[_integer(name, place, 0, len(values) - 1)].item()
 
 
 def warned(sweep, subject):

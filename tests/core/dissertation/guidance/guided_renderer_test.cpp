@@ -159,6 +159,24 @@ TEST(GuidedRenderer, OnlyTheActivatedFixturePulls) {
   EXPECT_EQ(pulled_to(1, 0.005).second, Vec3::Zero());
 }
 
+// Fixtures that all start enabled pull together, but not beyond the limits of one, which every tick has
+// reached here.
+TEST_P(EveryRenderer, SeveralFixturesTogetherKeepTheLimits) {
+  using enum FixtureAction;
+  GuidedRenderer r = guided(GetParam(), {guide("a"), guide("b"), guide("c")},
+                            {step(release, "a", StepStart::button), step(release, "b", StepStart::button),
+                             step(release, "c", StepStart::button)});
+  r.on_frame(frame({target({0.1, 0.2, 0}), target({0, 0.2, 0.1}), target({-0.1, 0.2, 0})}));
+  const GuidanceSettings limits = plain();
+  for (int tick = 0; tick < 4; ++tick) {
+    const std::uint32_t pressed = tick % 2;
+    const RenderOutput out = r.step(device(kAbove, {2, 0, 1}, pressed), 0.001 * tick);
+    EXPECT_NEAR(out.guidance->force_N.norm(), limits.max_force_N, 1e-12) << tick;
+    const double torque_Nm = out.tool ? limits.max_torque_Nm : 0;
+    EXPECT_NEAR(out.guidance->torque_Nm.norm(), torque_Nm, 1e-12) << tick;
+  }
+}
+
 TEST(GuidedRenderer, AStepBringsItsOwnOffset) {
   using enum FixtureAction;
   SequenceStep near = until_reached(step(activate, "valve")), at = step(activate, "valve");

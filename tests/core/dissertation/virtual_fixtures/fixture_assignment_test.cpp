@@ -91,7 +91,27 @@ TEST(FixtureAssignment, AddsNoStiffnessColumnIfNoRuleNamesAStiffness) {
   EXPECT_EQ(assigned({{{0.02}, {1, 1}}}, cloud).stiffness_N_per_m, (Column{5, 6}));
 }
 
-// The renderer's own stiffness is not known here, so a half of it cannot be blended in.
+// A rule fades in from the renderer's own stiffness, on the CPU and in the steps for an OpenCL device.
+TEST(FixtureAssignment, AStiffnessFadesInFromTheRenderersOwn) {
+  const Column weights{0, 1e-9, 0.25, 1};
+  std::vector<std::unique_ptr<const FixtureRule>> rules;
+  rules.push_back(std::make_unique<GivenWeights>(FixtureValues{0.02, 100}, weights));
+  PointCloud cloud = points(4);
+  FixtureAssignment(std::move(rules), nullptr, 300).assign(cloud, 0);
+  EXPECT_TRUE(std::isnan(cloud.stiffness_N_per_m[0]));
+  EXPECT_NEAR(cloud.stiffness_N_per_m[1], 300, 1e-6);
+  EXPECT_EQ(cloud.stiffness_N_per_m[2], 250);
+  EXPECT_EQ(cloud.stiffness_N_per_m[3], 100);
+  HueRange::Settings hue;
+  hue.values.stiffness_N_per_m = 100;
+  rules.clear();
+  rules.push_back(std::make_unique<HueRange>(hue));
+  EXPECT_EQ(
+      FixtureAssignment(std::move(rules), nullptr, 300).hue_steps(0, 0).value()[0].first_stiffness_N_per_m,
+      300);
+}
+
+// If the renderer's own stiffness is not known, a half of it cannot be blended in.
 TEST(FixtureAssignment, APointWithoutAStiffnessTakesTheRulesAtOnce) {
   const Column got = assigned({{{0.02, 100}, {0, 0.25, 1}}}, points(3)).stiffness_N_per_m;
   EXPECT_TRUE(std::isnan(got[0])) << "which is the renderer's own";

@@ -11,14 +11,15 @@ using namespace compared_files;
 
 class CompareFigures : public Compare {
  protected:
-  void write(const std::string& name, const std::vector<double>& heights, bool with_second = true) {
+  void write(const std::string& name, const std::vector<double>& heights, bool with_second = true,
+             const std::string& config = "[]") {
     Figure figure{"4.99", "A figure", "for tests"};
     Table first{"first", ""}, second{"second", ""};
     first.add("x", "m", "", {0, 1, 2}), first.add("height", "m", "", heights);
     second.add("x", "m", "", {5});
     figure.tables = {first};
     if (with_second) figure.tables.push_back(second);
-    write_figure(folder_ / name, figure, {{"config", "[]"}});
+    write_figure(folder_ / name, figure, {{"config", config}});
   }
 };
 
@@ -61,6 +62,9 @@ TEST_F(CompareFigures, TablesMayBeAddedButNotMissed) {
   const ResultComparison missing = compare("a.h5", "less.h5");
   EXPECT_EQ(missing.outcome, Outcome::changed);
   EXPECT_HAS(junit_of(missing), "name=\"second/x\"><skipped message=\"missing in the candidate\"/>");
+  write("other.h5", {1, 2, 3}, false, "[1]");
+  EXPECT_EQ(compare("other.h5", "a.h5").outcome, Outcome::changed);  // in either order
+  EXPECT_EQ(compare("a.h5", "other.h5").outcome, Outcome::changed);
 }
 
 }  // namespace

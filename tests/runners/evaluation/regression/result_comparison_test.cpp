@@ -165,7 +165,7 @@ TEST_F(CompareTraceFiles, TheJsonHoldsTheNumbers) {
   const std::string xml = junit_of(other);
   EXPECT_HAS(xml, "<testcase classname=\"baseline.h5\" name=\"time\"/>");
   EXPECT_HAS(xml, "name=\"force\"><skipped message=\"2 of 867 rows outside, the largest deviation 0.25\"/>");
-  EXPECT_HAS(xml, "name=\"rms_surface_error\"><failure message=");
+  EXPECT_HAS(xml, "name=\"distance_sd\"><failure message=");
   EXPECT_HAS(xml, "name=\"trace\"><failure message=\"force and 2 more");
 }
 

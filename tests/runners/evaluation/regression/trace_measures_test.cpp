@@ -80,6 +80,50 @@ TEST_F(CompareMeasuresOfTraces, AreNotJudgedWhereOneRunPoppedThrough) {
   EXPECT_EQ(compare("calm.h5", "held.h5").not_judged, "");
 }
 
+// The runs of two experiments: with noise one run of each shows nothing, without it there is no chance. A new
+// build of one experiment is judged in both cases.
+TEST_F(CompareMeasuresOfTraces, AreNotJudgedWhereNoisyExperimentsDiffer) {
+  const auto write_run = [&](const std::string& name, const char* noise, const char* steps, double depth_m) {
+    const Experiment experiment = Experiment::load(
+        "fig4.12",
+        {std::string("scenario.noise_sigma_m=") + noise, std::string("renderer.steps_per_tick=") + steps});
+    Trace trace = run();
+    trace.signed_distance_m.back() = depth_m;
+    write_trace(folder_ / name, trace, {{"config", experiment.to_json()}}, {});
+  };
+  for (const char* noise : {"0", "0.003"}) {
+    write_run("held.h5", noise, "20", 0.005);
+    write_run("same.h5", noise, "20", -0.01);
+    write_run("other.h5", noise, "10", -0.01);
+    EXPECT_EQ(compare("held.h5", "same.h5").outcome, Outcome::regressed);
+    const bool is_noisy = std::string(noise) != "0";
+    for (const bool forward : {true, false}) {
+      const ResultComparison other =
+          forward ? compare("held.h5", "other.h5") : compare("other.h5", "held.h5");
+      EXPECT_EQ(other.outcome, forward && !is_noisy ? Outcome::regressed : Outcome::changed);
+      EXPECT_EQ(measure_in(other, "popped_through")["judgement"], is_noisy  ? "changed"
+                                                                  : forward ? "worse"
+                                                                            : "better");
+      EXPECT_EQ(contains(other.verdict, "one run of each shows no direction"), is_noisy) << other.verdict;
+    }
+  }
+}
+
+// A run that touches nothing can have the smoother force, for example that of guidance.
+TEST_F(CompareMeasuresOfTraces, AreNotJudgedWhereOneRunHasNoContact) {
+  Trace free = run();
+  free.signed_distance_m.back() = 0.005;
+  for (Vec3& force_N : free.force_N) force_N *= 0.5;
+  std::fill(free.contact_count.begin(), free.contact_count.end(), 0);
+  write_trace(folder_ / "free.h5", free, {}, {});
+  for (const bool forward : {true, false}) {
+    const ResultComparison other = forward ? compare("held.h5", "free.h5") : compare("free.h5", "held.h5");
+    EXPECT_EQ(other.outcome, Outcome::changed);
+    EXPECT_EQ(measure_in(other, "force_noise")["judgement"], "changed");
+    EXPECT_EQ(other.not_judged, "a run without contact: measures that need one are not judged");
+  }
+}
+
 TEST_F(CompareMeasuresOfTraces, AreNotJudgedWhereAnOutcomeIsUnknown) {
   write("unknown.h5", kNaN);
   EXPECT_EQ(compare("held.h5", "unknown.h5").not_judged,

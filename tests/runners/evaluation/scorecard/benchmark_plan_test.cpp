@@ -74,6 +74,10 @@ TEST_P(Scenes, AskOnlyForMeasuresThatThereAre) {
   EXPECT_NO_THROW(plan.measure("jump_fraction_10"));
   EXPECT_NO_THROW(plan.measure("packet_rate_10"));
   for (const auto& judged : GetParam().measures) EXPECT_NO_THROW(plan.measure(judged.measure));
+  const Bound& finite = GetParam().success.back();
+  EXPECT_EQ(finite.measure, "non_finite_fraction");
+  EXPECT_TRUE(finite.holds(0));
+  EXPECT_FALSE(finite.holds(1e-9));
   EXPECT_EQ(plan.cell_count(), GetParam().noise.empty() ? 1u : scorecard_noise_m().size());
   EXPECT_EQ(plan.replicates, GetParam().noise.empty() ? 10 : 2);  // five levels have noise
 }
@@ -258,7 +262,7 @@ TEST(Benchmark, TheRuleHeldIsTheSameForAllScenes) {
   const std::string begin = R"({"title": "t", "experiment": {}, "measures": {}, "success": )";
   const BenchmarkScene scene = read_benchmark_scene("x", begin + R"({"rule": "held", "tolerance_m": 0.002,
                        "old_bounds": [{"measure": "end_distance", "min": -0.001}]}})");
-  ASSERT_EQ(scene.success.size(), 3u);
+  ASSERT_EQ(scene.success.size(), 4u);
   EXPECT_EQ(scene.success[0].measure, "max_contact_error");
   EXPECT_EQ(scene.success[0].max, 0.002);
   EXPECT_EQ(scene.success[1].measure, "contact_force_fraction");
@@ -270,7 +274,7 @@ TEST(Benchmark, TheRuleHeldIsTheSameForAllScenes) {
   const BenchmarkScene more = read_benchmark_scene(
       "x",
       begin + R"({"rule": "held", "meaning": "in time", "bounds": [{"measure": "max_force", "max": 3}]}})");
-  ASSERT_EQ(more.success.size(), 4u);
+  ASSERT_EQ(more.success.size(), 5u);
   EXPECT_EQ(more.success[0].max, kScorecardRadius_m);
   EXPECT_EQ(more.success[3].measure, "max_force");
   EXPECT_HAS(more.meaning, "these ticks; in time");

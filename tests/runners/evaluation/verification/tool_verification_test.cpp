@@ -23,7 +23,7 @@ struct Wrong {
 
 const Wrong kWrong[] = {
     {wrong_tool<Fault::silent>("silent"), {"touch"}},
-    {wrong_tool<Fault::has_no_pose>("has_no_pose"), {"repeat", "rigid-motion", "frame-rate"}},
+    {wrong_tool<Fault::has_no_pose>("has_no_pose"), {"finite", "repeat", "rigid-motion", "frame-rate"}},
     {wrong_tool<Fault::remembers_others>("remembers_others"), {"repeat"}},
     {wrong_tool<Fault::trusts_new_machines>("trusts_new_machines"), {"instruction-set"}},
     {wrong_tool<Fault::looks_at_first_point>("sees_first_point"), {"order", "search-all"}},

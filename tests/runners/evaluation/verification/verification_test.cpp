@@ -98,6 +98,7 @@ struct Wrong {
 
 const Wrong kWrong[] = {
     {wrong_renderer<Fault::silent>("silent"), {"touch"}},
+    {wrong_renderer<Fault::unknown_force>("unknown_force"), {"touch", "finite"}},
     {wrong_renderer<Fault::remembers_others>("remembers_others"), {"repeat"}},
     {wrong_renderer<Fault::trusts_new_machines>("trusts_new_machines"), {"instruction-set"}},
     {wrong_renderer<Fault::looks_at_first_point>("looks_at_first_point"),

@@ -19,6 +19,7 @@ namespace remote_touch {
 enum class Fault {
   none,
   silent,                  // never any force
+  unknown_force,           // NaN in contact
   remembers_others,        // a second renderer differs from the first
   trusts_new_machines,     // differs with the instruction set
   looks_at_first_point,    // depends on the order in which a search returns points
@@ -97,6 +98,9 @@ class Spoiled final : public Renderer {
         break;
       case Fault::silent:
         out.force_N.setZero();
+        break;
+      case Fault::unknown_force:
+        if (strength > 0) out.force_N.setConstant(std::nan(""));
         break;
       case Fault::remembers_others:
         out.force_N *= ordinal_;

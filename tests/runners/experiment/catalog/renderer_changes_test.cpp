@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/trace/trace.h"
 #include "runners/evaluation/contract/allocation_counter.h"
+#include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
@@ -18,6 +20,27 @@
 
 namespace remote_touch::renderer_changes_test {
 namespace {
+
+// A renderer that states any stiffness as its largest: NaN for the setting 0, infinity for a large one, and
+// the setting less 1 otherwise.
+class Boaster final : public Renderer {
+ public:
+  struct Settings {
+    double stiffness = 1;
+  };
+  Boaster(const Settings&, double, const Kernels&) {}
+  void on_frame(const Frame&) override {}
+  RenderOutput step(const DeviceState&, double) override { return {}; }
+};
+Parameters parameters(Boaster::Settings& s) {
+  return {{"stiffness", &s.stiffness, -1e9, 1e9, "a number", kLive}};
+}
+std::string validate(const Boaster::Settings&) {
+  return {};
+}
+double max_stiffness_N_per_m(const Boaster::Settings& s) {
+  return s.stiffness == 0 ? std::nan("") : s.stiffness > 1e8 ? HUGE_VAL : s.stiffness - 1;
+}
 
 std::string change(const char* time_s, const std::string& parameter, const char* value) {
   return std::string(R"({"time_s": )") + time_s + R"(, "parameter": ")" + parameter + R"(", "value": )" +
@@ -112,6 +135,26 @@ TEST(RendererChanges, TheGreatestStiffnessIsThatOfAnyTime) {
                     softer = change("0.2", "renderer.stiffness_N_per_m", "100");
   EXPECT_EQ(lift("[" + stiffer + ", " + softer + "]").max_stiffness_N_per_m(), 900);
   EXPECT_EQ(lift("[" + softer + "]").max_stiffness_N_per_m(), 600);
+}
+
+// The force of a device is scaled by it, so a stiffness that is none must not pass as a small one.
+TEST(RendererChanges, AStiffnessThatIsNoneIsRefusedForEveryFactory) {
+  Catalog catalog = built_in_catalog();
+  catalog.add(renderer_entry<Boaster>("boaster", DegreesOfFreedom::three, ContactModel::points, "boasts"));
+  use_catalog(std::move(catalog));
+  const auto refused = [](const std::string& at_start, const std::string& later) {
+    return refusal([&] {
+      lift("[" + change("0.1", "renderer.stiffness", later.c_str()) + "]",
+           {R"(renderer={"name": "boaster", "stiffness": )" + at_start + "}"});
+    });
+  };
+  EXPECT_EQ(refused("1", "601"), "no InputError");
+  for (const char* none : {"0", "0.5", "1e9"}) {
+    const std::string line = "max_stiffness_N_per_m of the renderer boaster = ";
+    EXPECT_HAS(refused(none, "601"), line);
+    EXPECT_HAS(refused("601", none), line);
+  }
+  use_catalog(built_in_catalog());
 }
 
 // --- what they do ---

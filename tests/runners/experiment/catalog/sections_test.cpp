@@ -152,21 +152,34 @@ TEST(Sections, RenamedNamesAreThoseOfParametersMeasuresAndColumns) {
   for (const RenamedName& name : renamed_names()) EXPECT_TRUE(names.contains(name.new_name)) << name.new_name;
 }
 
-// Passivity control would balance another force than the device exerts, or another motion than the hand has.
+// Passivity control and waves would balance another motion than the hand has. They know the limit of a force.
 TEST(Sections, PassivityControlNeedsAnExactDevice) {
-  const auto why_with = [](const std::string& setting) {
-    return refusal([&] {
-      Experiment::load("steer-robot", {"feedback.force=passive-slave-force", "device=" + setting});
-    });
+  for (const std::string force : {"passive-slave-force", "wave"}) {
+    const auto why_with = [&](const std::string& setting) {
+      return refusal([&] {
+        Experiment::load("steer-robot", {"feedback.force=" + force, "device=" + setting});
+      });
+    };
+    for (const char* setting : {"{}", R"({"friction_N": 0.1})", R"({"max_force_N": 2})"})
+      EXPECT_EQ(why_with(setting), "no InputError") << setting;
+    for (const char* setting : {R"({"force_y": false})", R"({"position_resolution_m": 5e-5})",
+                                R"({"delay_ticks": 1})", R"({"contact_damping_Ns_per_m": -1})"})
+      EXPECT_HAS(why_with(setting), "expected the default with feedback.force = " + force) << setting;
+  }
+}
+
+TEST(Sections, AnArchitectureRefusesWhatItCannotUse) {
+  const auto why = [](const std::string& force, const std::string& setting) {
+    return refusal([&] { Experiment::load("steer-robot", {"feedback.force=" + force, setting}); });
   };
-  EXPECT_EQ(why_with("{}"), "no InputError");
-  EXPECT_EQ(why_with(R"({"friction_N": 0.1})"), "no InputError");
-  for (const char* setting :
-       {R"({"force_y": false})", R"({"max_force_N": 2})", R"({"position_resolution_m": 5e-5})",
-        R"({"delay_ticks": 1})", R"({"contact_damping_Ns_per_m": -1})"})
-    EXPECT_HAS(why_with(setting), "expected the default with feedback.force = passive-slave-force")
-        << setting;
-  EXPECT_HAS(why_with(R"({"max_force_N": 2})"), "device.max_force_N = 2");
+  EXPECT_HAS(why("wave", "command_link.least=0.001"), "command_link.least = 0.001");
+  EXPECT_HAS(why("wave", "force_link.weber_fraction=0.1"), "force_link.weber_fraction = 0.1");
+  EXPECT_HAS(why("position-position", "force_link.least=0.1"), "which needs every packet");
+  EXPECT_EQ(why("position-position", "command_link.least=0.001"), "no InputError");
+  EXPECT_HAS(why("wave", "slave.max_speed_m_per_s=0.2"), "slave.max_speed_m_per_s = 0.2: expected 0");
+  EXPECT_HAS(why("wave", "feedback.gain=0.5"), "expected 1 unless force = slave-force");
+  EXPECT_HAS(why("slave-force", "feedback.impedance_Ns_per_m=20"), "expected 0 unless force = wave");
+  EXPECT_HAS(why("wave", "feedback.stiffness_N_per_m=300"), "expected 600 unless force = position-position");
 }
 
 TEST(Sections, TheOverrideThatRemovesTheSlaveRemovesItsLinks) {

@@ -56,8 +56,9 @@ TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
   MovingShape::Settings plane = rising_plane();
   plane.motion.lift.rise_s = 299 / 30.0, plane.grid = {4, 4, 0.002, 0, 0};
   const FaultySensor sensor = faulty(s, bare(plane));
-  const auto frames = received(sensor, 11);
-  ASSERT_EQ(frames.size(), 300u);
+  // The scenario has 300 frames. The frames that the sensor adds are late as often as these.
+  const auto frames = received(sensor, 13.334);
+  ASSERT_GT(frames.size(), 395u);
   double late = 0;
   int overtaken = 0;
   std::set<int> came;
@@ -71,27 +72,19 @@ TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
     EXPECT_GE(frames[i].arrives_s, frames[i - 1].arrives_s);
     overtaken += frames[i].index < frames[i - 1].index ? 1 : 0;
   }
-  expect_fraction(late, 300, 0.3);
+  expect_fraction(late, static_cast<double>(frames.size()), 0.3);
   EXPECT_GT(overtaken, 20);
-  EXPECT_EQ(came.size(), 300u);
-  // A stream that may lose frames continues beyond the last frame of the scenario. The frames there are not
-  // late.
-  const auto continues = received(sensor, 11, {0, 0, 1e-300});
-  EXPECT_GT(continues.back().index, 320);
-  for (const Frame& frame : continues)
-    if (frame.index >= 300) {
-      EXPECT_NEAR(frame.arrives_s, frame.captured_s, 1e-12);
-    }
+  EXPECT_EQ(came.size(), frames.size());
 }
 
 TEST(SensorFaultFrames, FramesNeverEndIfTheirFaultsDiffer) {
   SensorFaults s;
-  s.late_probability = 1, s.quantisation_m = 0.001;
+  s.quantisation_m = 0.001;
   EXPECT_EQ(faulty(s).frame_count(), 41);
   for (double SensorFaults::*fraction :
        {&SensorFaults::repeat_probability, &SensorFaults::rolling_shutter_s,
         &SensorFaults::flying_probability, &SensorFaults::outlier_probability, &SensorFaults::hole_fraction,
-        &SensorFaults::dropout_probability}) {
+        &SensorFaults::dropout_probability, &SensorFaults::late_probability}) {
     SensorFaults one;
     one.*fraction = 0.1;
     const FaultySensor sensor = faulty(one);

@@ -254,6 +254,18 @@ TEST_F(ContactFile, NamesTheColumnsThatAreNotUsed) {
   EXPECT_HAS(notes[0].text, "a.csv: columns that are not used: mx");
 }
 
+// The same contact in millimetres is 1000 times as large without units in the names of its columns.
+TEST_F(ContactFile, InMillimetresWithoutUnitsIsReported) {
+  const std::string rows = "0,10,0,0,0,0,0\n0.5,12,3,0,0,1,0\n1,11,2,0,0,0,0\n";
+  EXPECT_TRUE(
+      ContactReplay(settings("a.csv", "time,x_mm,y_mm,z_mm,fx,fy,fz\n" + rows), Unknown()).notes().empty());
+  const std::vector<Note> notes =
+      ContactReplay(settings("a.csv", "time,x,y,z,fx,fy,fz\n" + rows), Unknown()).notes();
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].kind, "unusual poses");
+  EXPECT_HAS(notes[0].text, "a.csv: the contact moves through 3.61 m at up to 7.21 m/s: without units");
+}
+
 // Without a known surface the direction of the onset distance is that of the force; in free motion it is that
 // of the contact before, and at the begin that of the first one.
 TEST_F(ContactFile, TheOnsetDistanceIsAlongTheForceIfTheSurfaceIsUnknown) {

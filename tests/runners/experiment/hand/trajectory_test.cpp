@@ -15,6 +15,7 @@
 #include "scenarios/camera/camera_scene.h"
 #include "scenarios/synthetic/flat_grid.h"
 #include "scenarios/synthetic/moving_lift.h"
+#include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/triangle_wave.h"
 #include "tests/support/scenes.h"
 
@@ -178,6 +179,32 @@ TEST(FollowSurface, LiftsOffOverSteps) {
 }
 
 // A line of no length has no direction: the hand would be nowhere.
+// The depth is that below the true surface, as it moves or as the newest frame shows it.
+TEST(FollowSurface, FollowsASurfaceThatRisesAndSinksAsAWhole) {
+  MovingShape::Settings moves;
+  moves.shape.kind = Shape::Kind::ripple;
+  moves.motion.shake_amplitude_m = 0.01, moves.motion.shake_hz = 1,
+  moves.motion.lift.start_velocity_m_per_s = 0.02;
+  moves.motion.lift.rise_s = 1;
+  for (const SurfaceTime truth : {SurfaceTime::moving, SurfaceTime::newest_frame}) {
+    moves.truth = truth;
+    const MovingShape scene(moves, NoiseKey{1}, scenes::kernels());
+    const FollowSurface device({{-0.04, 0, 0}, {0.04, 0, 0}}, scene);
+    double most_m = 0;
+    for (double t = 0.6; t < device.duration_s() - 0.6; t += 0.01)
+      most_m = std::max(most_m, std::abs(scene.signed_distance(device.at(t).position_W, t) + 0.005));
+    EXPECT_LT(most_m, 1e-4) << "the spacing of its samples";
+  }
+}
+
+TEST(FollowSurface, RefusesASurfaceThatChangesAlongItsLine) {
+  MovingShape::Settings slides, rocks;
+  slides.shape.kind = Shape::Kind::ridge, slides.motion.slide_velocity_m_per_s = 0.01;
+  rocks.motion.rock_deg = 5;
+  for (const auto& settings : {slides, rocks})
+    EXPECT_THROW(FollowSurface({}, MovingShape(settings, NoiseKey{1}, scenes::kernels())), InputError);
+}
+
 TEST(FollowSurface, RefusesEndsThatDifferOnlyInHeight) {
   FollowSurface::Settings s;
   EXPECT_EQ(validate(s), "");

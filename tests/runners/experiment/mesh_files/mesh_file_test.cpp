@@ -7,6 +7,7 @@
 #include <bit>
 #include <cctype>
 #include <cmath>
+#include <sstream>
 
 #include "core/mesh/mesh_check.h"
 #include "tests/support/meshes.h"
@@ -358,7 +359,37 @@ TEST_F(MeshFileTest, FilesThatClaimMoreThanTheyHoldAreRefused) {
       refused("many.stl", std::string(80, ' ') + raw(4'000'000'000u) + std::string(50, '\0')),
       "many.stl: cannot be read (its header claims 4000000000 facets, which need 200000000084 bytes: it "
       "has 134); expected");
-  EXPECT_HAS(refused("short.stl", "abc"), "short.stl: cannot be read (it neither begins with the word solid");
+  EXPECT_HAS(refused("short.stl", "abc"),
+             "short.stl: cannot be read (it is no text that begins with the word solid");
+}
+
+// Many programs write "solid" into the header of a binary file.
+TEST_F(MeshFileTest, ABinaryStlOfAnotherLengthIsNoText) {
+  std::string stl = "solid cube" + std::string(70, '\0') + raw(2u);
+  for (const float value : {0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) stl += raw(value);
+  stl += std::string(2 + 50, '\0');
+  EXPECT_EQ(refused("two.stl", stl), kRead);
+  EXPECT_HAS(refused("more.stl", stl + "meta"),
+             "more.stl: cannot be read (its header claims 2 facets, which need 184 bytes: it has 188)");
+  EXPECT_HAS(refused("cut.stl", stl.substr(0, 150)), "which need 184 bytes: it has 150");
+}
+
+// A box of 0.3 m at map coordinates: single precision would move its corners by centimetres.
+TEST_F(MeshFileTest, CoordinatesBeyondSinglePrecisionAreRefused) {
+  const auto box_at = [&](double x, double y) {
+    const TriangleMesh box = box_mesh({0.323, 0.36, 0.25}, {x, y, 0});
+    std::ostringstream obj;
+    obj.precision(17);
+    for (const Vec3& v : box.vertices) obj << "v " << v.x() << " " << v.y() << " " << v.z() << "\n";
+    for (const auto& [a, b, c] : box.triangles) obj << "f " << a + 1 << " " << b + 1 << " " << c + 1 << "\n";
+    return obj.str();
+  };
+  EXPECT_HAS(
+      refused("map.obj", box_at(391'000.1, 5'820'000.2)),
+      "map.obj: cannot be read (its coordinates reach 5.82e+06 and are read in single precision, to 0.34");
+  EXPECT_HAS(refused("map.obj", box_at(-20'000, 0)), "expected a mesh nearer to its origin");
+  const fs::path file = folder_.write("near.obj", box_at(500, 0));
+  EXPECT_NEAR(check_mesh(read_mesh(file)).volume_m3, 0.323 * 0.36 * 0.25, 3e-4 * 0.323 * 0.36 * 0.25);
 }
 
 TEST_F(MeshFileTest, CornersThatAreNoVerticesAreRefusedOrCounted) {

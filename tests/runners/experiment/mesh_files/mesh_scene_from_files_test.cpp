@@ -11,6 +11,7 @@
 
 #include "core/geometry/colour.h"
 #include "tests/runners/experiment/mesh_files/box_scene.h"
+#include "tests/support/note_kinds.h"
 
 namespace remote_touch::mesh_scene_from_files_test {
 namespace {
@@ -82,6 +83,7 @@ TEST_F(ScenesOfFiles, TheCameraFitsObjectsOfAllSizes) {
       Settings s = box_alone();
       s.objects[0].size_m = size_m, s.objects[0].position_m = {1, -1, 0.5};
       s.scene.sensor.sensor = kind, s.scene.sensor.max_disparity_px = 15;
+      s.scene.sensor.disparity_focal_px = 0;
       const PointCloud cloud = made(s).cloud(0);
       ASSERT_EQ(cloud.size(), 96u * 72u);
       int measured = 0;
@@ -127,6 +129,64 @@ TEST_F(ScenesOfFiles, ACameraFollowsItsPath) {
         EXPECT_LT(std::abs(scene.signed_distance(cloud.point(i), scene.captured_s(frame))), 1e-6);
       }
   }
+}
+
+// Object and camera move in the same way on one clock, so that the image stays the same from the moment on
+// from which both move.
+TEST_F(ScenesOfFiles, PathsWhoseTimesOverlapHaveOneClock) {
+  Settings s = box_alone();
+  s.objects[0].origin = PlacedMesh::Origin::file, s.objects[0].position_m = -kCentre_m;
+  const Eigen::Quaterniond q(look_at({0, 1, 0}, {0, 0, 0}).linear());
+  const auto line = [&](double t, double x) {
+    std::ostringstream text;
+    text.precision(17);
+    text << t << " " << x << " 1 0 " << q.x() << " " << q.y() << " " << q.z() << " " << q.w() << "\n";
+    return text.str();
+  };
+  s.camera_path = folder_.write("camera.txt", line(100, 0) + line(100.5, 0) + line(101.5, 0.5)).string();
+  const std::string moves = " 0 0 0 0 0 1\n";
+  s.objects[0].path =
+      folder_.write("object.txt", "# t tx ty tz qx qy qz qw\n100.5 0" + moves + "101.5 0.5" + moves).string();
+  const MeshSceneFromFiles scene = made(s);
+  EXPECT_TRUE(scene.true_meshes(0.5)[0].X_WO->translation().isApprox(-kCentre_m, 1e-12));
+  EXPECT_TRUE(scene.true_meshes(1.0)[0].X_WO->translation().isApprox(Vec3(0.25, 0, 0) - kCentre_m, 1e-12));
+  EXPECT_TRUE(scene.cloud(30).image->X_WC.translation().isApprox(Vec3(0.25, 1, 0), 1e-12));
+  EXPECT_HAS(scene.input(),
+             "; object.txt: 2 poses over 1 s at 1 Hz, 0.5 m long, at most 0.5 m/s; camera.txt: 3 poses");
+  EXPECT_TRUE(scene.input_notes().empty());
+  s.objects[0].path = folder_.write("object.txt", "200.5 0" + moves + "201.5 0.5" + moves).string();
+  ASSERT_EQ(kinds_of(made(s).input_notes()), Kinds{"unusual poses"});
+  EXPECT_HAS(made(s).input_notes()[0].text, "each file counts from its own first line");
+}
+
+TEST_F(ScenesOfFiles, ThatTheirCameraDoesNotShowAreReported) {
+  Settings s = box_alone();
+  s.objects[0].position_m = {0.2, 0, 0.1};
+  const RigidTransform down = look_at({0.1, 1, 0}, {0.2, 0, 0.1});
+  const auto notes = [&](const RigidTransform& X, PoseDirection direction, bool real_part_first = false) {
+    const Eigen::Quaterniond q(X.linear());
+    const Vec3 t = X.translation();
+    std::ostringstream path;
+    path.precision(17);
+    path << "0 " << t.x() << " " << t.y() << " " << t.z() << " ";
+    if (real_part_first) path << q.w() << " ";
+    path << q.x() << " " << q.y() << " " << q.z();
+    if (!real_part_first) path << " " << q.w();
+    s.camera_path = folder_.write("camera.txt", path.str() + "\n").string(), s.pose_direction = direction;
+    std::string text;
+    for (const Note& note : made(s).input_notes()) text += note.kind + ": " + note.text;
+    return text;
+  };
+  EXPECT_EQ(notes(down, PoseDirection::camera_to_world), "");
+  EXPECT_EQ(notes(down.inverse(), PoseDirection::world_to_camera), "");
+  EXPECT_HAS(notes(down.inverse(), PoseDirection::camera_to_world),
+             "not in view: box is at no time in the image");
+  EXPECT_HAS(notes(down.inverse(), PoseDirection::camera_to_world),
+             "; with the inverse poses of the camera it is");
+  const RigidTransform aside = look_at({0.9, 0.6, -0.4}, {0.2, 0.06, 0.1});
+  EXPECT_EQ(notes(aside, PoseDirection::camera_to_world), "");
+  EXPECT_HAS(notes(aside, PoseDirection::camera_to_world, true),
+             "with quaternions with qw first of the camera");
 }
 
 TEST_F(ScenesOfFiles, ObjectsHaveTheirColours) {

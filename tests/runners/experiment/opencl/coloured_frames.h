@@ -46,7 +46,7 @@ inline FixtureAssignment rules_by_hue() {
   rules.push_back(rule(0.05, 900, 0.3, 0, 150));
   rules.push_back(rule(-1, 350.7, 0.45, 100, 260));
   rules.push_back(rule(0.04, -1, 1, 350, 10));  // 0.3 + (0.04 - 0.3) is not 0.04
-  return FixtureAssignment(std::move(rules));
+  return FixtureAssignment(std::move(rules), nullptr, 600);
 }
 
 inline bool same_columns(const PointCloud& a, const PointCloud& b) {

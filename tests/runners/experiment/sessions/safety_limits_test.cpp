@@ -22,13 +22,13 @@ TEST(SafetyLimits, ParametersReachFieldsOfTheirOwnAndAllowTheDefaults) {
     EXPECT_FALSE(p.help.empty()) << p.name;
     value = static_cast<double>(names.size());
   }
-  EXPECT_EQ(names.size(), 9u);
+  EXPECT_EQ(names.size(), 10u);
   const double set[] = {s.max_force_N,        s.max_torque_Nm,
                         s.force_slew_N_per_s, s.torque_slew_Nm_per_s,
                         s.max_speed_m_per_s,  s.max_angular_speed_rad_per_s,
                         s.engage_force_N,     s.ramp_s,
-                        s.max_command_age_s};
-  for (int i = 0; i < 9; ++i) EXPECT_EQ(set[i], i + 1);
+                        s.max_command_age_s,  s.max_frame_age_s};
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(set[i], i + 1);
 }
 
 // Any force must fall to zero within 10 ms: 5 N at 500 N/s.

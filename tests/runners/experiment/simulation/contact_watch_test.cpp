@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "analysis/measures/event_times.h"
 #include "analysis/measures/measures.h"
 #include "analysis/theory/first_touch.h"
 #include "core/search/neighbour_search.h"
@@ -35,10 +41,31 @@ TEST(ContactWatch, ReportsAHandThatStartsInContact) {
     const ReportedRun made = run_of(flat("0.0015"), press_from(0.0003, height_m));
     EXPECT_TRUE(made.has("starts in contact")) << height_m;
   }
-  EXPECT_HAS(run_of(flat("0.0015"), press_from(0, 0.002)).report.notes.front().text,
-             "the hand starts 2 mm in front of the true surface, nearer than the contact radius of 5 mm");
+  EXPECT_HAS(
+      run_of(flat("0.0015"), press_from(0, 0.002)).report.notes.front().text,
+      "when the first frame arrives, at 0 s, the hand is 2 mm in front of the true surface, nearer than "
+      "the contact radius of 5 mm");
   EXPECT_HAS(run_of(flat("0.0015"), press_from(0, -0.002)).report.notes.front().text,
-             "the hand starts 2 mm behind the true surface");
+             "when the first frame arrives, at 0 s, the hand is 2 mm behind the true surface");
+}
+
+// No renderer can hold a surface that it has not received. The hand goes through the surface and back in 0.1
+// s, and then through it again at 0.3 s.
+TEST(ContactWatch, WhatHappensBeforeTheFirstFrameIsNoPopThrough) {
+  const std::string to_and_fro = R"({"name": "waypoints",
+      "waypoints": [[0, 0.02, 0, 0], [0, -0.005, 0, 0.5], [0, 0.02, 0, 0.5], [0, -0.005, 0, 0.1]]})";
+  const auto made = [&](const std::string& latency_s) {
+    return run_of(flat("0.0015"), to_and_fro, R"("duration_s": 0.6, "frame_latency_s": )" + latency_s);
+  };
+  for (const char* latency_s : {"0.08", "0.35"}) {
+    const ReportedRun late = made(latency_s);
+    EXPECT_LT(late.trace.signed_distance_m[50], 0) << "the hand is behind the surface then";
+    EXPECT_EQ(popped_through(late.trace), 0) << latency_s;
+    EXPECT_TRUE(std::isnan(first_pop_through_tick(late.trace))) << latency_s;
+  }
+  EXPECT_EQ(made("0.08").kinds(), Kinds{});
+  EXPECT_HAS(made("0.35").report.notes.front().text,
+             "when the first frame arrives, at 0.35 s, the hand is 5 mm behind the true surface");
 }
 
 // Single points have no sides, so that their distance alone counts.
@@ -172,6 +199,53 @@ TEST(ContactWatch, ALaterLossIsNoneAtTheFirstTouch) {
 // This proxy is lost at its first touch because the points are too far apart, not because of motion.
 TEST(ContactWatch, ASurfaceAtRestLosesNoProxyAtTheFirstTouch) {
   EXPECT_EQ(run_of(flat("0.0075"), press_from(0.0003, 0.02)).kinds(), Kinds{"wide spacing"});
+}
+
+// --- walls ---
+
+// Two walls of 5 mm: from y = 0 down to -5 mm, and from -25 to -30 mm.
+class Walls final : public Scenario {
+ public:
+  explicit Walls(bool have_meshes) : have_meshes_(have_meshes) {}
+  double frame_rate_hz() const override { return 30; }
+  int frame_count() const override { return 1; }
+  PointCloud cloud(int) const override { return {}; }
+  double signed_distance(const Vec3& p_W, double) const override {
+    const double y = p_W.y();
+    return std::min(std::abs(y + 0.0025), std::abs(y + 0.0275)) - 0.0025;
+  }
+  std::vector<PosedMesh> true_meshes(double) const override {
+    return have_meshes_ ? std::vector<PosedMesh>(1) : std::vector<PosedMesh>();
+  }
+
+ private:
+  bool have_meshes_;
+};
+
+// A position goes down through both walls, and up again. It has a side until it passes the middle of the
+// first wall, and again after it has come back through this middle.
+TEST(WallWatch, APositionBehindTheMiddleOfAWallHasNoSide) {
+  for (const double step_m : {0.0002, 0.0007, 0.003}) {
+    const Walls walls(true);
+    WallWatch watch(walls, "the hand");
+    const int down = static_cast<int>(0.045 / step_m);
+    for (int i = 0; i <= 2 * down; ++i) {
+      const double y = 0.01 - step_m * (i <= down ? i : 2 * down - i), time_s = 0.001 * i;
+      const double distance_m = walls.signed_distance({0, y, 0}, 0),
+                   side_m = watch.side_m({0, y, 0}, distance_m, time_s);
+      if (y > -0.0023) {
+        EXPECT_EQ(side_m, distance_m) << step_m << " " << y << " " << i;
+      } else if (y < -0.0027) {
+        EXPECT_TRUE(std::isnan(side_m)) << step_m << " " << y << " " << i;
+      }
+    }
+    ASSERT_EQ(watch.notes().size(), 1u);
+    EXPECT_EQ(watch.notes().front().kind, "thin object");
+    const Walls open(false);
+    WallWatch none(open, "the hand");
+    for (int i = 0; i <= down; ++i) EXPECT_EQ(none.side_m({0, 0.01 - step_m * i, 0}, 0.5 - i, 0), 0.5 - i);
+    EXPECT_TRUE(none.notes().empty());
+  }
 }
 
 }  // namespace

@@ -4,11 +4,17 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 
 #include "analysis/storage/digest.h"
 #include "analysis/trace/trace.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/random_streams.h"
+#include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
@@ -121,6 +127,51 @@ TEST(Determinism, TheHistoryOfTheNeighbourListChangesNoBits) {
   const RenderOutput a = settle(Vec3(0.002, 0.03, 0)), b = settle(Vec3(0.031, 0.028, -0.02));
   EXPECT_EQ(a.proxy_W, b.proxy_W);
   EXPECT_EQ(a.force_N, b.force_N);
+}
+
+// An experiment of two frames in which one parameter of a section has a value of its own.
+Json with_setting(const ExperimentSection& section, const SectionEntry& entry, const std::string& parameter,
+                  double value) {
+  Json json = Json::parse(R"({"scenario": {"name": "moving-lift", "noise_sigma_m": 0},
+      "renderer": {"name": "proxy"}, "slave": {"natural_frequency_hz": 5},
+      "trajectory": {"name": "waypoints", "waypoints": [[0, 0.002, 0, 0], [0, -0.002, 0, 0.1]]}})");
+  Json& part = section.is_top_level ? json : json[section.key];
+  if (!entry.name.empty()) part = {{"name", entry.name}};
+  part[parameter] = value;
+  json["duration_s"] = 0.035;
+  return json;
+}
+
+enum class Draws { nothing, random_numbers, refused };
+
+// Compares the run with another seed, unless it draws random numbers. A part is refused, for example, because
+// it needs a file.
+Draws compare_seeds(Json json) try {
+  const auto digest_with = [&](std::uint64_t seed) {
+    json["seed"] = seed;
+    SimulationOptions options;
+    options.hash_frames = true;
+    return digest(simulate(Experiment::from_json(json), options).columns());
+  };
+  if (!random_streams(Experiment::from_json(json)).is_fixed()) return Draws::random_numbers;
+  EXPECT_EQ(digest_with(1), digest_with(2)) << json.dump();
+  return Draws::nothing;
+} catch (const InputError&) {
+  return Draws::refused;
+}
+
+// Runs that differ would count as equal if random_streams() left out a parameter.
+TEST(Determinism, RunsThatDrawNothingIgnoreTheSeed) {
+  std::map<Draws, int> counts;
+  for (const ExperimentSection& section : experiment_sections())
+    for (const SectionEntry& entry : section.entries())
+      for (const Parameter& parameter : entry.make()->settings()) {
+        if (!std::holds_alternative<double*>(parameter.value) || parameter.name == "duration_s") continue;
+        const double value = std::clamp(0.4, parameter.low, parameter.high);
+        ++counts[compare_seeds(with_setting(section, entry, parameter.name, value))];
+      }
+  EXPECT_GT(counts[Draws::nothing], 100);
+  EXPECT_GT(counts[Draws::random_numbers], 20);
 }
 
 }  // namespace

@@ -1,9 +1,13 @@
 // When force begins, how it continues over frame updates, and when it ends: through the whole renderer.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "analysis/trace/trace.h"
+#include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
@@ -118,9 +122,78 @@ TEST(ForceOverTime, SlowStreamsHaveARightVelocityAndAnEvenForce) {
   }
 }
 
+// A rule of 900 N/m fades in over 1.5 s, in 45 frames, over a renderer of 300 N/m. The force on a HIP at rest
+// rises in steps as even as those of the schedule.
+TEST(ForceOverTime, AStiffnessFadesInLinearly) {
+  for (const char* renderer : {"proxy", "penalty", "implicit-surface", "surfels", "god-object"}) {
+    const std::string of = renderer;
+    const Trace trace = simulate(Experiment::from_json(
+        R"({"scenario": {"name": "flat-grid"}, "duration_s": 2, "renderer": {"name": ")" + of +
+            R"(", "stiffness_N_per_m": 300}, "trajectory": {"name": "waypoints",
+             "waypoints": [[0, 0.02, 0, 0], [0, )" +
+            (of == "penalty" ? "0.002" : "-0.01") + R"(, 0, 0.2]]}, "fixtures": [{"name": "everywhere",
+             "radius_m": 0, "stiffness_N_per_m": 900, "schedule": [[0.3, 0], [1.8, 1]]}]})",
+        "test"));
+    const double soft_N = trace.force_N[299].norm(), stiff_N = trace.force_N[trace.length() - 1].norm();
+    EXPECT_NEAR(stiff_N, 3 * soft_N, 1e-3) << of;
+    for (std::size_t i = 300; i < trace.length(); ++i)
+      ASSERT_LT(trace.force_N[i].norm() - trace.force_N[i - 1].norm(), 1.1 * (stiff_N - soft_N) / 45)
+          << of << " at tick " << i;
+  }
+}
+
 TEST(ForceOverTime, LatencyDelaysTheFrames) {
   const Trace trace = simulate(Experiment::load("fig4.11", {"frame_latency_s=0.05", "duration_s=0.1"}));
   for (std::size_t i = 0; i < trace.length(); ++i) EXPECT_EQ(trace.frame_index[i], i < 50 ? -1 : 0) << i;
+}
+
+// --- a scene that stops, and a scene at rest, for every renderer of a point ---
+
+constexpr double kPressed_m = 0.005;
+
+// The hand waits, and the scene comes to it or it goes to the scene. frame_drop_probability: 1e-300 makes the
+// camera repeat the only frame of a scene at rest, and loses none.
+Trace pressed(const std::string& renderer, const nlohmann::ordered_json& scenario,
+              double frame_drop_probability = 0) {
+  return simulate(Experiment::from_json(nlohmann::ordered_json{
+      {"scenario", scenario},
+      {"renderer", {{"name", renderer}}},
+      {"trajectory", {{"name", "waypoints"}, {"waypoints", {{0, 0.01, 0, 0}, {0, -kPressed_m, 0, 0.1}}}}},
+      {"frame_drop_probability", frame_drop_probability},
+      {"duration_s", 1.2}}));
+}
+
+const nlohmann::ordered_json kAtRest = {{"name", "moving-shape"}, {"columns", 40}, {"rows", 40}};
+
+// The surface rises by 10 mm and stops at 0.5 s, 5 mm above the hand. Without frames after the stop, the
+// velocity of the rise would stay in the estimate and in the force.
+TEST(ForceOverTime, AfterTheSceneStopsItIsThatOfASceneAtRest) {
+  nlohmann::ordered_json rises = kAtRest;
+  rises.update({{"start_depth_m", 0.01}, {"start_velocity_m_per_s", 0.02}, {"rise_s", 0.5}});
+  int held = 0;
+  for (const RendererEntry& entry : renderers()) {
+    if (entry.degrees_of_freedom != DegreesOfFreedom::three) continue;
+    const Trace moved = pressed(entry.name, rises), rested = pressed(entry.name, kAtRest);
+    EXPECT_LT(std::abs(moved.surface_velocity_m_per_s.back()), 1e-4) << entry.name;
+    if (moved.signed_distance_m.back() < -0.001 || rested.signed_distance_m.back() < -0.001) continue;
+    ++held;
+    EXPECT_NEAR(moved.force_N.back().y(), rested.force_N.back().y(), 0.05) << entry.name;
+  }
+  EXPECT_GE(held, 6) << "these renderers do not lose a surface that rises slowly";
+}
+
+// So the camera need not repeat the only frame of a scene.
+TEST(ForceOverTime, ARepetitionOfTheOnlyFrameChangesNoForce) {
+  for (const RendererEntry& entry : renderers()) {
+    if (entry.degrees_of_freedom != DegreesOfFreedom::three) continue;
+    const Trace once = pressed(entry.name, kAtRest), again = pressed(entry.name, kAtRest, 1e-300);
+    ASSERT_GT(again.frame_index.back(), 30) << entry.name;
+    ASSERT_EQ(once.frame_index.back(), 0) << entry.name;
+    double most_N = 0;
+    for (std::size_t i = 0; i < once.length(); ++i)
+      most_N = std::max(most_N, (once.force_N[i] - again.force_N[i]).norm());
+    EXPECT_LT(most_N, 1e-6) << entry.name;
+  }
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "core/geometry/rotation.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
+#include "tests/analysis/measures/measure_named.h"
 
 namespace remote_touch::guided_loop_test {
 namespace {
@@ -57,6 +58,32 @@ TEST(GuidedLoop, ARegionThatIsUnlockedFirstBeginsLocked) {
 }
 
 // --- guidance ---
+
+// A penalty force holds the hand where the surface does, however guidance pulls at it.
+TEST(GuidedLoop, GuidanceIsNoPartOfTheContact) {
+  SimulationOptions options;
+  options.find_true_contact = true;
+  std::vector<double> errors_m, heights_m, jumps_N;
+  for (const char* pull : {"0", "0.05", "0.096"}) {
+    const Trace trace =
+        simulate(Experiment::from_json(R"({"scenario": {"name": "flat-grid", "columns": 60, "rows": 60},
+            "renderer": {"name": "penalty"}, "duration_s": 0.6,
+            "trajectory": {"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.0005, 0, 0.1]]},
+            "fixtures": [{"name": "near-point", "role": "guidance", "stiffness_N_per_m": 100}],
+            "guidance": {"offset_m": [0, )" +
+                                           std::string(pull) + R"(, 0], "max_force_N": 20}})",
+                                       "test"),
+                 options);
+    EXPECT_TRUE(trace.guidance_active.back());
+    const auto of = [&](const char* name) { return value_of(measure_named(name), trace); };
+    errors_m.push_back(of("rms_contact_error")), heights_m.push_back(of("mean_distance"));
+    jumps_N.push_back(of("force_fraction"));
+  }
+  for (const std::vector<double>& values : {errors_m, heights_m, jumps_N}) {
+    EXPECT_FALSE(std::isnan(values[0]));
+    for (const double value : values) EXPECT_NEAR(value, values[0], 1e-9);
+  }
+}
 
 // The goal is 5 cm above the middle of a flat grid. The hand intends to be 2 cm beside it.
 Trace beside_a_goal(const std::vector<std::string>& overrides, double duration_s = 4) {

@@ -117,7 +117,8 @@ TEST_F(RecordedTruthRun, PrintsBothErrorsAmongItsMainMeasures) {
   std::vector<std::string> names;
   for (const MeasuredValue& each : main_measures(measured_values(built_in_measures(), trace), Fixtures::none))
     names.push_back(each.measure->name);
-  for (const char* name : {"rms_contact_error", "rms_camera_error", "rms_renderer_error"})
+  for (const char* name : {"popped_through", "popped_through_truth", "rms_contact_error", "rms_camera_error",
+                           "rms_renderer_error"})
     EXPECT_EQ(std::ranges::count(names, name), 1) << name;
 }
 

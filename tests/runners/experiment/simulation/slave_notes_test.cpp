@@ -42,6 +42,26 @@ TEST(SlaveNotes, AreNoneForASlaveThatFollows) {
   EXPECT_EQ(notes_of("fig4.11", {}), Kinds{});
 }
 
+// The error of the registration puts the slave behind the surface in some of these replicates.
+TEST(SlaveNotes, SayThatTheSlaveStartsInContact) {
+  int in_contact = 0;
+  for (int replicate = 0; replicate < 8; ++replicate) {
+    const Trace trace = simulate(
+        Experiment::load("steer-robot", {"fixtures=[]", "duration_s=0.1", "registration.offset_m=0.03",
+                                         "command_link.delay_s=0", "replicate=" + std::to_string(replicate),
+                                         "trajectory.waypoints=[[0, 0.012, 0, 0], [0, 0.05, 0, 0.1]]"}),
+        {});
+    const std::vector<Note> notes = slave_notes(trace);
+    const bool starts_inside = trace.slave_clearance_m.front() < 0;
+    ASSERT_EQ(notes.size(), starts_inside ? 1u : 0u) << replicate;
+    EXPECT_TRUE(!starts_inside || notes[0].kind == "slave starts in contact");
+    EXPECT_EQ(trace.slave_peak_force_N[1] > 0, starts_inside) << replicate;
+    in_contact += starts_inside ? 1 : 0;
+  }
+  EXPECT_GT(in_contact, 0);
+  EXPECT_LT(in_contact, 8);
+}
+
 TEST(SlaveNotes, SayThatNoCommandArrived) {
   EXPECT_EQ(notes_of("steer-robot", {"duration_s=1", "command_link.loss_probability=1"}),
             Kinds{"slave without command"});
@@ -143,6 +163,10 @@ TEST(SlaveNotes, TheSummaryHasTheFirstContactAndTheLargestForce) {
   add(12.34, -0.002);
   EXPECT_EQ(slave_summary(trace),
             "the slave touched first at 0.002 s; largest force of the scene on it: 12.3 N");
+  Trace unknown;
+  std::swap(trace, unknown);
+  add(std::nan(""), -0.001);
+  EXPECT_EQ(slave_summary(trace), "it is not known whether the slave touched: its force is unknown");
 }
 
 TEST(SlaveNotes, SayThatThereIsNoSurfaceToTouch) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -44,6 +45,20 @@ TEST(FrameLink, JudgesByWhereTheSlaveWasWhenTheFrameWasCaptured) {
   for (int i = 0; i < 6; ++i) link.on_frame(frame(i, 0.03 * i));
   EXPECT_EQ(receiver.frames, (std::vector<int>{0, 4, 5}));
   EXPECT_EQ(link.sent(), 3);
+}
+
+// Before the slave starts its position is NaN, and frames are sent. With jitter some frames overtake others:
+// they show nothing new, because the surface is at rest.
+TEST(FrameLink, SendsNothingTwiceIfFramesOvertakeEachOther) {
+  Receiver receiver;
+  FrameLink link({.least_motion_m = 0.5, .near_m = 0.02}, receiver, kernels_for(best_isa()));
+  link.observe_slave(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), 0);
+  link.on_frame(frame(0, 0));
+  link.on_frame(frame(0, 0.001));
+  for (int tick = 2; tick < 1000; ++tick) link.observe_slave(Vec3(-0.04, 0, 0), 0.001 * tick);
+  for (int i = 1; i < 10; ++i)
+    for (const int late : {0, 2, 1}) link.on_frame(frame(0, 0.1 * i - 0.03 * late));
+  EXPECT_EQ(link.sent(), 2);
 }
 
 TEST(FrameLink, StepsTheRenderer) {

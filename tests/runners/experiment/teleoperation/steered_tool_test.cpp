@@ -220,7 +220,8 @@ TEST(SteeredTool, RefusesWhatASlaveWithAToolDoesNotHave) {
   const auto why = [](const std::string& setting) {
     return refusal([&] { Experiment::load("steer-tool", {setting}); });
   };
-  EXPECT_HAS(why("feedback.force=passive-slave-force"), "feedback.force = passive-slave-force");
+  for (const std::string force : {"passive-slave-force", "position-position", "wave"})
+    EXPECT_HAS(why("feedback.force=" + force), "feedback.force = " + force + ": expected another");
   EXPECT_HAS(why("slave.radius_m=0.01"), "slave.radius_m = 0.01");
   EXPECT_HAS(refusal([] {
                run({"haptic_rate_hz=100", "slave.mass_kg=1", "slave.contact_stiffness_N_per_m=4e5"});

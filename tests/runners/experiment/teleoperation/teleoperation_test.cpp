@@ -117,6 +117,46 @@ TEST(Teleoperation, TheForceOfTheSlaveComesBackAfterTheDelays) {
   }
 }
 
+// The packets of the force are lost in bursts. The fates of the packets are known, so each tick tells when
+// the last one arrived. With hold_s = 0 the force is held, as long as it takes.
+TEST(Teleoperation, AForceWhosePacketsAreLostFadesToZero) {
+  TeleoperationSettings s = with(Feedback::slave_force);
+  s.forces.channel.loss_probability = 0.9, s.forces.channel.mean_burst_packets = 300;
+  for (const HoldSettings hold : {HoldSettings{}, HoldSettings{0.01, 0}, HoldSettings{0, 0.02}}) {
+    s.feedback.hold = hold;
+    PacketFates fates(s.forces.channel, {}, NoiseUse::force_channel);
+    const std::vector<Tick> ticks = descent(s, 6000);
+    Vec3 arrived = Vec3::Zero();
+    int silent = 0, faded = 0;
+    for (std::size_t i = 0; i < ticks.size(); ++i) {
+      ++silent;
+      if (!fates.next().is_lost) arrived = ticks[i].slave.force_N, silent = 0;
+      const double share = hold.hold_s == 0 || silent * kTick_s <= hold.hold_s + 1e-9 ? 1
+                           : silent * kTick_s >= hold.hold_s + hold.fade_s - 1e-9
+                               ? 0
+                               : (hold.hold_s + hold.fade_s - silent * kTick_s) / hold.fade_s;
+      EXPECT_NEAR((ticks[i].felt.force_N - share * arrived).norm(), 0, 1e-9) << i;
+      faded += share == 0 && arrived.norm() > 1;
+    }
+    EXPECT_EQ(faded > 0, hold.hold_s > 0);
+  }
+}
+
+// A dead-band sends nothing while the force is constant: silence is no loss, unless a limit of silence has
+// passed.
+TEST(Teleoperation, ASilentDeadBandIsNoLoss) {
+  TeleoperationSettings s = with(Feedback::slave_force);
+  s.forces.dead_band.weber_fraction = 0.1, s.forces.dead_band.least = 0.01;
+  for (const double longest_s : {0.0, 0.2}) {
+    s.forces.dead_band.longest_silence_s = longest_s;
+    s.feedback.hold.hold_s = 0.05;
+    const Vec3 faded = descent(s, 3000).back().felt.force_N;
+    s.feedback.hold.hold_s = 0;
+    EXPECT_EQ(faded, descent(s, 3000).back().felt.force_N) << longest_s;
+    EXPECT_GT(faded.norm(), 1);
+  }
+}
+
 TEST(Teleoperation, TheGainScalesTheForceOfTheSlave) {
   TeleoperationSettings s = with(Feedback::slave_force);
   const Vec3 whole = descent(s).back().felt.force_N;

@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <thread>
 
+#include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 #include "scenarios/recordings/recording_part.h"
 #include "tests/support/meshes.h"
@@ -62,6 +64,21 @@ TEST_F(ToolCacheTest, FreshAndCachedAreTheSameBits) {
   EXPECT_EQ(made, again);
   EXPECT_HAS(made, "80.0 x 20.0 x 10.0 mm");
   EXPECT_EQ(fs::last_write_time(only_file()), before) << "made anew";
+}
+
+// The sources of a tool can change without a change of anything that a person maintains. So the key has the
+// digest of all of them, and each build has tools of its own.
+TEST_F(ToolCacheTest, TheKeyHasTheBuild) {
+  std::string digest;
+  for (const auto& [name, value] : provenance("", "", ""))
+    if (name == "source_digest") digest = value;
+  ASSERT_EQ(digest.size(), 64u);
+  EXPECT_HAS(build_for_keys(), digest);
+  CacheWriter pack;
+  pack.text(build_for_keys());
+  pack.text("mesh");
+  pack.value(5e-4), pack.value(0.02), pack.value(false);
+  EXPECT_EQ(tool_key("mesh", {5e-4, 0.02}), pack.hex());
 }
 
 TEST_F(ToolCacheTest, EverySettingHasATool) {

@@ -28,7 +28,7 @@ TEST(DryRun, HasNoTimeToEstimateIfNoRunIsLeft) {
   SweepRequest request;
   request.sweep = folder.write("quick.json", kQuick).string();
   request.output = (folder / "map.h5").string(), request.shard = "1/1", request.dry_run = true;
-  EXPECT_HAS(printed(line, request), " ms a run, some tried)\n");
+  EXPECT_HAS(printed(line, request), " in the 4 that were tried)\n");
   request.dry_run = false;
   printed(line, request);
   request.dry_run = true;

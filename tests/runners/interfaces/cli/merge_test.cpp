@@ -1,6 +1,8 @@
 // Tests of the files that the command `merge` may overwrite.
 #include <gtest/gtest.h>
 
+#include "analysis/storage/block_journal.h"
+#include "analysis/storage/replacement_rule.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/kernels/isa.h"
 #include "runners/interfaces/cli/commands.h"
@@ -36,10 +38,13 @@ class Merge : public testing::Test {
     testing::internal::GetCapturedStdout();
     return output;
   }
-  std::string merged_to(const std::string& output) const {
+  std::string merged_to(const std::string& output) const { return merged({shards_, output}); }
+  // Returns the refusal. printed: what the command printed.
+  std::string merged(const MergeCommand& command, std::string* printed = nullptr) const {
     testing::internal::CaptureStdout();
-    const std::string why = refusal([&] { EXPECT_EQ(command_merge(line_, {shards_, output}), kDone); });
-    testing::internal::GetCapturedStdout();
+    const std::string why = refusal([&] { EXPECT_EQ(command_merge(line_, command), kDone); });
+    const std::string text = testing::internal::GetCapturedStdout();
+    if (printed) *printed = text;
     return why;
   }
 
@@ -75,6 +80,39 @@ TEST_F(Merge, KeepsAPlugInAShardAndASweepWithMoreRuns) {
   EXPECT_HAS(merged_to(shards_.front()), "is one of the shards");
   EXPECT_HAS(merged_to(longer_), "holds runs that the shards do not");
   EXPECT_EQ(read_sweep(longer_).result.runs_in(RunState::done).size(), 6u);
+}
+
+// A file with runs that nothing else holds is kept, of whatever kind it and the merged shards are.
+TEST_F(Merge, KeepsRunsThatTheShardsLack) {
+  line_.force = true;
+  const std::string sweep = (folder_ / "quick.json").string();
+  std::vector<std::string> parts, outputs{folder_.write("live.h5", std::string(kJournalOpening)).string()};
+  for (const std::string keep : {"runs", "tally"}) {
+    parts.push_back(sweep_to(sweep, {"keep=" + keep}, file("part-" + keep + ".h5"), "1/2"));
+    const std::string other = sweep_to(sweep, {"keep=" + keep}, file("other-" + keep + ".h5"), "2/2");
+    outputs.push_back(other);
+    outputs.push_back(sweep_to(sweep, {"keep=" + keep}, file("whole-" + keep + ".h5"), "1/1"));
+    outputs.push_back(file("merged-" + keep + ".h5"));
+    ASSERT_EQ(merged({{parts.back(), other}, outputs.back()}), kNone);
+  }
+  for (const std::string& part : parts) {
+    for (const std::string& output : outputs) {
+      const std::string before = bytes_of(output);
+      EXPECT_THROW(command_merge(line_, {{part}, output, true}), KeptFile) << part << ", " << output;
+      EXPECT_TRUE(bytes_of(output) == before) << part << ", " << output;
+    }
+    const std::string damaged = folder_.write("damaged.h5", bytes_of(part) + "x").string();
+    EXPECT_EQ(merged({{part}, damaged, true}), kNone);  // --force is for such a file
+    EXPECT_TRUE(bytes_of(damaged) == bytes_of(part));
+  }
+}
+
+// Two cells in three shards.
+TEST_F(Merge, OfAnEmptyShardStatesTheSweep) {
+  const std::string empty = sweep_to((folder_ / "quick.json").string(), {}, file("empty.h5"), "3/3");
+  std::string printed;
+  EXPECT_EQ(merged({{empty}, file("all.h5"), true}, &printed), kNone);
+  EXPECT_HAS(printed, "all.h5: 2 cells, 0 runs done, 0 failed, 4 in other shards");
 }
 
 }  // namespace

@@ -132,6 +132,28 @@ TEST(Plugin, AnExceptionOfAFunctionThatFreesIsIgnored) {
   renderer.reset();
 }
 
+// Returns a renderer whose functions throw a number, which is no std::exception.
+remote_touch_renderer throws_a_number() {
+  remote_touch_renderer functions{};
+  functions.name = "throws-a-number", functions.summary = "for tests", functions.degrees_of_freedom = 3;
+  functions.max_stiffness_N_per_m = [](const double*) -> double { throw 1; };
+  functions.rest_distance_m = [](const double*) -> double { throw 1; };
+  functions.create = [](const double*, double, char*, std::size_t) -> void* { throw 1; };
+  return functions;
+}
+
+TEST(Plugin, ANumberThatIsThrownIsAnInputErrorOfItsFunction) {
+  const remote_touch_renderer functions = throws_a_number();
+  const auto factory = plugin_factory(functions);
+  const auto text = [](const std::string& function) {
+    return "plug-in renderer throws-a-number: " + function + ": threw an exception";
+  };
+  EXPECT_EQ(refusal([&] { factory->stiffness_N_per_m(); }), text("max_stiffness_N_per_m"));
+  EXPECT_EQ(refusal([&] { factory->contact(); }), text("rest_distance_m"));
+  EXPECT_EQ(refusal([&] { factory->validate(); }), text("create"));
+  EXPECT_EQ(refusal([&] { factory->build(1000, scenes::kernels()); }), text("create"));
+}
+
 TEST(Plugin, OtherFilesAreRefused) {
   const TestFolder folder("plugin");
   const auto load = [](const std::string& file) { return refusal([&] { load_plugin(file); }); };

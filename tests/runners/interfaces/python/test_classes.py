@@ -341,3 +341,117 @@ except rt.InputError as error:
 else:
     raise AssertionError
 ''')
+
+
+# A cell of a notebook has no file.
+NOTEBOOK = COMMON + '''
+CELL = """
+K = 600
+def stiff(depth): return K * depth
+class Base(rt.Renderer):
+    stiffness_N_per_m = 600
+    def rest_distance_m(self): return 0.0
+class Mine(Base):
+    names = frozenset(("a", "b", "c", "d"))
+    settings = {"limit_N": rt.Setting(10.0, low=0, high=100)}
+    def step(self, device, time_s):
+        return rt.Output(force_N=(0, max(0, stiff(-device.position_m[1])), 0) if "a" in {"a", "b"} else None)
+"""
+def cell(text=CELL):
+    exec(text, globals())
+    rt.register(Mine, "mine")
+def sha():
+    return rt.run(PRESS, set={"renderer": {"name": "mine"}}).attrs["program_sha256"]
+cell()
+first = sha()
+'''
+
+
+def test_a_class_of_a_notebook_is_known_by_what_it_computes(in_python):
+    script = NOTEBOOK + '''
+for old, new in (("K = 600", "K = 601"), ("K * depth", "K + depth"), ("return 0.0", "return 0.1"), ("(10.0", "(11.0"),
+                 ("position_m[1]", "position_m[0]"), ("max(0, ", "min(0, "), ('"d"', '"e"'), ("= 600\\n    def", "= 601\\n    def")):
+    cell(CELL.replace(old, new))
+    assert sha() != first, new
+cell()
+assert sha() == first
+K = 5  # another cell, which registers no class
+assert sha() != first
+K = np.random.default_rng(1)
+stiff = lambda depth: K.uniform() * depth
+unknown = sha()
+K = np.random.default_rng(1)
+assert sha() != unknown  # nobody knows whether it computes the same
+print(first)
+'''
+    assert len({in_python(script) for _ in range(2)}) == 1  # another process, another order of sets
+
+
+def test_a_sweep_does_not_go_on_with_an_edited_class(in_python, tmp_path):
+    base = tmp_path / "base.py"
+    base.write_text("import remote_touch as rt\nclass Base(rt.Renderer):\n    stiffness_N_per_m = 600\n")
+    begin = NOTEBOOK.index("class Base")
+    script = NOTEBOOK[:begin] + "from base import Base\n" + NOTEBOOK[NOTEBOOK.index("class Mine"):] + '''
+def sweep():
+    return rt.sweep({"title": "t", "experiment": {**PRESS, "renderer": {"name": "mine"}}, "replicates": 2,
+                     "axes": [{"parameter": "trajectory.depth_m", "values": [0.001, 0.002]}], "measures": ["max_force"]}, output="a.h5")
+if sys.argv[1:] != ["again"]:
+    sweep()
+    sweep()  # goes on with the same class
+    cell(CELL.replace("K = 600", "K = 700"))
+try:
+    sweep()
+except rt.InputError as error:
+    assert "a.h5" in str(error) and "program_sha256" in str(error), error
+else:
+    raise AssertionError
+'''
+    in_python(script)
+    base.write_text(base.read_text() + "    def rest_distance_m(self): return 0.0\n")
+    in_python(script, "again")
+
+
+def test_a_class_reads_no_file_while_another_is_read(in_python):
+    in_python(PENALTY + '''
+for depth_m in (0.004, 0.005):
+    rt.run(PRESS, set={"renderer": {"name": Penalty}, "trajectory.depth_m": depth_m}, output=f"{depth_m}.h5")
+refusals = []
+def validate(self):
+    try:
+        rt.open("0.004.h5")
+    except rt.InputError as error:
+        refusals.append(str(error))
+Penalty.validate = validate
+assert rt.compare("0.004.h5", "0.005.h5").differences
+assert refusals and all("a file: this thread reads or writes another one" in text for text in refusals), refusals
+Penalty.validate = lambda self: None
+assert rt.compare("0.004.h5", "0.005.h5").differences
+''')
+
+
+def test_a_masked_point_is_missing(in_python):
+    in_python(COMMON + '''
+@rt.register
+class Hole(rt.Scenario):
+    settings = {"masked": rt.Setting(True)}
+    def cloud(self, frame):
+        side = np.linspace(-0.05, 0.05, 51)
+        x, z = (grid.ravel() for grid in np.meshgrid(side, side))
+        points = np.column_stack([x, 0 * x, z])
+        hole = np.hypot(x, z) < 0.03
+        return np.ma.masked_array(points, mask=np.repeat(hole[:, None], 3, 1)) if self.masked else points[~hole]
+DIVE = {"name": "waypoints", "waypoints": [[0, 0.01, 0, 0], [0, -0.005, 0, 0.1]]}
+def force(masked):
+    return float(rt.run({**PRESS, "scenario": {"name": "hole", "masked": masked}, "trajectory": DIVE}).max_force)
+assert force(True) == force(False) == 0
+@rt.register("hole")
+class Partly(Hole):
+    def cloud(self, frame):
+        return np.ma.masked_array(np.zeros((4, 3)), mask=[[True, False, False]] * 4)
+try:
+    force(True)
+except rt.InputError as error:
+    assert "row 0: a number is not finite" in str(error), error
+else:
+    raise AssertionError
+''')

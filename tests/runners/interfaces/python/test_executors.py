@@ -281,7 +281,7 @@ def test_a_difference_in_a_later_round_takes_back_the_rounds_that_rest_on_it(com
         if is_check:
             checks.append(number)
             if len(checks) == 2:
-                made["notes"][0] ^= 1
+                made["notes"][:1] ^= np.uint64(1)
         return made
     output = tmp_path / "map.h5"
     with pytest.raises(RuntimeError, match="made are pending again"):
@@ -417,3 +417,25 @@ if __name__ == "__main__":
     refusal, same = out.splitlines()
     assert "its program is '', here it is 'Python mine.py: Mine': expected workers with the same build, classes" in refusal
     assert same == "True"
+
+
+def test_no_class_is_registered_while_workers_make_runs(in_python):
+    in_python(COMMON + """
+import concurrent.futures
+def register():
+    @rt.register("mine")
+    class Mine(rt.Renderer):
+        stiffness_N_per_m = 600
+        def step(self, device, time_s): return rt.Output()
+register()
+sweep = {"title": "t", "experiment": {**PRESS, "renderer": {"name": "mine"}}, "replicates": 20,
+         "axes": [{"parameter": "trajectory.depth_m", "values": [0.001, 0.002]}], "measures": ["max_force"]}
+with concurrent.futures.ThreadPoolExecutor(1) as pool:
+    try:
+        rt.sweep(sweep, output="a.h5", executor=pool, progress=lambda done: register())
+    except rt.InputError as error:
+        assert "register: a run or a sweep is in progress" in str(error), error
+    else:
+        raise AssertionError
+    assert (rt.sweep(sweep, output="a.h5", executor=pool).state == 2).all()
+""")

@@ -186,3 +186,10 @@ def test_compare_is_the_command(command_line, tmp_path):
     wide = rt.compare(a, b, tolerance={"*": 1e9})
     assert wide.same == command_line("compare", a, b, "--tolerance", "*=1e9").rstrip().splitlines()[-1].startswith("same")
     assert wide.same and rt.compare(first, second, tolerance={"*": (1e9, 0)}).same
+
+
+def test_texts_stay_texts():
+    for title in ("1", "true", "null", "[1]", '"quoted"', "1e3", "plain", " x "):
+        assert json.loads(rt.run(PRESS, set={"title": title}).attrs["config"])["title"] == title
+    with pytest.raises(rt.InputError, match="noise_sigma_m"):
+        rt.run(PRESS, set={"scenario.noise_sigma_m": "0.001"})

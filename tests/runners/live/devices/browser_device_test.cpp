@@ -93,6 +93,14 @@ TEST_F(BrowserDeviceTest, ANewStopHoldsTheHandWhereThatTickHasIt) {
   EXPECT_NEAR((after(500).position_m - there - Vec3(0, 0.03, 0)).norm(), 0, 1e-9) << "the same stop";
 }
 
+TEST_F(BrowserDeviceTest, AStopTakesTheSpeedAway) {
+  after(1);
+  want({start_.position_W + Vec3(1, 0, 0)});
+  const Vec3 there = after(300).position_m;
+  request({{}, {}, 1});
+  for (int i = 0; i < 50; ++i) EXPECT_NEAR((after(1).position_m - there).norm(), 0, 1e-12) << i;
+}
+
 // A loop that missed ticks finds the hand where it would be by then.
 TEST_F(BrowserDeviceTest, MovesOnWhileTicksAreMissed) {
   after(1);

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,6 +17,7 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/live/devices/device_placement.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::device_presets_test {
 namespace {
@@ -92,6 +95,16 @@ TEST(DevicePresets, KeepTheHandOfARunInTheWorkspace) {
     }
     EXPECT_EQ(yields_m > 0.001, preset.max_force_N > 0) << preset.name << " yields by " << yields_m << " m";
   }
+}
+
+TEST(DevicePresets, AStiffnessThatIsNoneDoesNotSwitchTheScalingOff) {
+  EXPECT_EQ(force_scale(2400, 1, 600), 0.25);
+  EXPECT_EQ(force_scale(300, 2, 600), 1);
+  EXPECT_EQ(force_scale(1e6, 1, 0), 1) << "the limit of the device is not known";
+  for (const double none : {std::nan(""), -1.0, HUGE_VAL})
+    for (const std::array<double, 3>& a :
+         {std::array{none, 1.0, 600.0}, std::array{2400.0, none, 600.0}, std::array{2400.0, 1.0, none}})
+      EXPECT_HAS(refusal([&] { force_scale(a[0], a[1], a[2]); }), "expected a finite number, 0 or more");
 }
 
 TEST(DevicePresets, AskForNoMoreThanTheDeviceCanExert) {

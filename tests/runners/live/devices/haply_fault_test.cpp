@@ -91,6 +91,14 @@ TEST_F(HaplyFault, GarbageInsteadOfAStateIsAFault) {
   EXPECT_EQ(tick(*device), "");
 }
 
+TEST_F(HaplyFault, AStateWithoutVelocityIsAFault) {
+  const auto device = service_.open();
+  service_.world.answer =
+      R"({"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":0,"y":0,"z":0}}}]})";
+  tick(*device);
+  EXPECT_HAS(tick(*device), "sent no cursor_velocity");
+}
+
 TEST_F(HaplyFault, ReportsANanForceAndSendsZero) {
   const auto device = service_.open();
   const Vec3 none(0, std::numeric_limits<double>::quiet_NaN(), 0);

@@ -65,7 +65,7 @@ TEST(HaplyMessage, ReadsAWiredHandleAndTheBasis) {
       R"("verse_grip":[{"device_id":"2","state":{"button":true,"orientation":{"x":0,"y":0,"z":0,"w":1}}}]})",
       "", "", message));
   EXPECT_EQ(message.device->basis, "XZY");
-  EXPECT_FALSE(message.device->has_position);
+  EXPECT_FALSE(message.device->has_position || message.device->has_velocity);
   EXPECT_EQ(message.handle->buttons, 1u);
 }
 

@@ -57,6 +57,26 @@ TEST(SafetyGate, BeginsOnlyBelowTheThresholdAndThenRisesEvenly) {
   EXPECT_NEAR(loop.tick({1, 0, 0}).force_N.x(), 1, 1e-12);
 }
 
+// The force falls to zero after a camera has stopped, and starts again gently when it comes back.
+TEST(SafetyGate, AFrameThatIsTooOldEndsTheForceUntilTheNextOne) {
+  SafetyLimits limits;
+  limits.max_frame_age_s = 0.2;
+  Loop loop(limits);
+  loop.engage();
+  const auto force = [&](double frame_age_s) {
+    loop.now_s += kTick_s;
+    const Wrench command{{1, 0, 0}, Vec3::Zero()};
+    return loop.gate.pass(loop.now_s, {}, {}, command, loop.now_s, frame_age_s).force_N.x();
+  };
+  for (int i = 1; i <= 200; ++i) EXPECT_GT(force(i * kTick_s), 0) << i;
+  for (int i = 201; i <= 210; ++i) force(i * kTick_s);
+  EXPECT_EQ(force(0.211), 0);
+  EXPECT_EQ(force(0), 0) << "the hand is still inside";
+  EXPECT_EQ(loop.gate.state(), GateState::waiting);
+  loop.tick(Vec3::Zero());
+  EXPECT_EQ(loop.gate.state(), GateState::ramping);
+}
+
 // A ramp is not a limit: the state tells it.
 TEST(SafetyGate, KnowsWhenItLimits) {
   Loop loop;

@@ -143,6 +143,19 @@ TEST(LiveLog, CountsTheTicksInWhichTheGateLimits) {
   EXPECT_EQ(count_of(live_report(log, {}), "ticks with a force or torque limited for safety"), 2);
 }
 
+TEST(LiveLog, ACloudOfASlowCameraIsStaleAfterTwoAndAHalfPeriods) {
+  EXPECT_EQ(LiveLog::stale_after_s(30), 0.2);
+  EXPECT_EQ(LiveLog::stale_after_s(2), 1.25);
+  LiveLog log;
+  log.stale_s = LiveLog::stale_after_s(2);
+  LiveTick tick;
+  for (int i = 0; i < 1300; ++i) {
+    tick.number = i, tick.taken = i == 0 ? 0 : -1;
+    log.append(tick, 1000);
+  }
+  EXPECT_EQ(log.stale_ticks, 1299 - 1250);
+}
+
 TEST(LiveLog, AFrameThatIsNotNewerThanTheOneBeforeIsReversed) {
   LiveLog log;
   LiveTick tick;

@@ -26,6 +26,7 @@ class ScriptedDevice final : public HapticDevice {
   using HapticDevice::HapticDevice;
 
   std::function<DeviceFault()> on_read, on_write;
+  Vec3 position_m = Vec3::Zero();
   int max_ticks = 100;
   int rearmed = 0;
   std::vector<std::int64_t> released_ms;
@@ -34,7 +35,11 @@ class ScriptedDevice final : public HapticDevice {
   void run(DeviceCycle& cycle) override {
     for (int i = 0; i < max_ticks && cycle.tick(); ++i) clock().sleep_s(kTick_s);
   }
-  DeviceFault read(DeviceReading&) noexcept override { return on_read ? on_read() : DeviceFault{}; }
+  DeviceFault read(DeviceReading& reading) noexcept override {
+    const DeviceFault fault = on_read ? on_read() : DeviceFault{};
+    if (!fault) reading.position_m = position_m;
+    return fault;
+  }
   DeviceFault write(const Wrench& wrench) noexcept override {
     written_N.push_back(wrench.force_N.x());
     return on_write ? on_write() : DeviceFault{};
@@ -220,6 +225,25 @@ TEST_F(ServoTest, ADeviceThatSaysItWasReleasedHasNotFailed) {
   EXPECT_FALSE(servo_->has_failed());
   EXPECT_FALSE(servo_->is_latched());
   EXPECT_EQ(rows().size(), 100u);
+}
+
+// A hand whose reading failed is nowhere, and later where it was read last: never at the device's origin.
+TEST_F(ServoTest, AFailedReadDoesNotMoveTheHandToTheOrigin) {
+  device_.position_m = Vec3(0.1, 0.2, 0.3);
+  device_.max_ticks = 8;
+  device_.on_read = [calls = 0]() mutable {
+    ++calls;
+    return calls == 1 || calls >= 5 ? kReleased : calls == 4 ? DeviceFault{"broken"} : DeviceFault{};
+  };
+  run();
+  const std::vector<LiveTick> ticks = rows();
+  ASSERT_EQ(ticks.size(), 8u);
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    const bool is_known = i != 0 && i != 3;  // before the first reading, and when it failed
+    const Vec3& at_W = ticks[i].device.position_W;
+    EXPECT_TRUE(is_known ? at_W == device_.position_m : !at_W.allFinite()) << i;
+    EXPECT_EQ(ticks[i].gate == GateState::latched, i >= 3) << i;
+  }
 }
 
 // The thread that waits for the loop may be held up.

@@ -52,6 +52,19 @@ TEST(ScenarioCamera, FramesComeAtTheTimesAtWhichTheyWereCaptured) {
   }
 }
 
+// What was set up between the start of the run and the first frame moves no frame in time.
+TEST(ScenarioCamera, CountsFromTheStartOfTheRun) {
+  SimulatedClock clock;
+  clock.sleep_s(5);
+  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
+  camera.start_at(clock.now_ns());
+  clock.sleep_s(SlowRecording::kFirst_s + 1.5 * SlowRecording::kPeriod_s);
+  SensorFrame frame;
+  ASSERT_EQ(camera.next(frame, 1), SensorState::frame);
+  EXPECT_EQ(frame.number, 1);
+  EXPECT_NEAR(frame.captured_s, 5 + SlowRecording::kFirst_s + SlowRecording::kPeriod_s, 1e-9);
+}
+
 class PosedRecording final : public SlowRecording {
  public:
   std::optional<RigidTransform> sensor_pose() const override {

@@ -175,6 +175,14 @@ TEST_F(TracePageTest, RefusesWhatIsNoTrace) {
   EXPECT_HAS(refusal([&] { trace_page({folder_ / "text.h5"}, options()); }), "text.h5");
 }
 
+TEST_F(TracePageTest, RefusesTwoTracesOfOtherTickRates) {
+  store("a.h5", "fig4.12"), store("b.h5", "fig4.12", {"haptic_rate_hz=500"});
+  EXPECT_HAS(refusal([&] {
+               trace_page({folder_ / "a.h5", folder_ / "b.h5"}, options());
+             }),
+             "b.h5: has 500.0 ticks per second, but ");
+}
+
 TEST(PageFile, TextInItEndsNoElement) {
   if (viewer_script().empty()) GTEST_SKIP() << "built without the viewer";
   const std::string html = page_file("a < b & c", R"({"title":"</script><b>"})", "");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "runners/experiment/catalog/experiment.h"
@@ -109,6 +110,33 @@ TEST(TrueHeights, AreThoseFromWhichTheColumnMeasures) {
   expect_the_truth_of_the_column("parallel-sheets", {}, true);
   expect_the_truth_of_the_column("vanishing-plane", {}, true);
   expect_the_truth_of_the_column("sliding-ridge", {}, false);
+}
+
+// A sine of 10 mm and 1 Hz for 40 s: 200 even times are off by 10 mm.
+TEST(TrueHeights, ALongMotionIsAsAccurateAsAShortOne) {
+  const Experiment experiment = Experiment::from_json(
+      R"({"scenario": {"name": "moving-shape", "shape": "flat", "shake_amplitude_m": 0.01, "shake_hz": 1,
+                       "truth": "moving"},
+          "renderer": {"name": "proxy"}, "trajectory": {"name": "press"}, "duration_s": 40})",
+      "test");
+  const auto scenario = experiment.build_scenario(scenes::kernels());
+  const TrueHeights all =
+      true_heights(*scenario, BoundingBox(Vec3(-0.01, -0.1, -0.01), Vec3(0.01, 0.1, 0.01)), ticks(0, 40));
+  EXPECT_LE(all.time_s.size(), 600u);
+  double worst_m = 0;
+  for (double t = 0; t < 40; t += 0.0037)
+    worst_m = std::max(worst_m, std::abs(drawn_m(all, t) - scenario->surface_height(0, 0, t)));
+  EXPECT_LT(worst_m, 1.5 * all.error_m);
+  EXPECT_LT(all.error_m, 4e-4);
+}
+
+TEST(TrueHeights, StateTheErrorBetweenTheirNodes) {
+  EXPECT_NEAR(true_heights(RisingPlane(0.3), kBox, ticks(1, 3)).error_m, 0, 1e-6);
+  const auto scenario = Experiment::load("fig4.14").build_scenario(scenes::kernels());
+  const BoundingBox wide(Vec3(-0.2, -0.1, -0.05), Vec3(0.2, 0.1, 0.05));  // nodes are 10 mm apart
+  const TrueHeights all = true_heights(*scenario, wide, ticks(0, 1));
+  EXPECT_GT(all.error_m, 0.001);
+  EXPECT_LT(all.error_m, 0.01);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <cstring>
 #include <string>
 #include <thread>
 #include <vector>
@@ -82,6 +84,22 @@ TEST_F(Bags, McapIsReadInEveryLayout) {
       }
 }
 
+// A summary need not repeat the schemas, and its records have no order.
+TEST_F(Bags, McapSchemasMayBeAnywhere) {
+  for (const bool index : {true, false})
+    for (const bool chunks : {true, false})
+      for (const bool repeats_schemas : {true, false})
+        for (const bool channels_first : {true, false}) {
+          SCOPED_TRACE(testing::Message() << index << chunks << repeats_schemas << channels_first);
+          McapLayout layout{chunks, index, true, chunks ? "lz4" : ""};
+          layout.repeats_schemas = repeats_schemas, layout.channels_first = channels_first;
+          folder_.write("x.mcap", mcap_file(messages(), layout));
+          const auto bag = open("x.mcap");
+          expect_all(*bag);
+          EXPECT_EQ(bag->remark().empty(), index || !chunks) << bag->remark();
+        }
+}
+
 TEST_F(Bags, Ros1IsReadInEveryLayout) {
   for (const char* compression : {"none", "lz4", "bz2"})
     for (const bool closed : {true, false}) {
@@ -90,6 +108,41 @@ TEST_F(Bags, Ros1IsReadInEveryLayout) {
       expect_all(*bag);
       EXPECT_EQ(bag->remark(), closed ? "" : "was not closed: it was read from end to end");
     }
+}
+
+// A recorder that is killed leaves an open chunk, whose record claims 0 bytes: the messages follow behind it,
+// as far as they were written. Cut anywhere, it gives what is whole of them, and no error.
+TEST_F(Bags, ARos1BagOfAKilledRecorderIsReadAsFarAsItWasWritten) {
+  const std::vector<BagMessage> all = messages();
+  for (const char* compression : {"none", "lz4", "bz2"}) {
+    SCOPED_TRACE(compression);
+    const std::string begun = ros1_file({all.begin(), all.begin() + 4}, compression, false);
+    std::string open_chunk = ros1_file({all.begin() + 4, all.end()}, compression, false);
+    const auto number = [&](std::size_t at) {
+      std::uint32_t value = 0;
+      std::memcpy(&value, open_chunk.data() + at, sizeof value);
+      return value;
+    };
+    std::size_t at = 13;
+    at += 4 + number(at), at += 4 + number(at);  // the record of the bag
+    open_chunk.erase(0, at);
+    const std::size_t size_at = open_chunk.find("size=") + 5, data_at = 4 + number(0);
+    const std::uint32_t data_size = number(data_at);
+    for (int i = 0; i < 4; ++i) open_chunk[size_at + i] = open_chunk[data_at + i] = '\0';
+    std::size_t most = 0;
+    for (std::size_t written = 0; written <= data_size; ++written) {
+      folder_.write("x.bag", begun + open_chunk.substr(0, data_at + 4 + written));
+      const auto bag = open("x.bag");
+      const std::size_t found = bag->places(0).size() + bag->places(1).size();
+      EXPECT_GE(found, std::max<std::size_t>(4, most));
+      most = found;
+      for (std::size_t t = 0; t < 2; ++t)
+        for (const MessagePlace& place : bag->places(t)) EXPECT_FALSE(bag->message(place).empty());
+      EXPECT_EQ(bag->remark(), "was not closed: its recorder was killed while it wrote a chunk; " +
+                                   std::to_string(found - 4) + " messages of that chunk are whole and used");
+    }
+    EXPECT_EQ(most, 10u);
+  }
 }
 
 TEST_F(Bags, SqliteIsReadAlsoAsFolders) {

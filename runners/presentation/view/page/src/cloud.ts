@@ -1,11 +1,11 @@
 // The points of the frame in use, those that touch, and the forbidden regions around them. Millimetres.
 import * as THREE from "three";
 import { colours, heights, rampColour } from "./colours";
-import type { Frame, Run } from "./data";
+import type { Frame, Run, Vector } from "./data";
 import { PointsBuffer } from "./points_buffer";
 
 const maxRegions = 3000;
-const regionSpacing = 0.2; // of the radius: of regions in a cube of this size one is drawn
+const regionSpacing = 0.2; // of the radius: of regions of about one radius in a cube of this size one is drawn
 
 // Of the heights, in the numbers of positions.
 function rangeOf(all: Uint16Array[]): [number, number] {
@@ -21,6 +21,12 @@ function rangeOf(all: Uint16Array[]): [number, number] {
 function everyNth(list: number[], max: number): number[] {
   const every = Math.max(Math.ceil(list.length / max), 1);
   return every === 1 ? list : list.filter((_, i) => i % every === 0);
+}
+
+// The same for regions that nearly coincide. m
+export function regionKey(place: Vector, radius: number): string {
+  const size = Math.round(Math.log(radius) / Math.log(1 + regionSpacing)), cube = regionSpacing * (1 + regionSpacing) ** size;
+  return [size, ...place.map((x) => Math.floor(x / cube))].join();
 }
 
 export class CloudView {
@@ -122,8 +128,8 @@ export class CloudView {
   private apart(frame: Frame, radii: Float32Array, points: number[]): number[] {
     const taken = new Set<string>();
     return points.filter((i) => {
-      const place = this.run.point(frame, i).map((x) => Math.floor(x / (regionSpacing * radii[i]))).join();
-      return !taken.has(place) && taken.add(place);
+      const region = regionKey(this.run.point(frame, i), radii[i]);
+      return !taken.has(region) && taken.add(region);
     });
   }
   private showTouching(frame: Frame | undefined, tick: number): void {

@@ -42,14 +42,27 @@ function unpacked(buffer: ArrayBuffer, array: Packed): Numbers {
   return new kinds[array.type as keyof typeof kinds](buffer, array.at, array.length);
 }
 
-// A column of a trace; value(tick, part) of a vector's part.
+// Returns the numbers of ticks, increasing, from their times. last: the number of the tick before them, or -1.
+export function ticksOf(times: Numbers, rateHz: number, last: number): number[] {
+  let before = last;
+  return Array.from(times, (timeS) => {
+    const tick = Math.round(timeS * rateHz);
+    before = tick > before ? tick : before + 1;
+    return before;
+  });
+}
+
+// A column of a trace; value(tick, part) of a vector's part. kept: a live run overwrites its oldest ticks. rows: the row of
+// each tick, or -1; null: row and tick are the same.
 export class Column {
   constructor(readonly name: string, readonly unit: string, readonly meaning: string, readonly width: number,
-    readonly names: string[], readonly numbers: Numbers, private readonly kept = Number.POSITIVE_INFINITY) {}
+    readonly names: string[], readonly numbers: Numbers, private readonly kept = Number.POSITIVE_INFINITY,
+    private readonly rows: Int32Array | null = null) {}
 
-  // kept: a live run overwrites its oldest ticks.
+  // NaN in a tick without a row.
   value(tick: number, part = 0): number {
-    const row = tick < this.kept ? tick : tick % this.kept; // avoids a division, which would take most of the time of a plot
+    if (this.rows && !(this.rows[tick] >= 0)) return Number.NaN;
+    const row = this.rows ? this.rows[tick] : tick < this.kept ? tick : tick % this.kept; // a division would take most of the time of a plot
     return this.numbers[row * this.width + part] ?? Number.NaN;
   }
   // Of a vector its length.
@@ -60,7 +73,7 @@ export class Column {
     return Math.sqrt(sum);
   }
   text(tick: number): string {
-    if (this.width === 1) return this.names[this.value(tick)] ?? digits(this.value(tick));
+    if (this.width === 1) return this.names[this.value(tick)] ?? (this.name === "time" ? timeDigits : digits)(this.value(tick));
     return Array.from({ length: this.width }, (_, part) => digits(this.value(tick, part))).join("  ");
   }
 }
@@ -69,6 +82,11 @@ export class Column {
 export function digits(value: number): string {
   if (!Number.isFinite(value)) return Number.isNaN(value) ? "unknown" : "none";
   return Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(5)));
+}
+
+// Of a time in s: microseconds, so that each tick has its own.
+export function timeDigits(timeS: number): string {
+  return Number.isFinite(timeS) ? String(Number(timeS.toFixed(6))) : digits(timeS);
 }
 
 // A round number of that size or a little less: 1, 2 or 5 times a power of ten.
@@ -83,21 +101,34 @@ export interface Frame {
   positions: Uint16Array;
   colours: Uint8Array | null;
   fixtureRadiusM: Float32Array | null;
-  touching: Uint32Array; // the points that touch, tick after tick from firstTick on
+  touching: Uint32Array; // the points that touch, row after row from that of firstTick on
   touchingEnd: Uint32Array;
   firstTick: number; // that used the frame
 }
 
+function rowsOf(tickOfRow: number[]): Int32Array | null {
+  const ticks = (tickOfRow.at(-1) ?? -1) + 1;
+  if (ticks === tickOfRow.length) return null;
+  const rows = new Int32Array(ticks).fill(-1);
+  tickOfRow.forEach((tick, row) => { rows[tick] = row; });
+  return rows;
+}
+
+// Ticks are numbered by their time: of a live session those that its loop left out have no row.
 export class Run {
   contactRadiusM: number; // of the proxy; 0 where there is none
   readonly columns = new Map<string, Column>();
   readonly frames = new Map<number, Frame>();
-  private readonly tickCount: number;
+  private readonly tickOfRow: number[];
+  private readonly rowOfTick: Int32Array | null; // -1: none; null: row and tick are the same
 
   constructor(readonly stored: StoredRun, private readonly buffer: ArrayBuffer) {
     this.contactRadiusM = stored.contact_radius_m;
+    const time = stored.columns.find((c) => c.name === "time");
+    this.tickOfRow = time ? ticksOf(unpacked(buffer, time.numbers), stored.haptic_rate_hz, -1) : [];
+    this.rowOfTick = rowsOf(this.tickOfRow);
     for (const c of stored.columns)
-      this.columns.set(c.name, new Column(c.name, c.unit, c.meaning, c.width, c.names, unpacked(buffer, c.numbers)));
+      this.columns.set(c.name, new Column(c.name, c.unit, c.meaning, c.width, c.names, unpacked(buffer, c.numbers), Number.POSITIVE_INFINITY, this.rowOfTick));
     for (const f of stored.frames)
       this.frames.set(f.index, {
         index: f.index,
@@ -109,15 +140,28 @@ export class Run {
         touchingEnd: unpacked(buffer, f.touching_end) as Uint32Array,
         firstTick: 0,
       });
-    this.tickCount = this.columns.get("time")?.numbers.length ?? 0;
-    for (let tick = this.tickCount - 1; tick >= 0; --tick) {
+    for (const tick of [...this.tickOfRow].reverse()) {
       const frame = this.frameAt(tick);
       if (frame) frame.firstTick = tick;
     }
   }
 
   get ticks(): number {
-    return this.tickCount;
+    return (this.tickOfRow.at(-1) ?? -1) + 1;
+  }
+  // Whether the run has made this tick.
+  has(tick: number): boolean {
+    return tick < this.ticks && (this.rowOfTick === null || this.rowOfTick[tick] >= 0);
+  }
+  // Returns this tick or, if the run has not made it, the newest tick before it, or else the first tick.
+  known(tick: number): number {
+    let known = Math.min(tick, this.ticks - 1);
+    while (known > 0 && !this.has(known)) --known;
+    return this.has(known) ? known : (this.tickOfRow[0] ?? known);
+  }
+  // A stored event names the row of its tick.
+  get events(): RunEvent[] {
+    return this.stored.events.map((event) => ({ ...event, tick: this.tickOfRow[event.tick] ?? event.tick }));
   }
   column(name: string): Column {
     const column = this.columns.get(name);
@@ -138,7 +182,7 @@ export class Run {
     return this.frames.get(this.column("frame_index").value(tick));
   }
   touching(frame: Frame, tick: number): number[] {
-    const k = tick - frame.firstTick;
+    const k = this.rowOfTick ? this.rowOfTick[tick] - this.rowOfTick[frame.firstTick] : tick - frame.firstTick;
     return [...frame.touching.subarray(k > 0 ? frame.touchingEnd[k - 1] : 0, frame.touchingEnd[k])];
   }
   // Points that are drawn even where graphics are slow. A stored run has none: all its points are drawn when it is stopped.
@@ -179,7 +223,7 @@ export class Run {
   }
 }
 
-// How far two runs are apart in a column, tick by tick; of vectors the length of the difference.
+// How far two runs are apart in a column, tick by tick; of vectors the length of the difference. NaN: one of them has no such tick.
 export function differenceOf(runs: Run[], name: string): Column | null {
   const [a, b] = runs.map((run) => run.columns.get(name));
   if (!a || !b) return null;

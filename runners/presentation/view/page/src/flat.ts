@@ -21,10 +21,10 @@ export class FlatView {
       pen.arc(...at(p), radius, 0, 2 * Math.PI);
       pen.fill();
     };
-    const frame = this.runs[0].frameAt(tick);
+    const frame = this.runs[0].frameAt(this.runs[0].known(tick));
     if (frame) for (let i = 0; i < frame.positions.length / 3; ++i) dot(this.runs[0].point(frame, i), 1, "#8888");
     for (const run of this.runs) {
-      const t = Math.min(tick, run.ticks - 1), hip = run.vector("hip_position", t), force = run.vector(run.forceName, t);
+      const t = run.known(tick), hip = run.vector("hip_position", t), force = run.vector(run.forceName, t);
       dot(run.vector("proxy_position", t), Math.max(factor * run.contactRadiusM, 4), `${colours.proxy}88`);
       if (run.slaveRadiusM > 0) dot(run.vector("slave_position", t), Math.max(factor * run.slaveRadiusM, 4), `${colours.robot}88`);
       dot(hip, 4, colours.hip);

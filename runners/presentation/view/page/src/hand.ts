@@ -38,6 +38,13 @@ function isKnown(v: Vector): boolean {
   return v.every(Number.isFinite);
 }
 
+// Returns where the proxy was in the last wayS. It joins known places: a tick without one is left out.
+export function wayTo(run: Run, tick: number): Vector[] {
+  const first = Math.max(0, tick - Math.round(wayS * run.stored.haptic_rate_hz)), points: Vector[] = [];
+  for (let i = first; i <= tick; ++i) points.push(run.vector("proxy_position", i));
+  return points.filter(isKnown);
+}
+
 const upwards = new THREE.Vector3(0, 1, 0);
 
 // An arrow whose length and direction change. head: its length, mm.
@@ -168,8 +175,6 @@ export class HandView {
     line.geometry.setDrawRange(0, points.length);
   }
   private showWay(tick: number): void {
-    const first = Math.max(0, tick - Math.round(wayS * this.run.stored.haptic_rate_hz)), points: Vector[] = [];
-    for (let i = first; i <= tick; ++i) points.push(this.run.vector("proxy_position", i));
-    this.setLine(this.way, points);
+    this.setLine(this.way, wayTo(this.run, tick));
   }
 }

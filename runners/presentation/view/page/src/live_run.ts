@@ -1,5 +1,5 @@
 // A live run: the last seconds of its ticks and its newest frame, as they come.
-import { Column, digits, type Frame, Run, type StoredLive, type Vector } from "./data";
+import { Column, digits, type Frame, Run, type StoredLive, ticksOf, type Vector } from "./data";
 
 const keptS = 20;
 
@@ -27,23 +27,26 @@ export function limitOf(run: Run, tick: number): Limit | null {
   return { kind: "limited", text: `The device receives ${newtons(sent)} of ${newtons(commanded)}: ${why}.` };
 }
 
-// Counts the ticks of the newest seconds. missed: ticks that the haptic loop left out, because it was too late for them.
+// Counts the ticks of the newest seconds that arrived. missed: ticks that the haptic loop left out, because it was too late for
+// them. Ticks before the page was opened, and those that were lost on the way to it, are in neither count.
 export function missedDeadlines(run: Run, tick: number, seconds: number): { missed: number; ticks: number; longestS: number } {
-  const interval = run.column("tick_interval"), rate = run.stored.haptic_rate_hz;
+  const interval = run.column("tick_interval"), time = run.column("time"), rate = run.stored.haptic_rate_hz;
   const first = Math.max(0, tick + 1 - Math.round(seconds * rate));
-  let missed = 0, longestS = 0;
+  let missed = 0, ticks = 0, longestS = 0;
   for (let i = first; i <= tick; ++i) {
+    if (Number.isFinite(time.value(i))) ++ticks;
     const s = interval.value(i);
     if (!(s > 0)) continue;
     missed += Math.max(Math.round(s * rate) - 1, 0);
     longestS = Math.max(longestS, s);
   }
-  return { missed, ticks: tick + 1 - first, longestS };
+  return { missed, ticks, longestS };
 }
 
-// Its ticks are numbered from the first that came; those before the last keptS seconds are gone.
+// Its ticks are numbered by their time, so ticks that did not arrive leave a gap: before the page was opened, or while
+// the connection was lost. Those before the last keptS seconds are gone.
 export class LiveRun extends Run {
-  count = 0; // ticks that came
+  count = 0; // the number of the newest tick, plus one
   frameCount = 0; // frames that came
   private readonly kept: number;
   private readonly rows: [Column, Float64Array][] = [];
@@ -110,15 +113,29 @@ export class LiveRun extends Run {
 
   takeTicks(view: DataView): void {
     const count = view.getUint32(8, true), all = new Float64Array(view.buffer, view.byteOffset + 16);
+    const ticks = this.numbersOf(all, count);
+    this.forget(this.count, ticks[count - 1]);
     let at = 0;
-    for (const [column, numbers] of this.rows) {
-      for (let i = 0; i < count; ++i) {
-        const row = ((this.count + i) % this.kept) * column.width;
-        numbers.set(all.subarray(at, at + column.width), row);
+    for (const [column, numbers] of this.rows)
+      for (const tick of ticks) {
+        numbers.set(all.subarray(at, at + column.width), (tick % this.kept) * column.width);
         at += column.width;
       }
+    if (count > 0) this.count = ticks[count - 1] + 1;
+  }
+  // The numbers of ticks that arrive.
+  private numbersOf(all: Float64Array, count: number): number[] {
+    let at = 0;
+    for (const [column] of this.rows) {
+      if (column.name === "time") break;
+      at += count * column.width;
     }
-    this.count += count;
+    return ticksOf(all.subarray(at, at + count), this.stored.haptic_rate_hz, this.count - 1);
+  }
+  // Sets the ticks from first to last to unknown.
+  private forget(first: number, last: number): void {
+    for (let tick = Math.max(first, last - this.kept + 1); tick <= last; ++tick)
+      for (const [column, numbers] of this.rows) numbers.fill(Number.NaN, (tick % this.kept) * column.width, (tick % this.kept + 1) * column.width);
   }
   takeFrame(view: DataView): void {
     const at = view.byteOffset, count = view.getUint32(12, true), parts = view.getUint32(16, true);

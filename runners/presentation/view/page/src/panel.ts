@@ -80,7 +80,7 @@ export function whichIsWhich(runs: Run[]): HTMLElement {
   return list;
 }
 
-// All columns at a tick.
+// All columns at a tick; "-" where a run has no such tick.
 export class Values {
   readonly element = element("table", "", "values");
   private readonly cells: [Run, string, HTMLElement][] = [];
@@ -102,7 +102,7 @@ export class Values {
     }
   }
   show(tick: number): void {
-    for (const [run, name, cell] of this.cells) cell.textContent = run.column(name).text(Math.min(tick, run.ticks - 1));
+    for (const [run, name, cell] of this.cells) cell.textContent = run.has(tick) ? run.column(name).text(tick) : "-";
   }
 }
 

@@ -1,7 +1,7 @@
 // Curves over time below each other, with a line at the tick that is shown. Lengths are in mm.
 import { colours, components, curveColour, darkPage, eventColours } from "./colours";
 import type { Column, Run } from "./data";
-import { digits, round125 } from "./data";
+import { digits, round125, timeDigits } from "./data";
 import type { TimeAxis } from "./time_axis";
 
 // part: component of a vector; without it the magnitude is shown.
@@ -26,6 +26,8 @@ const units: Record<string, Unit> = {
 function unitOf(column: Column): Unit {
   return units[column.unit] ?? { name: column.unit, factor: 1, least: 1e-6 };
 }
+
+const dotPx = 1; // how wide a value is drawn that has no neighbour
 
 // The value of a curve at a tick, in the unit of the plot.
 function valuesOf({ column, part }: Curve): (tick: number) => number {
@@ -225,11 +227,12 @@ export class Plot {
   }
   // The smallest and the largest value of all ticks in each column of pixels.
   private addColumns(pen: Pen, curve: Curve, width: number, height: number): void {
-    const pixels = Math.max(Math.floor(width - this.left), 1), perPixel = this.ticks / pixels;
+    const pixels = Math.max(Math.floor(width - this.left), 1);
+    const firstOf = (pixel: number) => Math.floor((pixel * this.ticks) / pixels); // exact at the end of the last pixel
     const valueAt = valuesOf(curve);
     let down = false;
     for (let pixel = 0; pixel < pixels; ++pixel) {
-      const begin = Math.floor(pixel * perPixel), end = Math.max(Math.floor((pixel + 1) * perPixel), begin + 1);
+      const begin = firstOf(pixel), end = Math.max(firstOf(pixel + 1), begin + 1);
       let low = Number.POSITIVE_INFINITY, high = Number.NEGATIVE_INFINITY;
       for (let k = begin; k < end && k < this.ticks && this.first + k <= this.last; ++k) {
         const value = valueAt(this.first + k);
@@ -242,7 +245,10 @@ export class Plot {
       }
       const x = this.left + pixel;
       if (down) pen.lineTo(x, this.y(low, height));
-      else pen.moveTo(x, this.y(low, height));
+      else {
+        pen.moveTo(x, this.y(low, height));
+        pen.lineTo(x + dotPx, this.y(low, height)); // seen even if no tick of the next pixel is known
+      }
       if (high > low) pen.lineTo(x, this.y(high, height));
       down = true;
     }
@@ -257,6 +263,7 @@ export class Plot {
       if (!down) continue;
       if (before) pen.lineTo(x, y);
       else pen.moveTo(x, y);
+      if (!before && !Number.isFinite(valueAt(tick + 1))) pen.lineTo(x + dotPx, y); // between two ticks that are not known
       if (!room) continue;
       pen.moveTo(x, y - 2);
       pen.lineTo(x, y + 2);
@@ -271,7 +278,8 @@ export class Plot {
       const { name } = unitOf(curve.column);
       part.style.setProperty("--dot", curveColour(curve.colour));
       part.title = curve.column.meaning;
-      const shown = Number.isFinite(value) ? `${digits(Number(value.toPrecision(4)))} ${name}` : digits(value);
+      const number = curve.column.name === "time" ? timeDigits(value) : digits(Number(value.toPrecision(4)));
+      const shown = Number.isFinite(value) ? `${number} ${name}` : digits(value);
       part.textContent = `${curve.label} ${curve.column.names[value] ?? shown}`;
       return part;
     });

@@ -14,8 +14,12 @@ import { Timeline } from "./timeline";
 
 function firstTicksOfFrames(run: Run): number[] {
   const frames = run.column("frame_index"), list: number[] = [];
-  for (let tick = 0; tick < run.ticks; ++tick)
-    if (tick === 0 || frames.value(tick) !== frames.value(tick - 1)) list.push(tick);
+  let last = Number.NaN;
+  for (let tick = 0; tick < run.ticks; ++tick) {
+    if (!run.has(tick) || frames.value(tick) === last) continue;
+    last = frames.value(tick);
+    list.push(tick);
+  }
   return list;
 }
 
@@ -130,7 +134,7 @@ export function showRuns(runs: Run[], top: HTMLElement | null, heading = "", pla
     player.step(tick - player.tick);
     picture.scene?.showEvent(tick);
   };
-  const timeline = new Timeline(player, events, frames, (tick) => run.column("time").value(Math.min(tick, run.ticks - 1)), goToEvent);
+  const timeline = new Timeline(player, events, frames, (tick) => tick / run.stored.haptic_rate_hz, goToEvent);
   const plots = new RunPlots(runs, player, events, frames, ended.signal), list = new EventList(events, goToEvent);
   const dialogs = { help: helpDialog(), about: aboutDialog(runs, licence) };
   const head = headerOf(heading || run.stored.title || run.stored.file, picture, dialogs, () => pictureName(run.stored.file, player.tick, "png"));

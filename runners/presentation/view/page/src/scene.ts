@@ -123,8 +123,8 @@ export class SceneView {
   }
   show(tick: number): void {
     this.tick = tick;
-    for (const part of [...this.truths, this.trueMeshes, ...this.clouds, this.cue]) part.show(Math.min(tick, this.runs[0].ticks - 1));
-    for (const each of [this.hands, this.slaves]) each.forEach((part, i) => { part.show(Math.min(tick, this.runs[i].ticks - 1)); });
+    for (const part of [...this.truths, this.trueMeshes, ...this.clouds, this.cue]) part.show(this.runs[0].known(tick));
+    for (const each of [this.hands, this.slaves]) each.forEach((part, i) => { part.show(this.runs[i].known(tick)); });
     if (this.follows) this.followProxy(tick);
     if (this.isLive) this.draw();
     else this.drawSoon();
@@ -223,7 +223,7 @@ export class SceneView {
     return side.normalize().addScaledVector(f.setY(0), -0.5).addScaledVector(up, 0.35);
   }
   private vector(name: string): THREE.Vector3 {
-    const run = this.runs[0], v = run.vector(name, Math.min(this.tick, run.ticks - 1));
+    const run = this.runs[0], v = run.vector(name, run.known(this.tick));
     return v.every(Number.isFinite) ? new THREE.Vector3(...v) : new THREE.Vector3();
   }
   private awayFromForce(): THREE.Vector3 {
@@ -268,7 +268,7 @@ export class SceneView {
     return far;
   }
   private followProxy(tick: number): void {
-    const run = this.runs[0], p = run.vector("proxy_position", Math.min(tick, run.ticks - 1));
+    const run = this.runs[0], p = run.vector("proxy_position", run.known(tick));
     if (!p.every(Number.isFinite)) return;
     const now = new THREE.Vector3(1000 * p[0], 1000 * p[1], 1000 * p[2]), moved = now.clone().sub(this.followed);
     this.camera.position.add(moved);

@@ -6,8 +6,8 @@ const byImportance = ["divergence", "pop-through", "slave contact", "hardest hit
 
 // Returns the events of one run, or of both runs with the number of the run in the text.
 export function eventsOf(runs: Run[]): RunEvent[] {
-  if (runs.length === 1) return runs[0].stored.events;
-  return runs.flatMap((run, i) => run.stored.events.map((event) =>
+  if (runs.length === 1) return runs[0].events;
+  return runs.flatMap((run, i) => run.events.map((event) =>
     event.kind === "divergence" ? event : { ...event, text: `Run ${i + 1}: ${event.text}` })).sort((a, b) => a.tick - b.tick);
 }
 

@@ -143,6 +143,50 @@ TEST(ContactList, HasTheDeepestOfEveryCellOfMany) {
   }
 }
 
+// A large plate over a plane touches more cells than the table has room for. Its deepest contact is in the
+// list all the same, wherever it is in the order of the points.
+TEST(ContactList, ALargeToolKeepsItsDeepestContact) {
+  const Vec3 half_m(0.2, 0.004, 0.2);
+  const auto plate = scenes::box_tool(half_m, 2e-3);
+  PointCloud cloud;
+  for (int j = -70; j <= 70; ++j)
+    for (int i = -70; i <= 70; ++i) cloud.append({0.003 * i, 0, 0.003 * j}, Vec3::UnitY());
+  ContactList list(plate, {}, scenes::kernels());
+  list.on_frame(formatted<TiledCloud>(cloud));
+  for (const double about_x : {-0.005, 0.005})
+    for (const double about_z : {-0.005, 0.0, 0.005}) {
+      const ToolPose pose{{0, 0.0049, 0}, rotation({about_x, 0, about_z})};
+      double deepest_m = -1;
+      for (std::size_t i = 0; i < cloud.size(); ++i)
+        deepest_m = std::max(
+            deepest_m, -scenes::box_distance(half_m, pose.q_WT.conjugate() * (cloud.point(i) - pose.p_W)));
+      const NearContacts near = list.near(pose, 0);
+      EXPECT_NEAR(near.deepest_m, deepest_m, 3e-5) << about_x << " " << about_z;
+      EXPECT_LE(near.contacts.size(), ContactThinning::kMaxCount);
+      EXPECT_TRUE(std::any_of(near.contacts.begin(), near.contacts.end(),
+                              [&](const ToolContact& contact) { return contact.depth_m == near.deepest_m; }));
+    }
+}
+
+// Contacts that find no room in the table are not lost: the deepest one is kept in every order.
+TEST(ContactThinning, KeepsTheDeepestOfManyInEveryOrder) {
+  std::vector<ToolContact> all;
+  for (int i = 0; i < 40000; ++i)
+    all.push_back(
+        {Vec3(0.004 * (i % 200), 0, 0.004 * (i / 200)), Vec3::UnitY(), -1e-7 * (i * 7919 % 40000), 1});
+  ContactThinning thinning;
+  for (const int first : {0, 13000, 39000}) {
+    std::vector<ToolContact> contacts = all;
+    std::rotate(contacts.begin(), contacts.begin() + first, contacts.end());
+    thinning.thin(contacts);
+    EXPECT_LE(contacts.size(), ContactThinning::kMaxCount);
+    EXPECT_GT(contacts.size(), ContactThinning::kMaxCount / 4);
+    EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), [](const ToolContact& contact) {
+      return contact.depth_m == 0;
+    })) << first;
+  }
+}
+
 // A tilted box over a dense flat surface. The deepest contact has the distance of the lower edge, with or
 // without merged points, wherever the edge is.
 TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {

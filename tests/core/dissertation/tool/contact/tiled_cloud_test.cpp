@@ -107,6 +107,13 @@ TEST(TiledCloud, KnowsTheSpacing) {
   }
   tiled.assign(cloud);
   EXPECT_NEAR(tiled.spacing_m(27), 0.002 * std::sqrt(2), 3e-5);
+  // pixels that are twice as long along one axis, whichever that is
+  for (double CameraIntrinsics::*const shorter : {&CameraIntrinsics::fx, &CameraIntrinsics::fy}) {
+    PointCloud oblong = cloud;
+    oblong.image->camera.*shorter = 250;
+    tiled.assign(oblong);
+    EXPECT_NEAR(tiled.spacing_m(27), 0.004 * std::sqrt(2), 6e-5);
+  }
 }
 
 // --- points that a PointChange moves or hides ---

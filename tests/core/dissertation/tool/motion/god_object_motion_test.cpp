@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/geometry/rotation.h"
 #include "tests/core/dissertation/tool/motion/free_space.h"
 #include "tests/support/box_tool.h"
@@ -149,6 +151,42 @@ TEST(GodObjectMotion, PointsThatAFramePutsIntoTheToolHoldItWhereItIs) {
   EXPECT_NEAR(out.force_N.y(), 600 * 0.002, 600 * 1e-4);
   out = settled(r, at({0, 0.02, 0}));
   EXPECT_EQ(out.proxy_W.y(), 0.02);
+}
+
+// Whatever the shape: where a tick has converged, contacts prevent all of the motion that is left, and the
+// hand feels it. The hand presses every built-in tool into a plane, slides and turns it.
+TEST(GodObjectMotion, AToolAtRestOnAPlaneIsFeltInEveryTick) {
+  const PointCloud cloud = sheet(0, 0.003, 61);
+  std::mt19937 random(3);
+  const auto uniform = [&] { return random() / 2147483648.0 - 1.0; };
+  ToolGodObjectParameters p;
+  p.coupling.max_force_N = 1000;
+  for (const GeneratedTool& shape : generated_tools()) {
+    ToolReport made;
+    const auto tool = std::make_shared<const VoxelTool>(
+        make_voxel_tool(shape.make(), {1e-3, 0.04, false, true}, made, shape.name));
+    ToolRenderer r(tool_parameters(p), tool, scenes::kernels(), std::make_unique<GodObjectMotion>(p, *tool));
+    r.on_frame(scenes::frame(cloud));
+    int pressed = 0, converged = 0;
+    for (int way = 0; way < 4; ++way) {
+      Vec3 position_W(0.01 * uniform(), 0.05, 0.01 * uniform());
+      const Vec3 to_W(0.03 * uniform(), 0, 0.03 * uniform()), turn = Vec3(uniform(), uniform(), uniform());
+      const Eigen::Quaterniond from = rotation(3 * turn), to = rotation(0.3 * turn) * from;
+      for (int tick = 0; tick < 200; ++tick) {
+        position_W.y() = std::max(0.002, position_W.y() - 0.0005);
+        position_W += 0.005 * (to_W - Vec3(position_W.x(), 0, position_W.z()));
+        const RenderOutput out = r.step({position_W, from.slerp(tick / 200.0, to)}, 0.001 * tick);
+        const double lag_m = (position_W - out.proxy_W).norm();
+        if (lag_m < 2e-4) continue;
+        ++pressed, converged += out.converged;
+        const double felt_N = out.converged ? out.force_N.norm() : p.coupling.max_force_N;
+        ASSERT_GE(felt_N, 0.9 * p.coupling.stiffness_N_per_m * lag_m)
+            << shape.name << ", way " << way << ", tick " << tick;
+      }
+    }
+    EXPECT_GT(pressed, 300) << shape.name;
+    EXPECT_GT(converged, 0.8 * pressed) << shape.name;
+  }
 }
 
 // The walls leave less room than the gap. J a >= 0 still has a solution.

@@ -65,12 +65,11 @@ TEST(SimulatedFrames, HaveThePublishedNoise) {
   EXPECT_NEAR(noise_px, 0.08, 0.001);
 }
 
-TEST(OwnFocalLength, ScalesNoiseStepAndWindow) {
+TEST(OwnFocalLength, ScalesTheWindow) {
   const DepthSensorSettings settings = sensor_settings(DepthSensorKind::active_stereo, kCamera);
   const Triangulation published = triangulation(settings);
   const Triangulation scaled = triangulation(with_own_focal_length(settings, 62.5));
-  EXPECT_DOUBLE_EQ(scaled.noise_px, 1.6 * published.noise_px);
-  EXPECT_DOUBLE_EQ(scaled.step_px, 1.6 * published.step_px);
+  EXPECT_EQ(scaled.focal_px, 62.5);
   EXPECT_EQ(scaled.window_px, 11);  // 1.6 * 7 = 11.2
   EXPECT_EQ(scaled.baseline_m, published.baseline_m);
   EXPECT_EQ(triangulation(with_own_focal_length(settings, 100)).window_px, published.window_px);
@@ -103,7 +102,7 @@ class TrueObjects : public testing::Test {
       return TriangleMesh{{{-0.2, -0.2, 0}, {0.2, -0.2, 0}, {0.2, 0.2, 0}, {-0.2, 0.2, 0}},
                           {{0, 2, 1}, {0, 3, 2}}};
     };
-    return RecordedTruth(truth, 2, 0.03, reader, kCamera);
+    return RecordedTruth(truth, std::vector<std::string>(2), 0.03, reader, kCamera);
   }
   const TestFolder folder_{"simulated_sensor_test"};
 };

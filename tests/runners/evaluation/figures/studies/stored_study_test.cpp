@@ -43,7 +43,7 @@ TEST(LawLimits, AreWhereTheEventBegins) {
   const auto first = [](std::size_t spacing, std::size_t noise) { return 1 + spacing + 2 * noise; };
   const CellCounts counts{[&](std::size_t cell) {
     const std::vector<std::size_t> at = outline.axis_indices(cell);
-    return Tally{at[3] >= first(at[0], at[2]) ? 10 : 0, 10};
+    return at[3] >= first(at[0], at[2]) ? EventCounts{10, 0} : EventCounts{0, 10};
   }};
   const LawAxes axes = law_axes(outline);
   EXPECT_NEAR(axes.spacing[1], 0.4, 1e-12);

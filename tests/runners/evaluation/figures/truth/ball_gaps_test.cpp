@@ -67,17 +67,19 @@ Experiment experiment_with(const std::string& sensor) {
 }
 
 TEST(DepthErrorOfAnExperiment, IsThatOfThePublishedSensor) {
-  // f = 525 px, b = 75 mm, noise 1/16 px, steps of 1/8 px
+  // f = 580 px, b = 75 mm, noise 1/16 px, steps of 1/8 px
   const DepthError error = depth_error(experiment_with(""), 0.7);
-  EXPECT_NEAR(error.sigma_m, 0.49 / (525 * 0.075) / 16, 1e-12);
-  EXPECT_NEAR(error.rounding_m, 0.49 / (525 * 0.075) / 16, 1e-12);
+  EXPECT_NEAR(error.sigma_m, 0.49 / (580 * 0.075) / 16, 1e-12);
+  EXPECT_NEAR(error.rounding_m, 0.49 / (580 * 0.075) / 16, 1e-12);
   EXPECT_NEAR(error.largest_m(), 4 * error.sigma_m, 1e-12);
 }
 
 TEST(DepthErrorOfAnExperiment, FollowsTheSettings) {
-  const DepthError error =
-      depth_error(experiment_with(R"(, "noise_px": 0.5, "disparity_step_px": 0, "baseline_m": 0.1)"), 0.7);
-  EXPECT_NEAR(error.sigma_m, 0.49 / (525 * 0.1) / 2, 1e-12);
+  const DepthError error = depth_error(
+      experiment_with(
+          R"(, "noise_px": 0.5, "disparity_step_px": 0, "baseline_m": 0.1, "disparity_focal_px": 400)"),
+      0.7);
+  EXPECT_NEAR(error.sigma_m, 0.49 / (400 * 0.1) / 2, 1e-12);
   EXPECT_EQ(error.rounding_m, 0);
 }
 

@@ -49,10 +49,14 @@ TEST_F(TrueContacts, TellTheErrorOfTheCameraFromThatOfTheRenderer) {
   }
 }
 
+// The run ends before the recording repeats its last frame, which the window does not do.
 TEST_F(TrueContacts, AreThoseOfARunOverTheWholeFrames) {
   for (const Toucher& toucher : {kProxy, toucher_of(depth_settings().at(default_setting()))}) {
-    const std::vector<Vec3> contacts_W = contact_points(experiment(toucher), window(), kRest_m, kernels_);
-    const Trace trace = simulate(experiment(toucher));
+    auto configuration = nlohmann::ordered_json::parse(experiment(toucher).to_json());
+    configuration["duration_s"] = window().captured_s(kFrames - 1) + 0.03;
+    const Experiment pressed = Experiment::from_json(configuration);
+    const std::vector<Vec3> contacts_W = contact_points(pressed, window(), kRest_m, kernels_);
+    const Trace trace = simulate(pressed);
     std::size_t compared = 0;
     for (std::size_t i = 0; i < trace.length(); ++i) {
       const bool is_last = i + 1 == trace.length() || trace.frame_update(i + 1);

@@ -1,0 +1,207 @@
+#include "core/mesh/mesh_sides.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/geometry/bounding_box.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/triangle_tree.h"
+
+namespace remote_touch {
+
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+// Compares the faces whose boxes overlap. A set of faces is divided at a plane, and the faces on the plane
+// belong to both halves.
+class CrossingSearch {
+ public:
+  explicit CrossingSearch(const TriangleMesh& mesh) : mesh_(mesh), is_crossed_(mesh.triangles.size(), 0) {
+    BoundingBox all;
+    for (const auto& triangle : mesh.triangles) {
+      BoundingBox box;
+      for (const int corner : triangle) box.extend(mesh.vertices[corner]);
+      boxes_.push_back(box), all.extend(box);
+    }
+    if (!boxes_.empty()) rounding_m_ = 1e-12 * (all.diagonal().norm() + all.center().norm());
+  }
+
+  std::vector<char> take() {
+    std::vector<int> faces(mesh_.triangles.size());
+    std::iota(faces.begin(), faces.end(), 0);
+    search(std::move(faces));
+    return std::move(is_crossed_);
+  }
+
+ private:
+  static constexpr std::size_t kFew = 16;
+  static constexpr double kDivides = 1.3;  // a useful plane leaves both halves together this many faces
+
+  void search(std::vector<int> faces) {
+    for (int axis = 0; faces.size() > kFew && axis < 3; ++axis) {
+      std::vector<int> below, above;
+      divide(faces, axis, below, above);
+      if (static_cast<double>(below.size() + above.size()) > kDivides * static_cast<double>(faces.size()))
+        continue;
+      faces = {};  // frees the memory before the next level takes some
+      search(std::move(below)), search(std::move(above));
+      return;
+    }
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      for (std::size_t j = i + 1; j < faces.size(); ++j)
+        if (boxes_[faces[i]].intersects(boxes_[faces[j]]) && cross(faces[i], faces[j]))
+          is_crossed_[faces[i]] = is_crossed_[faces[j]] = 1;
+  }
+
+  void divide(const std::vector<int>& faces, int axis, std::vector<int>& below,
+              std::vector<int>& above) const {
+    std::vector<double> middles;
+    for (const int f : faces) middles.push_back(boxes_[f].center()[axis]);
+    const auto middle = middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2);
+    std::nth_element(middles.begin(), middle, middles.end());
+    for (const int f : faces) {
+      if (boxes_[f].min()[axis] <= *middle) below.push_back(f);
+      if (boxes_[f].max()[axis] >= *middle) above.push_back(f);
+    }
+  }
+
+  // Two faces cross if no plane has one of them on one side and the other one on the other. If there is such
+  // a plane, its normal is that of a face, or normal to a side of each face, or, if both faces are in one
+  // plane, in that plane and normal to a side.
+  bool cross(int f, int g) const {
+    const Corners a = corners(f), b = corners(g);
+    const Vec3 n = normal(a);
+    const Interval b_along_n = along(n, b, a[0]);
+    const bool is_in_plane = b_along_n.low > -rounding_m_ && b_along_n.high < rounding_m_;
+    if (!is_in_plane && (are_apart(n, a, b) || are_apart(normal(b), a, b))) return false;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 side_a = a[(i + 1) % 3] - a[i], side_b = b[(i + 1) % 3] - b[i];
+      if (are_apart(side_a.cross(n), a, b) || are_apart(side_b.cross(n), a, b)) return false;
+      for (int j = 0; !is_in_plane && j < 3; ++j)
+        if (are_apart(side_a.cross(b[(j + 1) % 3] - b[j]), a, b)) return false;
+    }
+    return true;
+  }
+
+  struct Interval {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+  };
+  static Interval along(const Vec3& direction, const Corners& corners, const Vec3& origin) {
+    Interval interval;
+    for (const Vec3& corner : corners) {
+      const double place = direction.dot(corner - origin);
+      interval.low = std::min(interval.low, place), interval.high = std::max(interval.high, place);
+    }
+    return interval;
+  }
+  bool are_apart(const Vec3& direction, const Corners& a, const Corners& b) const {
+    const double length = direction.norm();
+    if (!(length > 0)) return false;
+    const Interval of_a = along(direction, a, a[0]), of_b = along(direction, b, a[0]);
+    return std::min(of_a.high - of_b.low, of_b.high - of_a.low) <= rounding_m_ * length;
+  }
+
+  Corners corners(int face) const {
+    const auto& [a, b, c] = mesh_.triangles[face];
+    return {mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
+  }
+  static Vec3 normal(const Corners& t) { return (t[1] - t[0]).cross(t[2] - t[0]).normalized(); }
+
+  const TriangleMesh& mesh_;
+  std::vector<BoundingBox> boxes_;
+  std::vector<char> is_crossed_;
+  double rounding_m_ = 0;
+};
+
+// Calls use(first, last) for the edges of each pair of vertices. pre: edges of edges_by_vertices().
+template <class Use>
+void for_each_edge(const std::vector<MeshEdge>& edges, const Use& use) {
+  for (std::size_t first = 0, last; first < edges.size(); first = last) {
+    for (last = first + 1;
+         last < edges.size() && edges[last].low == edges[first].low && edges[last].high == edges[first].high;)
+      ++last;
+    use(first, last);
+  }
+}
+
+// Returns the number of the part of each face. A part is connected by edges of two faces, neither of which is
+// crossed. So the side is the same on the whole part.
+std::vector<int> uncrossed_parts(const TriangleMesh& mesh, const std::vector<char>& is_crossed, int& count) {
+  const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
+  std::vector<MeshEdge> joining;
+  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
+    if (last - first != 2) return;
+    if (is_crossed[edges[first].triangle] || is_crossed[edges[first + 1].triangle]) return;
+    joining.push_back(edges[first]), joining.push_back(edges[first + 1]);
+  });
+  return parts_of(mesh, joining, count);
+}
+
+// Returns the side of one face by the winding numbers on both sides of its middle.
+FaceSide side_of(const TriangleMesh& mesh, const TriangleTree& tree, int face) {
+  const auto& [a, b, c] = mesh.triangles[face];
+  const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+  const Vec3 normal = (q - p).cross(r - p);
+  const Vec3 away = 1e-6 * std::sqrt(normal.norm()) * normal.normalized(), middle = (p + q + r) / 3;
+  const double in_front = tree.winding_number(middle + away), behind = tree.winding_number(middle - away);
+  if (in_front > 0.5 && behind > 0.5) return FaceSide::inner;
+  return in_front < -0.5 && behind < 0.5 ? FaceSide::inverted : FaceSide::boundary;
+}
+
+}  // namespace
+
+bool is_closed_surface(const TriangleMesh& mesh) {
+  const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
+  bool is_closed = true;
+  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
+    int forward_minus_back = 0;
+    for (std::size_t e = first; e < last; ++e) forward_minus_back += edges[e].forward ? 1 : -1;
+    is_closed = is_closed && forward_minus_back == 0;
+  });
+  return is_closed;
+}
+
+std::vector<char> crossed_faces(const TriangleMesh& mesh) {
+  return CrossingSearch(mesh).take();
+}
+
+std::vector<FaceSide> face_sides(const TriangleMesh& mesh) {
+  const std::vector<char> is_crossed = crossed_faces(mesh);
+  int count = 0;
+  const std::vector<int> part_of = uncrossed_parts(mesh, is_crossed, count);
+  if (count == 1)
+    return std::vector(mesh.triangles.size(),
+                       signed_volume(mesh) < 0 ? FaceSide::inverted : FaceSide::boundary);
+  // The largest face of each part tells its side, because its middle is clear of its neighbours.
+  const auto area = [&](int face) {
+    const auto& [a, b, c] = mesh.triangles[face];
+    return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).squaredNorm();
+  };
+  std::vector<int> largest(static_cast<std::size_t>(count), -1);
+  for (std::size_t f = 0; f < part_of.size(); ++f) {
+    int& face = largest[part_of[f]];
+    if (face < 0 || area(static_cast<int>(f)) > area(face)) face = static_cast<int>(f);
+  }
+  const TriangleTree tree(mesh);
+  std::vector<FaceSide> of_part;
+  for (const int face : largest)
+    of_part.push_back(is_crossed[face] ? FaceSide::crossed : side_of(mesh, tree, face));
+  std::vector<FaceSide> sides;
+  for (const int part : part_of) sides.push_back(of_part[part]);
+  return sides;
+}
+
+bool has_inverted_part_in(const TriangleMesh& mesh, const std::vector<FaceSide>& sides) {
+  int count = 0;
+  const std::vector<int> part_of = parts_of(mesh, edges_by_vertices(mesh), count);
+  std::vector<char> is_inverted(static_cast<std::size_t>(count), 1);
+  for (std::size_t f = 0; f < sides.size(); ++f)
+    if (sides[f] != FaceSide::inverted) is_inverted[part_of[f]] = 0;
+  return std::find(is_inverted.begin(), is_inverted.end(), 1) != is_inverted.end();
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,161 @@
+// Architectures of teleoperation with force feedback: what the hand's end and the slave's end of a channel
+// send to each other, and what each does with what has arrived.
+//
+// Always sent: the position of the hand as the command, and the force f of the scene on the slave. Beside
+// them travels a Message. In a tick both ends observe what has happened, then both send, then both use the
+// newest packet that has arrived. F is the force on the hand, x its position, c the reference of the slave's
+// drive, y the slave, D the force of the drive on the slave, _ a signal that has arrived, T the tick.
+//
+//   architecture       hand                                 slave                     port of the slave
+//   position-force     F = g f_                             c = x_                    f . dc
+//   with passivity     f_ as far as the energy suffices     x_ as far as it suffices  f . dc
+//   control
+//   position-position  F = K (y_ - x) + B (y'_ - x')        c = x_                    -D . dy
+//   wave variables     F = sqrt(2 b) w_ - b x'              sqrt(2 b) u_ = b c' + D   -D . dc
+//                      sends u = w_ - sqrt(2 / b) F         sends w = (b c' - D) / sqrt(2 b)
+//
+// The port of the hand is -F . dx in all of them, with the force F that the device really exerts. in - out
+// over both ports is the energy in the channel. Sources: D. A. Lawrence, IEEE Trans. Robotics and Automation
+// 9(5), 1993; G. Niemeyer and J.-J. E. Slotine, IEEE J. Oceanic Engineering 16(1), 1991, and Int. J. Robotics
+// Research 23(9), 2004; passivity_control.h. Compared by E. J. Rodriguez-Seda, D. Lee and M. W. Spong, IEEE
+// Trans. Robotics 25(4), 2009. Numbers and bounds: README.md of runners/experiment/teleoperation.
+//
+// All positions, forces and waves here are in the frame in which the hand works. Nothing allocates in a tick.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/geometry/vector.h"
+#include "core/parameters/parameter.h"
+#include "core/teleoperation/dead_band.h"
+#include "core/teleoperation/passivity_control.h"
+#include "core/teleoperation/slave.h"
+
+namespace remote_touch {
+
+// The force that the device exerts on the hand, and the position that is sent to the slave.
+//   rendered:     the force of the renderer, which it computes from the points of the newest frame. The
+//                 commanded position of the renderer is sent, which stays outside forbidden regions. This is
+//                 teleoperation as in the dissertation, 3.2.
+//   none:         no force. The position of the HIP is sent, as in all architectures below.
+//   The others are those of the table above.
+enum class Feedback { rendered, none, slave_force, passive_slave_force, position_position, wave };
+
+// True if the hand is to feel the slave, so that the slave sends packets.
+bool feels_slave(Feedback force);
+
+struct FeedbackSettings {
+  Feedback force = Feedback::rendered;
+  double gain = 1;
+  HoldSettings hold;  // forces of the slave
+  PassivitySettings passivity;
+  double stiffness_N_per_m = 600, damping_Ns_per_m = 10;  // K and B of position-position
+  double impedance_Ns_per_m = 0;                          // b of wave; 0: matched
+};
+
+Parameters parameters(FeedbackSettings& s);
+std::string validate(const FeedbackSettings& s);
+
+// Returns the impedance b of the waves; matched: the damping 2 zeta w M of the slave's drive.
+double wave_impedance_Ns_per_m(const FeedbackSettings& feedback, const SlaveSettings& slave);
+
+// Returns how fast the force on the hand grows with its displacement, at rest and without a delay. With
+// waves, a delay each way and the tick add (delay + T) / b to its inverse. pre: force is not rendered.
+double felt_stiffness_N_per_m(const SlaveSettings& slave, const FeedbackSettings& feedback);
+
+// A wave u, the sum of u T and the sum of |u|^2 T / 2 since the start, which make up for lost packets.
+struct Wave {
+  Vec3 value = Vec3::Zero();     // sqrt(W)
+  Vec3 integral = Vec3::Zero();  // sqrt(W) s
+  double energy_J = 0;
+
+  // Makes this value the wave of the next time_s.
+  void add(const Vec3& next, double time_s);
+};
+
+// The waves that an end uses. They never have more energy than those that were sent, whatever the delay, its
+// jitter and the losses, and their integral follows the one that was sent as far as this energy suffices.
+// Without jitter and losses they are those that were sent. Jitter and losses make them later, as a buffer
+// does: by the time in which no packet came. A wave that is missing is 0.
+class WaveReceiver {
+ public:
+  // Returns the wave for the coming tick.
+  Vec3 next(const Wave& newest, double tick_s);
+
+ private:
+  Wave used_;
+};
+
+// A message travels beside a position or a force.
+struct Message {
+  double credit_J = 0;                                        // passivity control: of its port
+  Vec3 position_W = Vec3::Zero(), velocity_W = Vec3::Zero();  // position-position: of the slave
+  Wave wave = {};                                             // wave variables: u or w
+};
+
+class HandEnd {
+ public:
+  virtual ~HandEnd() = default;
+
+  // The hand has done this since the last call.
+  struct Motion {
+    Vec3 position_W = Vec3::Zero();
+    Vec3 displacement_m = Vec3::Zero();
+    Vec3 applied_N = Vec3::Zero();  // force that the device exerted meanwhile, with all its limits
+    double ticks = 1;
+  };
+  virtual void observe(const Motion& motion) { energy_.add(-motion.applied_N.dot(motion.displacement_m)); }
+  virtual Message message() const { return {}; }
+  // The newest message that has arrived, and its force. Both are zero before the first packet.
+  struct Arrival {
+    Message message = {};
+    Vec3 force_N = Vec3::Zero();
+    double share = 1;  // the rest of a force whose packets no longer arrive, see held_share()
+    bool has_come = false;
+  };
+  // Returns the force on the hand for the coming tick.
+  virtual Vec3 force(const Arrival& arrival) = 0;
+  virtual const PortEnergy& energy() const { return energy_; }
+
+ private:
+  PortEnergy energy_;
+};
+
+class SlaveEnd {
+ public:
+  virtual ~SlaveEnd() = default;
+
+  // The slave has done this in a tick, in the frame in which the hand works.
+  struct Motion {
+    Vec3 force_N = Vec3::Zero();  // mean force of the scene
+    Vec3 position_W = Vec3::Zero(), velocity_W = Vec3::Zero();
+    // These have the meaning of Slave::State.
+    Vec3 reference_displacement_m = Vec3::Zero(), drive_N = Vec3::Zero();
+    double reference_work_J = 0, drive_work_J = 0;
+  };
+  virtual void observe(const Motion& motion) = 0;
+  virtual Message message() const { return {}; }
+  // Returns the command for the coming tick. The first call states where the slave starts.
+  virtual Vec3 command(const Vec3& arrived_W, const Message& newest) = 0;
+  // The wave that moves the slave in the coming tick in place of a command.
+  virtual std::optional<Slave::Wave> wave() const { return {}; }
+  virtual const PortEnergy& energy() const { return energy_; }
+
+ protected:
+  PortEnergy energy_;
+};
+
+struct Ends {
+  std::unique_ptr<HandEnd> hand;
+  std::unique_ptr<SlaveEnd> slave;
+};
+
+// The ends are those of position-force if the hand feels no slave; the caller then ignores their forces.
+// hand_mass_kg: mass of hand and device, with which passivity control and waves predict the motion of the
+// hand; 0: not known, then it is predicted to move as in the last tick. pre: validate() is empty, tick_s > 0.
+Ends make_ends(const FeedbackSettings& feedback, const SlaveSettings& slave, double hand_mass_kg,
+               double tick_s);
+
+}  // namespace remote_touch

@@ -1,0 +1,251 @@
+#include "scenarios/recordings/image_folders.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "scenarios/recordings/camera_file.h"
+#include "scenarios/recordings/folder_files.h"
+#include "scenarios/recordings/images_and_clouds/depth_npy.h"
+#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "scenarios/recordings/tum_layout.h"
+#include "scenarios/text_files/file_ending.h"
+#include "scenarios/text_files/file_order.h"
+#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/number_columns.h"
+#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
+
+namespace remote_touch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMillimetre_m = 1e-3;
+
+void set_camera(const ImageCamera& camera, const fs::path& file, RecordingIndex& index) {
+  index.camera = camera.camera, index.metres_per_unit = camera.metres_per_unit;
+  index.depth_along_ray = camera.depth_along_ray;
+  index.camera_source = camera.source;
+  index.frame_rate_hz = camera.frame_rate_hz > 0 ? camera.frame_rate_hz : kNominalRate_hz;
+  if (!file.empty()) index.texts.push_back(file);
+}
+
+void note_unused_colours(const std::string& colours, const std::string& reason, RecordingIndex& index) {
+  index.notes.push_back({"colours missing", "the colours in " + colours + " are not used: " + reason});
+}
+
+constexpr const char* kNotRegistered =
+    "camera.json does not state \"colour_registered\": true, that a pixel of both images shows the same point";
+
+// --- TUM ---
+
+// The cameras of the colour images of the benchmark, to which its depth images are registered.
+ImageCamera tum_camera(const fs::path& folder, const std::string& list, RecordingIndex& index) {
+  static const std::array<std::pair<const char*, CameraIntrinsics>, 3> kCameras = {
+      {{"freiburg1", {640, 480, 517.3, 516.5, 318.6, 255.3}},
+       {"freiburg2", {640, 480, 520.9, 521.0, 325.1, 249.7}},
+       {"freiburg3", {640, 480, 535.4, 539.2, 320.1, 247.6}}}};
+  ImageCamera result{{640, 480, 525, 525, 319.5, 239.5}, 1.0 / 5000, true, "default of TUM"};
+  std::string words = fs::absolute(folder / "").lexically_normal().parent_path().filename().string();
+  for_each_line(list, [&](std::size_t, std::string_view line) {
+    if (line.starts_with('#')) words.append(line);
+  });
+  for (const auto& [name, camera] : kCameras)
+    if (words.find(name) != words.npos) {
+      result.camera = camera, result.source = std::string(name) + " of TUM, distortion ignored";
+      return result;
+    }
+  index.notes.push_back(
+      {"camera assumed",
+       "there is no camera.json, and neither the folder's name nor a comment in depth.txt names "
+       "freiburg1, freiburg2 or freiburg3: the default camera of TUM is used, f = 525"});
+  return result;
+}
+
+RecordingIndex index_tum(const fs::path& folder) {
+  const fs::path list = folder / "depth.txt", colour_list = folder / "rgb.txt";
+  const fs::path camera_file = folder / "camera.json";
+  const std::vector<StampedFile> depth = read_stamped_list(list);
+  RecordingIndex index;
+  index.texts = {list};
+  const bool has_camera = fs::exists(camera_file), has_colours = fs::exists(colour_list);
+  const ImageCamera camera = has_camera ? read_camera_file(camera_file)
+                                        : tum_camera(folder, read_input_text(list, "expected a list"), index);
+  set_camera(camera, has_camera ? camera_file : fs::path(), index);
+  std::vector<StampedFile> colour;
+  if (has_colours && !camera.colour_registered) note_unused_colours("rgb.txt", kNotRegistered, index);
+  if (has_colours && camera.colour_registered) {
+    colour = read_stamped_list(colour_list);
+    index.texts.push_back(colour_list);
+  }
+  index.frames = associate_stamps(depth, colour);
+  index.is_stamped = true, index.first_stamp_s = depth.front().stamp_s;
+  const auto has_colour = [](const RecordedFrame& frame) { return !frame.colour.empty(); };
+  if (!colour.empty() && std::none_of(index.frames.begin(), index.frames.end(), has_colour))
+    refuse(colour_list, "no image is within 0.02 s of one in depth.txt; the first are ",
+           colour.front().file.string(), " and ", depth.front().file.string(),
+           ": expected stamps of one clock, in seconds");
+  index.frame_rate_hz = mean_rate_hz(list.string(), index.frames.size(), index.frames.back().captured_s);
+  return index;
+}
+
+// --- layouts without stamps ---
+
+// Returns a camera of the size of the first image.
+ImageCamera camera_of_images(const std::vector<fs::path>& depth, const CameraIntrinsics& intrinsics,
+                             double metres_per_unit, const std::string& source) {
+  ImageCamera result{intrinsics, metres_per_unit, false, source};
+  const DepthImage first = read_depth_image(depth.front(), metres_per_unit);
+  result.camera.width = first.width, result.camera.height = first.height;
+  return result;
+}
+
+// Returns the camera of all images of a scene of BOP.
+ImageCamera bop_camera(const fs::path& file, const std::vector<fs::path>& depth) {
+  const Json json = parse_json(read_input_text(file, "expected the cameras of BOP"), file.string());
+  if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
+  std::map<std::string, const Json*> of_number;
+  for (const auto& item : json.items())
+    for (const std::string& number : numbers_in_name(item.key())) of_number[number] = &item.value();
+  std::vector<std::string> names;
+  for (const fs::path& image : depth) names.push_back(image.filename().string());
+  const Json* first = nullptr;
+  for (const auto& [numbers, frame] : frames_by_numbers(file, names)) {
+    const auto found = of_number.find(numbers.front());
+    if (found == of_number.end())
+      refuse(file, "has no camera of image ", numbers.front(), ": expected one for ", depth[frame].string());
+    const Json& camera = *found->second;
+    const bool is_whole = camera.is_object() && camera.contains("cam_K") && camera["cam_K"].is_array() &&
+                          camera["cam_K"].size() == 9 && camera.contains("depth_scale");
+    if (!is_whole) refuse(file, "image ", numbers.front(), ": expected cam_K, 9 numbers, and depth_scale");
+    if (!first) first = &camera;
+    if (camera["cam_K"] != (*first)["cam_K"] || camera["depth_scale"] != (*first)["depth_scale"])
+      refuse(file, "image ", numbers.front(),
+             " has another camera than the first: expected images of one camera, as a recording has");
+  }
+  std::array<double, 10> k{};
+  for (std::size_t i = 0; i < k.size(); ++i) {
+    const Json& value = i < 9 ? (*first)["cam_K"][i] : (*first)["depth_scale"];
+    k[i] = value.is_number() ? value.get<double>() : std::nan("");
+  }
+  if (!(k[0] > 0 && k[4] > 0 && k[9] > 0 && std::isfinite(k[0] + k[2] + k[4] + k[5] + k[9])) || k[1] != 0)
+    refuse(file, "cam_K = ", shown((*first)["cam_K"]), ", depth_scale = ", shown((*first)["depth_scale"]),
+           ": expected focal lengths, a centre and a scale, without skew");
+  ImageCamera result =
+      camera_of_images(depth, {0, 0, k[0], k[4], k[2], k[5]}, k[9] / 1000, "scene_camera.json");
+  result.colour_registered = true;
+  return result;
+}
+
+ImageCamera scannet_camera(const fs::path& file, const std::vector<fs::path>& depth) {
+  const std::string text = read_input_text(file, "expected a 4 x 4 matrix of intrinsics");
+  std::vector<double> k;
+  for_each_line(text, [&](std::size_t, std::string_view line) {
+    for (const std::string_view word : words_of_line(line))
+      k.push_back(number_of_word(word).value_or(std::nan("")));
+  });
+  if (k.size() != 16 || !(k[0] > 0 && k[5] > 0 && std::isfinite(k[0] + k[2] + k[5] + k[6])) || k[1] != 0)
+    refuse(file, "expected 16 numbers, a matrix of focal lengths and centre, without skew");
+  return camera_of_images(depth, {0, 0, k[0], k[5], k[2], k[6]}, kMillimetre_m, file.filename().string());
+}
+
+bool has_png(const fs::path& folder) {
+  return fs::is_directory(folder) && !files_in_order(folder, ".png").empty();
+}
+
+// Lists depth images at a steady rate. colours: the folder of colour images.
+RecordingIndex index_images(const std::vector<fs::path>& depth, const ImageCamera& camera,
+                            const fs::path& camera_file, const fs::path& colours) {
+  RecordingIndex index;
+  set_camera(camera, camera_file, index);
+  append_frames(depth, index);
+  const bool has_colours = fs::is_directory(colours) && !fs::is_empty(colours);
+  if (!has_colours) return index;
+  if (!camera.colour_registered) {
+    note_unused_colours(colours.filename().string(), kNotRegistered, index);
+    return index;
+  }
+  const std::vector<fs::path> images = colour_images(depth, colours);
+  for (std::size_t j = 0; j < depth.size(); ++j) index.frames[j].colour = images[j];
+  return index;
+}
+
+}  // namespace
+
+double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) {
+  if (frames < 2) return kNominalRate_hz;
+  const double rate_hz = static_cast<double>(frames - 1) / last_s;
+  if (rate_hz > kMaxFrameRate_hz)
+    refuse(file, "has timestamps of more than 10000 frames a second: expected seconds");
+  return rate_hz;
+}
+
+void append_frames(const std::vector<fs::path>& files, RecordingIndex& index) {
+  for (std::size_t j = 0; j < files.size(); ++j)
+    index.frames.push_back({static_cast<double>(j) / index.frame_rate_hz, files[j], {}});
+  const std::string equal = equal_numbers(files);
+  if (!equal.empty()) index.notes.push_back({"equal numbers", equal});
+}
+
+DepthImage read_depth_image(const fs::path& file, double metres_per_unit) {
+  constexpr double kNoLimit_m = std::numeric_limits<double>::infinity();
+  if (has_ending(file, ".npy")) return read_depth_npy(file, metres_per_unit, kNoLimit_m);
+  DepthImage depth = read_depth_png(file, metres_per_unit, kNoLimit_m);
+  // The largest value is no measurement: 7-Scenes marks missing pixels with it.
+  std::replace(depth.z_m.begin(), depth.z_m.end(), 65535 * metres_per_unit,
+               std::numeric_limits<double>::quiet_NaN());
+  return depth;
+}
+
+std::optional<RecordingIndex> index_image_folder(const fs::path& folder) {
+  if (fs::exists(folder / "depth.txt")) return index_tum(folder);
+  const fs::path own = folder / "camera.json", of_bop = folder / "scene_camera.json";
+  if (!fs::is_directory(folder / "depth")) {
+    std::vector<fs::path> depth = files_in_order(folder, ".png");
+    std::erase_if(depth, [](const fs::path& file) { return file.stem().extension() != ".depth"; });
+    if (depth.empty()) return {};
+    const ImageCamera kinect = {{640, 480, 585, 585, 320, 240}, kMillimetre_m, false, "default of 7-Scenes"};
+    RecordingIndex index = fs::exists(own) ? index_images(depth, read_camera_file(own), own, {})
+                                           : index_images(depth, kinect, {}, {});
+    if (files_in_order(folder, ".png").size() > depth.size())
+      note_unused_colours("*.color.png", "the images of 7-Scenes are not registered", index);
+    return index;
+  }
+  std::vector<fs::path> depth = files_in_order(folder / "depth", ".png");
+  const std::vector<fs::path> arrays = files_in_order(folder / "depth", ".npy");
+  if (!depth.empty() && !arrays.empty())
+    refuse(folder / "depth", "holds .png and .npy files: expected one kind");
+  if (depth.empty()) depth = arrays;
+  fs::path of_scannet = folder / "intrinsic" / "intrinsic_depth.txt";
+  if (!fs::exists(of_scannet)) of_scannet = folder / "intrinsics_depth.txt";
+  const bool is_bop = fs::exists(of_bop), is_scannet = fs::exists(of_scannet);
+  if (!fs::exists(own) && !is_bop && !is_scannet)
+    refuse(own,
+           "is missing: depth images need {width, height, fx, fy, cx, cy, depth_scale_m, frame_rate_hz}, or "
+           "scene_camera.json (BOP) or intrinsic/intrinsic_depth.txt (ScanNet)");
+  if (depth.empty()) refuse(folder / "depth", "holds no .png and no .npy file");
+  const fs::path colours = folder / (is_scannet && !is_bop ? "color" : "rgb");
+  if (fs::exists(own)) {
+    const ImageCamera camera = read_camera_file(own);
+    if (camera.frame_rate_hz == 0) refuse(own, "has no key 'frame_rate_hz'");
+    return index_images(depth, camera, own, colours);
+  }
+  if (is_bop) {
+    ImageCamera camera = bop_camera(of_bop, depth);
+    const bool is_unread = fs::is_directory(colours) && !has_png(colours);
+    RecordingIndex index = index_images(depth, camera, of_bop, is_unread ? fs::path() : colours);
+    if (is_unread) note_unused_colours("rgb", "they are no PNG files", index);
+    return index;
+  }
+  RecordingIndex index = index_images(depth, scannet_camera(of_scannet, depth), of_scannet, {});
+  if (fs::is_directory(colours))
+    note_unused_colours("color", "the images of ScanNet are not registered", index);
+  return index;
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,35 @@
+// PNG files, read as a depth image and as a colour image, and depth images in NumPy files.
+#include "scenarios/recordings/images_and_clouds/depth_npy.h"
+#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/scratch_file.h"
+
+namespace remote_touch::fuzz::depth_files {
+namespace {
+
+void require_depths(const DepthImage& depth) {
+  require(depth.z_m.size() == static_cast<std::size_t>(depth.width) * static_cast<std::size_t>(depth.height),
+          "every pixel has a depth");
+  for (const double z_m : depth.z_m) require(!(z_m <= 0 || z_m > 4), "a depth is in range or NaN");
+}
+
+void read_npy(std::string_view bytes) {
+  const auto file = scratch_file("image.npy", bytes);
+  accepts(bytes, [&] { require_depths(read_depth_npy(file, 0.001, 4)); });
+}
+
+void read_png(std::string_view bytes) {
+  const auto file = scratch_file("image.png", bytes);
+  accepts(bytes, [&] { require_depths(read_depth_png(file, 0.001, 4)); });
+  accepts(bytes, [&] {
+    int width = 0, height = 0;
+    const auto colour = read_colour_png(file, width, height);
+    require(colour.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+            "every pixel has a colour");
+  });
+}
+
+const Registered npy("npy", read_npy), png("png", read_png);
+
+}  // namespace
+}  // namespace remote_touch::fuzz::depth_files

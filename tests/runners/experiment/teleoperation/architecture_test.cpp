@@ -1,0 +1,324 @@
+// Energy, stiffness and stability of the architectures in closed loops of a hand, links, a slave and a wall,
+// all along one axis. Energies are counted from the signals at the ports, apart from the counters of the
+// ends.
+#include "core/teleoperation/architecture.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "analysis/measures/passivity_measures.h"
+#include "analysis/measures/slave_measures.h"
+#include "analysis/trace/trace.h"
+#include "runners/evaluation/contract/allocation_counter.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/hand/simulated_hand.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/experiment/teleoperation/teleoperation.h"
+
+namespace remote_touch::architecture_test {
+namespace {
+
+constexpr double kTick_s = 0.001;
+
+// A hand that moves from `start` to `end`, m above a wall at 0, whose slave meets the wall. The wall may move
+// as a sine from wall_from_s on.
+struct Plant {
+  OperatorSettings hand;
+  TeleoperationSettings remote;
+  double start = 0.08, end = -0.02, speed = 0.1;
+  double wall_m = 0, wall_hz = 0.5, wall_from_s = 1.5;
+  double max_force_N = 0;
+  NoiseKey key;
+};
+
+Plant plant_with(Feedback force, double frequency_hz = 5, double delay_s = 0) {
+  Plant p;
+  p.remote.feedback.force = force;
+  p.remote.slave.natural_frequency_hz = frequency_hz;
+  p.remote.commands.channel.delay_s = p.remote.forces.channel.delay_s = delay_s;
+  p.remote.hand_mass_kg = p.hand.mass_kg;
+  return p;
+}
+
+// F acts on the hand at x from this tick to the next one; c, f and y are those at the end of the last tick,
+// in which the signals brought entered_J into the channel.
+struct Tick {
+  double x = 0, F = 0, c = 0, f = 0, y = 0, entered_J = 0;
+  ChannelEnergy energy;
+  double inside_J() const {
+    return energy.hand_in_J - energy.hand_out_J + energy.slave_in_J - energy.slave_out_J;
+  }
+};
+
+std::vector<Tick> run(const Plant& p, double seconds) {
+  const double w = 2 * std::numbers::pi * p.wall_hz, radius_m = p.remote.slave.radius_m;
+  const SlaveScene scene{[=](const Vec3& at_W, double t) {
+                           const double wall =
+                               t < p.wall_from_s ? 0 : p.wall_m * std::sin(w * (t - p.wall_from_s));
+                           return at_W.y() - wall + radius_m;
+                         },
+                         [](const Vec3&, double) { return Vec3(0, 1, 0); }};
+  DeviceSettings device;
+  device.motors.max_force_N = p.max_force_N;
+  SimulatedHand hand(p.hand, device, kTick_s);
+  Teleoperation remote(p.remote, p.key, kTick_s, scene);
+  std::vector<Tick> ticks;
+  Vec3 x_W = Vec3::Zero(), c_W = Vec3::Zero(), exerted_N = Vec3::Zero();
+  for (int i = 0; i < static_cast<int>(std::lround(seconds / kTick_s)); ++i) {
+    const double t = i * kTick_s;
+    const DeviceState at = hand.move({{0, std::max(p.end, p.start - p.speed * t), 0}}, t);
+    hand.apply(remote.tick(at, {}, t));
+    const SlaveState& slave = remote.state();
+    const Vec3 &force_N = slave.force_N, &command_W = slave.command_W;
+    const double entered_J = i == 0 ? 0 : force_N.dot(command_W - c_W) - exerted_N.dot(at.position_W - x_W);
+    x_W = at.position_W, c_W = command_W, exerted_N = hand.state()->force_N;
+    remote.observe_exerted(exerted_N);
+    ticks.push_back({x_W.y(), exerted_N.y(), c_W.y(), force_N.y(), slave.position_W.y(), entered_J,
+                     slave.energy.value_or(ChannelEnergy{})});
+  }
+  return ticks;
+}
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : generator_(seed) {}
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(generator_);
+  }
+  double log(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+  double often(double value) { return uniform(0, 1) < 0.5 ? 0 : value; }
+
+ private:
+  std::mt19937 generator_;
+};
+
+Plant random_plant(Feedback force, unsigned seed) {
+  Random random(seed);
+  Plant p = plant_with(force, random.log(1, 20), std::round(random.uniform(0, 200)) * kTick_s);
+  p.hand.mass_kg = p.remote.hand_mass_kg = random.uniform(0.1, 1);
+  p.hand.stiffness_N_per_m = random.log(50, 1000), p.hand.damping_Ns_per_m = random.log(1, 30);
+  SlaveSettings& slave = p.remote.slave;
+  slave.mass_kg = random.log(0.5, 5), slave.damping_ratio = random.uniform(0.5, 1.5);
+  slave.contact_stiffness_N_per_m = random.log(1e3, 3e4);
+  slave.contact_damping_Ns_per_m = random.uniform(0, 20);
+  p.start = 0.05, p.end = -random.uniform(0.005, 0.03), p.speed = random.uniform(0.05, 0.3);
+  p.wall_m = random.often(random.uniform(0, 0.02)), p.wall_hz = random.uniform(0.2, 1), p.wall_from_s = 1;
+  ChannelSettings& link = p.remote.commands.channel;
+  link.jitter_s = random.often(std::round(random.uniform(0, 30)) * kTick_s);
+  link.loss_probability = random.often(random.uniform(0, 0.5));
+  p.remote.forces.channel = link;
+  p.max_force_N = 20;
+  p.key.seed = seed;
+  return p;
+}
+
+struct Balance {
+  double lowest_J = 0;
+  double below_bound_J = 0;  // largest distance of the energy below the bound
+  double miscounted_J = 0;   // largest difference of the counters from the sum over the signals
+  bool dissipation_falls = false;
+};
+
+// The energy that a port gives out in a tick exceeds what its end allowed by at most the work of the signal
+// on the error of the prediction, which is known from the signals: at the hand the error of the motion that F
+// was predicted to cause, at the slave the change of the force. The channel of waves has no error at the
+// slave, whose drive is not among the signals.
+Balance balance_of(const Plant& p, const std::vector<Tick>& ticks) {
+  const bool is_wave = p.remote.feedback.force == Feedback::wave;
+  const double response = kTick_s * kTick_s / (2 * p.hand.mass_kg);
+  const auto force_N = [&](std::size_t i, std::size_t ago) { return i >= ago ? ticks[i - ago].F : 0; };
+  const auto moved_m = [&](std::size_t i, std::size_t ago) {
+    return i >= ago + 1 ? ticks[i - ago].x - ticks[i - ago - 1].x : 0;
+  };
+  Balance result;
+  double energy_J = 0, bound_J = 0;
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const double F = force_N(i, 1), d = moved_m(i, 0);
+    const double predicted = 2 * moved_m(i, 1) - moved_m(i, 2) + response * (F - force_N(i, 3));
+    const double dc = ticks[i].c - ticks[i - 1].c;
+    bound_J += std::max(0.0, F * (d - predicted));
+    if (!is_wave) bound_J += std::max(0.0, -(ticks[i].f - ticks[i - 1].f) * dc);
+    energy_J = is_wave ? ticks[i].inside_J() : energy_J + ticks[i].entered_J;
+    result.lowest_J = std::min(result.lowest_J, energy_J);
+    result.below_bound_J = std::max(result.below_bound_J, -bound_J - energy_J);
+    result.miscounted_J = std::max(result.miscounted_J, std::abs(ticks[i].inside_J() - energy_J));
+    result.dissipation_falls |= ticks[i].energy.dissipated_J < ticks[i - 1].energy.dissipated_J;
+  }
+  return result;
+}
+
+// 500 hands, drives, links and walls, at rest or moving, with jitter and losses, and a device of 20 N.
+TEST(Architecture, TheEnergyStaysAboveTheBoundOfItsPredictions) {
+  for (const Feedback force : {Feedback::passive_slave_force, Feedback::wave}) {
+    int violated = 0;
+    double lowest_J = 0;
+    for (unsigned seed = 0; seed < 500; ++seed) {
+      const Plant p = random_plant(force, seed);
+      ASSERT_EQ(validate(p.remote.slave), "") << seed;
+      const Balance balance = balance_of(p, run(p, 4));
+      EXPECT_LE(balance.miscounted_J, 1e-9) << seed;
+      EXPECT_FALSE(balance.dissipation_falls) << seed;
+      violated += balance.below_bound_J > 1e-9;
+      lowest_J = std::min(lowest_J, balance.lowest_J);
+    }
+    EXPECT_EQ(violated, 0) << static_cast<int>(force);
+    EXPECT_GT(lowest_J, -0.1) << static_cast<int>(force);
+  }
+}
+
+// The slave goes where a wrong registration sends it, and packets are lost.
+TEST(Architecture, TheCountersAreTheSumsOverTheSignals) {
+  for (const Feedback force : {Feedback::slave_force, Feedback::passive_slave_force})
+    for (const double delay_s : {0.0, 0.005, 0.1}) {
+      Plant p = plant_with(force, 5, delay_s);
+      if (force == Feedback::slave_force) p.remote.feedback.gain = 0.05;
+      p.remote.registration = {0.01, 20};
+      p.remote.commands.channel.loss_probability = 0.3;
+      EXPECT_LE(balance_of(p, run(p, 3)).miscounted_J, 1e-9) << delay_s;
+    }
+}
+
+Trace steer_robot(std::vector<std::string> set) {
+  for (const char* setting :
+       {"feedback.force=passive-slave-force", "fixtures=[]", "command_link.delay_s=0.025",
+        "force_link.delay_s=0.025", "slave.natural_frequency_hz=20", "duration_s=8"})
+    set.emplace_back(setting);
+  return simulate(Experiment::load("steer-robot", set), {});
+}
+
+// A slave of 20 Hz and 25 ms each way over a wall that rises and falls by 2 cm.
+TEST(Architecture, PassivityControlKeepsTheEnergyAboveZeroBehindAnyDevice) {
+  for (const int limit_N : {0, 3, 5, 20}) {
+    const Trace trace = steer_robot({"device.max_force_N=" + std::to_string(limit_N)});
+    double energy_J = 0, lowest_J = 0, given_J = 0;
+    for (std::size_t i = 1; i < trace.length(); ++i) {
+      const double at_hand_J =
+          -trace.device_force_N[i - 1].dot(trace.hip_position_m[i] - trace.hip_position_m[i - 1]);
+      energy_J += at_hand_J +
+                  trace.slave_force_N[i].dot(trace.received_command_m[i] - trace.received_command_m[i - 1]);
+      lowest_J = std::min(lowest_J, energy_J), given_J += std::max(0.0, at_hand_J);
+      ASSERT_LE(trace.hand_energy_in_J[i], given_J + 1e-12) << "the credit that the hand sends, tick " << i;
+    }
+    EXPECT_GT(lowest_J, -0.005) << limit_N;
+    EXPECT_NEAR(min_channel_energy_J(trace), lowest_J, 1e-9);
+    EXPECT_GT(dissipated_energy_J(trace), 0);
+    if (limit_N == 0) {
+      EXPECT_LT(max_slave_force_N(trace), 70);
+    }
+  }
+}
+
+// The hand at rest on the wall, and the force of the device over its depth.
+double felt_stiffness(const Plant& p) {
+  const std::vector<Tick> ticks = run(p, 6);
+  double force = 0, depth = 0;
+  for (std::size_t i = ticks.size() * 7 / 8; i < ticks.size(); ++i) force += ticks[i].F, depth -= ticks[i].x;
+  return force / depth;
+}
+
+TEST(Architecture, AWaveIsAsSoftAsItsDelay) {
+  for (const double impedance : {20.0, 0.0})
+    for (const double delay_s : {0.0, 0.025, 0.1}) {
+      Plant p = plant_with(Feedback::wave, 5, delay_s);
+      p.remote.feedback.impedance_Ns_per_m = impedance;
+      const double still = felt_stiffness_N_per_m(p.remote.slave, p.remote.feedback);
+      const double b = wave_impedance_Ns_per_m(p.remote.feedback, p.remote.slave);
+      const double expected = 1 / (1 / still + (delay_s + kTick_s) / b);
+      EXPECT_NEAR(felt_stiffness(p) / expected, 1, 0.01) << impedance << " " << delay_s;
+    }
+}
+
+TEST(Architecture, PositionPositionFeelsItsSpringAndTheContact) {
+  for (const double frequency_hz : {2.0, 5.0, 20.0}) {
+    Plant p = plant_with(Feedback::position_position, frequency_hz, 0.025);
+    const double expected = felt_stiffness_N_per_m(p.remote.slave, p.remote.feedback);
+    EXPECT_NEAR(felt_stiffness(p) / expected, 1, 0.01) << frequency_hz;
+    p.remote.feedback.stiffness_N_per_m = 300;
+    EXPECT_NEAR(felt_stiffness(p) / expected, 0.5, 0.01) << frequency_hz;
+  }
+}
+
+// The slave starts where the hand does, so nothing pulls at the hand before the first packet has arrived.
+TEST(Architecture, PositionPositionStartsWithoutAJump) {
+  const std::vector<Tick> ticks = run(plant_with(Feedback::position_position, 5, 0.1), 6);
+  for (std::size_t i = 1; i < 500; ++i) EXPECT_NEAR(ticks[i].F, ticks[i - 1].F, 0.1) << i;
+  for (const Tick& tick : ticks) EXPECT_GT(tick.inside_J(), -1e-6);
+}
+
+// Packets that are lost, or come in another order, leave the slave where the hand is.
+TEST(Architecture, LostWavesLeaveNoErrorOfThePosition) {
+  Plant p = plant_with(Feedback::wave, 5, 0.025);
+  p.end = 0.02, p.remote.feedback.impedance_Ns_per_m = 20;
+  for (const double loss : {0.0, 0.2, 0.5}) {
+    for (LinkSettings* link : {&p.remote.commands, &p.remote.forces})
+      link->channel.loss_probability = loss, link->channel.jitter_s = loss > 0 ? 0.02 : 0;
+    const Tick last = run(p, 6).back();
+    EXPECT_NEAR(last.y, last.x, 1e-3) << loss;
+    EXPECT_NEAR(last.F, 0, 0.1) << loss;
+  }
+}
+
+TEST(Architecture, AllocatesNothingInATick) {
+  for (const Feedback force :
+       {Feedback::slave_force, Feedback::passive_slave_force, Feedback::position_position, Feedback::wave}) {
+    Teleoperation remote(
+        plant_with(force, 5, 0.02).remote, {}, kTick_s,
+        {[](const Vec3& p, double) { return p.y(); }, [](const Vec3&, double) { return Vec3(0, 1, 0); }});
+    const auto move = [&](int i) { remote.tick({{0, 0.02 - 1e-4 * i, 0}}, {}, i * kTick_s); };
+    for (int i = 0; i < 100; ++i) move(i);
+    const std::size_t before = allocation_count();
+    for (int i = 100; i < 300; ++i) move(i);
+    EXPECT_EQ(allocation_count(), before) << static_cast<int>(force);
+  }
+}
+
+// 1 / max |(2 zeta w s + w^2) M / (m s^2 + b s + k)|: below this gain the loop gain is below 1 at every
+// frequency and with every delay.
+double small_gain(const Plant& p) {
+  const SlaveSettings& slave = p.remote.slave;
+  const double w = 2 * std::numbers::pi * slave.natural_frequency_hz;
+  double largest = 0;
+  for (double hz = 0.01; hz < 100; hz *= 1.001) {
+    const std::complex<double> s(0, 2 * std::numbers::pi * hz);
+    const std::complex<double> hand =
+        p.hand.mass_kg * s * s + p.hand.damping_Ns_per_m * s + p.hand.stiffness_N_per_m;
+    largest = std::max(largest, std::abs((2 * slave.damping_ratio * w * s + w * w) * slave.mass_kg / hand));
+  }
+  return 1 / largest;
+}
+
+double deviation(const std::vector<Tick>& ticks, double Tick::*of) {
+  double sum = 0, squares = 0;
+  const std::size_t first = ticks.size() * 7 / 8;
+  for (std::size_t i = first; i < ticks.size(); ++i)
+    sum += ticks[i].*of, squares += std::pow(ticks[i].*of, 2);
+  const double n = static_cast<double>(ticks.size() - first);
+  return std::sqrt(std::max(0.0, squares / n - std::pow(sum / n, 2)));
+}
+
+bool is_stable(const std::vector<Tick>& ticks) {
+  return deviation(ticks, &Tick::x) < 5e-4 && deviation(ticks, &Tick::f) < 0.5 &&
+         std::ranges::all_of(ticks, [](const Tick& t) { return std::abs(t.x) < 0.2; });
+}
+
+TEST(Architecture, PositionForceIsStableBelowTheSmallGain) {
+  const std::pair<double, double> limits[] = {{2, 0.289}, {5, 0.0986}, {10, 0.0333}, {20, 0.0090}};
+  for (const auto& [frequency_hz, limit] : limits)
+    for (const double delay_s : {0.0, 0.005, 0.025, 0.05, 0.1, 0.2}) {
+      Plant p = plant_with(Feedback::slave_force, frequency_hz, delay_s);
+      EXPECT_NEAR(small_gain(p) / limit, 1, 0.01);
+      p.remote.feedback.gain = 0.95 * limit;
+      EXPECT_TRUE(is_stable(run(p, 10))) << frequency_hz << " " << delay_s;
+      p.remote.feedback.gain = 1;
+      EXPECT_FALSE(is_stable(run(p, 3))) << frequency_hz << " " << delay_s;
+    }
+}
+
+}  // namespace
+}  // namespace remote_touch::architecture_test
