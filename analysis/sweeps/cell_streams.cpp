@@ -49,17 +49,11 @@ std::vector<RunCluster> clusters_of(const SweepResult& result, const CellStreams
   return clusters;
 }
 
-std::string equal_runs_note(const SweepResult& result, const CellStreams& streams,
-                            const std::vector<std::size_t>& cells) {
-  std::size_t runs = 0, fixed = 0;
-  for (const std::size_t cell : cells) {
-    std::size_t done = 0;
-    for (int replicate = 0; streams.is_fixed(cell) && replicate < result.replicates; ++replicate)
-      if (const auto place = result.place_of(result.run(cell, replicate));
-          place && result.state[*place] == RunState::done)
-        ++done;
-    if (done > 1) runs += done, ++fixed;
-  }
+std::string equal_runs_note(const CellStreams& streams, const std::vector<std::size_t>& cells,
+                            const std::function<std::int64_t(std::size_t cell)>& done) {
+  std::int64_t runs = 0, fixed = 0;
+  for (const std::size_t cell : cells)
+    if (const std::int64_t own = streams.is_fixed(cell) ? done(cell) : 0; own > 1) runs += own, ++fixed;
   if (fixed == 0) return {};
   return std::to_string(runs) + " equal runs count as " + (fixed == 1 ? "one" : std::to_string(fixed));
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,8 +54,8 @@ std::vector<RunCluster> clusters_of(const SweepResult& result, const CellStreams
                                     const std::vector<std::size_t>& cells, bool by_replicate);
 
 // Returns the note on cells whose replicates are equal by construction: "40 equal runs count as one"; empty
-// if there is none.
-std::string equal_runs_note(const SweepResult& result, const CellStreams& streams,
-                            const std::vector<std::size_t>& cells);
+// if there is none. done: returns the number of finished runs of a cell.
+std::string equal_runs_note(const CellStreams& streams, const std::vector<std::size_t>& cells,
+                            const std::function<std::int64_t(std::size_t cell)>& done);
 
 }  // namespace remote_touch

@@ -57,7 +57,8 @@ Poses poses_of(const TruthFolder& folder, const std::vector<std::string>& frames
 
 RecordedTruth::RecordedTruth(const TruthFolder& folder, const std::vector<std::string>& frames,
                              double reach_m, const MeshReader& read_mesh, const CameraIntrinsics& camera)
-    : X_CO_(poses_of(folder, frames)),
+    : poses_file_(folder.objects.front().poses),
+      X_CO_(poses_of(folder, frames)),
       masks_(folder, frames, camera),
       reach_m_(reach_m),
       uncertainty_m_(folder.uncertainty_m) {
@@ -67,34 +68,24 @@ RecordedTruth::RecordedTruth(const TruthFolder& folder, const std::vector<std::s
     name_ += (name_.empty() ? folder.name + " (" : ", ") + files.name;
   }
   name_ += ")";
-  require_view(folder, camera);
+  if (std::none_of(X_CO_.begin(), X_CO_.end(), [](const auto& X) { return X.has_value(); }))
+    refuse(poses_file_, "has no known pose: expected the pose of an object in a frame or more");
 }
 
-void RecordedTruth::require_view(const TruthFolder& folder, const CameraIntrinsics& camera) const {
-  const std::filesystem::path& file = folder.objects.front().poses;
-  const auto known = std::find_if(X_CO_.begin(), X_CO_.end(), [](const auto& X) { return X.has_value(); });
-  if (known == X_CO_.end())
-    refuse(file, "has no known pose: expected the pose of an object in a frame or more");
+void RecordedTruth::require_view(const CameraIntrinsics& camera, const std::string& cause) const {
   if (camera.pixels() == 0) return;
-  const auto samples_in_image = [&](const auto& meant) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < X_CO_.size(); ++i)
-      if (X_CO_[i]) count += count_in_image(samples_[i % objects_.size()], meant(*X_CO_[i]), camera);
-    return count;
-  };
-  if (samples_in_image([](const RigidTransform& X) { return X; }) > 0) return;
-  std::string others;
-  std::size_t most = 0;
-  for (const OtherMeaning& meaning : other_meanings())
-    if (const std::size_t count = samples_in_image(meaning.of); count > most)
-      most = count, others = std::string("; with ") + meaning.text + " one is";
+  std::size_t first = X_CO_.size();  // the first known pose
+  for (std::size_t i = X_CO_.size(); i-- > 0;) {
+    if (!X_CO_[i]) continue;
+    if (count_in_image(samples_[i % objects_.size()], *X_CO_[i], camera) > 0) return;
+    first = i;
+  }
   char place[128];
-  const auto i = static_cast<std::size_t>(known - X_CO_.begin());
-  const Vec3& p_C = (*known)->translation();
+  const Vec3& p_C = X_CO_[first]->translation();
   std::snprintf(place, sizeof place, " is at x %.3g, y %.3g, z %.3g m in frame %zu", p_C.x(), p_C.y(),
-                p_C.z(), i / objects_.size());
-  refuse(file, "no object is in the image of any frame: ", objects_[i % objects_.size()].name, place, others,
-         ": expected object frame to camera frame, x right, y down, z forward, metres");
+                p_C.z(), first / objects_.size());
+  refuse(poses_file_, "no object is in the image of any frame: ", objects_[first % objects_.size()].name,
+         place, cause, ": expected object frame to camera frame, x right, y down, z forward, metres");
 }
 
 NearestOnObjects RecordedTruth::at(std::size_t frame, const Vec3& p_C) const {

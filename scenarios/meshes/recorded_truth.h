@@ -30,13 +30,17 @@ class RecordedTruth {
   // images; its size is 0 if they are no images.
   //
   // Reads all meshes and poses. Throws InputError about a file in these cases: there is not one pose for each
-  // frame; no object has a pose; no object is in the image in any frame, as if the poses had another unit or
-  // direction; a mesh has no triangle with an area, or a bounding box with a diagonal above 10 m; an
-  // object that is stated to be closed is not; or the triangles of a closed object run clockwise seen from
-  // outside. An object of which nothing is stated is closed if MeshDistance::is_closed(). For masks see
-  // TruthMasks. Pre: reach_m > 0.
+  // frame; no object has a pose; a mesh has no triangle with an area, or a bounding box with a diagonal above
+  // 10 m; an object that is stated to be closed is not; or the triangles of a closed object run clockwise
+  // seen from outside. An object of which nothing is stated is closed if MeshDistance::is_closed(). For masks
+  // see TruthMasks. Pre: reach_m > 0.
   RecordedTruth(const TruthFolder& folder, const std::vector<std::string>& frames, double reach_m,
                 const MeshReader& read_mesh, const CameraIntrinsics& camera);
+
+  // Throws InputError about the poses if no object is in the image in any frame, as if they had another unit
+  // or direction. cause: a part of the message that says what would explain it; empty: nothing does. A camera
+  // without pixels sees all.
+  void require_view(const CameraIntrinsics& camera, const std::string& cause) const;
 
   // Returns the true surface nearest to p_C, both in the camera frame of the frame. It is unknown farther
   // than reach_m from every object, beyond the border of an open one, for objects without a pose in this
@@ -58,8 +62,7 @@ class RecordedTruth {
   double uncertainty_m() const { return uncertainty_m_; }
 
  private:
-  void require_view(const TruthFolder& folder, const CameraIntrinsics& camera) const;
-
+  std::filesystem::path poses_file_;  // that of the first object
   std::vector<MeshObject> objects_;
   std::vector<std::vector<SampledPoint>> samples_;
   std::vector<std::optional<RigidTransform>> X_CO_;  // element frame * number of objects + object

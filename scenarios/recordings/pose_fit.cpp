@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <utility>
 
 #include "scenarios/meshes/object_view.h"
@@ -18,6 +19,7 @@ constexpr std::size_t kComparedPixels = 2000;
 // are read.
 constexpr double kMuchLess = 0.5;
 constexpr double kSmallGap_m = 0.005;  // errors of cameras and poses reach this size
+constexpr double kExplained_m = 0.01;  // a meaning of the poses that leaves more explains nothing
 
 double median(std::vector<double> values) {
   if (values.empty()) return kInfinite;
@@ -41,21 +43,63 @@ std::string length(double distance_m) {
   return text;
 }
 
-// The meaning with the smallest gap, and that gap.
+// The meaning with the smallest gap, and that gap. Meaning 0 is that of the poses as they are read.
 struct Best {
-  const OtherMeaning* meaning = nullptr;
+  std::size_t meaning = 0;
   double gap_m = kInfinite;
 };
 
-Best best_of(const std::vector<std::vector<double>>& gaps) {
+// Returns no other meaning if none has much less than the gap of the poses as they are read, or all have more
+// than most_m.
+Best best_of(const std::vector<std::vector<double>>& gaps, double most_m) {
   Best best;
+  if (gaps.empty()) return best;  // no image, or no pose in the frames that were read
   for (std::size_t i = 1; i < gaps.size(); ++i)
-    if (const double gap_m = median(gaps[i]); gap_m < best.gap_m) best = {&other_meanings()[i - 1], gap_m};
-  return best;
+    if (const double gap_m = median(gaps[i]); gap_m < best.gap_m) best = {i, gap_m};
+  return best.gap_m < kMuchLess * median(gaps[0]) && best.gap_m <= most_m ? best : Best{};
 }
 
 const OtherMeaning* meaning_of(std::size_t i) {
   return i == 0 ? nullptr : &other_meanings()[i - 1];
+}
+
+RigidTransform as_read(const RigidTransform& X, const RigidTransform&) {
+  return X;
+}
+
+// Another meaning of the pose X of an object, or of the depths. X_WC: the pose of the camera. of: the object
+// in the camera frame.
+struct TruthMeaning {
+  const char* text;
+  std::function<RigidTransform(const RigidTransform& X, const RigidTransform& X_WC)> of = as_read;
+  double depth_factor = 1;
+};
+
+// The first one is that of poses and depths as they are read.
+const std::vector<TruthMeaning>& truth_meanings() {
+  using X = const RigidTransform&;
+  static const std::vector<TruthMeaning> kAll = [] {
+    std::vector<TruthMeaning> all = {{""}};
+    for (const OtherMeaning& other : other_meanings())
+      all.push_back({other.text, [&other](X X_CO, X) { return other.of(X_CO); }});
+    const std::vector<TruthMeaning> more = {
+        {"poses object to world", [](X X_WO, X X_WC) { return X_WC.inverse() * X_WO; }},
+        {"poses world to object", [](X X_OW, X X_WC) { return (X_OW * X_WC).inverse(); }},
+        {"poses object to world, and the inverse poses of the camera",
+         [](X X_WO, X X_CW) { return X_CW * X_WO; }},
+        {"poses world to object, and the inverse poses of the camera",
+         [](X X_OW, X X_CW) { return X_CW * X_OW.inverse(); }},
+        {"10 times the depth scale", as_read, 10},
+        {"0.1 times the depth scale", as_read, 0.1},
+        {"5 times the depth scale", as_read, 5},
+        {"0.2 times the depth scale", as_read, 0.2},
+        {"1000 times the depth scale", as_read, 1000},
+        {"0.001 times the depth scale", as_read, 0.001},
+    };
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }();
+  return kAll;
 }
 
 std::vector<Vec3> compared_points(const PointCloud& cloud, const RigidTransform& X_CW) {
@@ -118,19 +162,19 @@ std::vector<Note> PoseFit::motion_notes(const CameraPath& path) const {
   constexpr double kWorse = 1.25, kNoise_m = 0.001;
   if (still_gaps_.empty()) return {};
   const double gap_m = median(gaps_[0]), still_m = median(still_gaps_);
-  const Best best = best_of(gaps_);
+  const Best best = best_of(gaps_, kInfinite);
   const bool is_worse = gap_m > kWorse * still_m + kNoise_m;
-  const bool is_beaten = gap_m > kSmallGap_m && best.gap_m < kMuchLess * gap_m;
+  const bool is_beaten = gap_m > kSmallGap_m && best.meaning > 0;
   if (!is_worse && !is_beaten) return {};
   std::string text =
       path.file().file.filename().string() + ": " +
       (std::isfinite(gap_m) ? "with these poses the frames differ by " + length(gap_m)
                             : std::string("with these poses the frames show different places")) +
       " (median of the depth), without poses by " + length(still_m);
-  if (best.meaning && best.gap_m < kMuchLess * gap_m && best.gap_m <= still_m)
-    text += std::string(", with ") + best.meaning->text + " by " + length(best.gap_m) +
-            (best.meaning == other_meanings().data() ? ": scenario.pose_direction may be the other one"
-                                                     : ": this may be what the file has");
+  if (best.meaning > 0 && best.gap_m <= still_m)
+    text += std::string(", with ") + meaning_of(best.meaning)->text + " by " + length(best.gap_m) +
+            (best.meaning == 1 ? ": scenario.pose_direction may be the other one"
+                               : ": this may be what the file has");
   else
     text += ": the poses may be those of other frames, or in another order";
   return {{"poses do not fit", text}};
@@ -140,18 +184,21 @@ void PoseFit::add_truth(std::size_t frame, const PointCloud& cloud, const Record
   constexpr double kLeastShare = 0.05;
   if (!cloud.image) return;
   const CameraIntrinsics& camera = cloud.image->camera;
-  const RigidTransform X_CW = cloud.image->X_WC.inverse();
-  const auto depth_of = [&](std::size_t pixel) { return (X_CW * cloud.point(pixel)).z(); };
+  const RigidTransform &X_WC = cloud.image->X_WC, X_CW = X_WC.inverse();
   objects_.resize(truth.objects().size());
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::optional<RigidTransform>& X_CO = truth.poses(frame)[i];
     if (!X_CO) continue;
     ObjectFit& fit = objects_[i];
-    fit.gaps.resize(1 + other_meanings().size());
+    fit.gaps.resize(truth_meanings().size());
     ++fit.frames;
     fit.frames_in_image += count_in_image(truth.samples()[i], *X_CO, camera) > 0 ? 1 : 0;
     for (std::size_t m = 0; m < fit.gaps.size(); ++m) {
-      const RigidTransform X = m == 0 ? *X_CO : meaning_of(m)->of(*X_CO);
+      const TruthMeaning& meaning = truth_meanings()[m];
+      const RigidTransform X = meaning.of(*X_CO, X_WC);
+      const auto depth_of = [&](std::size_t pixel) {
+        return meaning.depth_factor * (X_CW * cloud.point(pixel)).z();
+      };
       std::vector<Vec3> facing_O;
       for (const SampledPoint& sample : truth.samples()[i])
         if ((X.linear() * sample.normal).dot(X * sample.point) < 0) facing_O.push_back(sample.point);
@@ -172,11 +219,10 @@ std::vector<Note> PoseFit::truth_notes(const RecordedTruth& truth) const {
     const ObjectFit& fit = objects_[i];
     if (fit.frames == 0) continue;
     const double gap_m = median(fit.gaps[0]);
-    const Best best = best_of(fit.gaps);
+    const Best best = best_of(fit.gaps, kExplained_m);
     const bool is_elsewhere =
         static_cast<double>(fit.near) <= kLeastShareNear * static_cast<double>(fit.measured);
-    const bool is_beaten =
-        gap_m > kSmallGap_m && best.gap_m < kMuchLess * gap_m && best.gap_m <= truth.reach_m();
+    const bool is_beaten = gap_m > kSmallGap_m && best.meaning > 0;
     if (!is_elsewhere && !is_beaten) continue;
     std::string text = "the true object " + truth.objects()[i].name;
     if (fit.frames_in_image == 0)
@@ -185,12 +231,20 @@ std::vector<Note> PoseFit::truth_notes(const RecordedTruth& truth) const {
       text += " is " + length(gap_m) + " from what the camera measured there (median of the depth)";
     else
       text += " is where the camera measured nothing";
-    if (best.meaning && best.gap_m < kMuchLess * gap_m && best.gap_m <= truth.reach_m())
-      text += std::string("; with ") + best.meaning->text + " it is " + length(best.gap_m) +
+    if (best.meaning > 0)
+      text += std::string("; with ") + truth_meanings()[best.meaning].text + " it is " + length(best.gap_m) +
               " from it: expected object frame to camera frame, metres";
     notes.push_back({"truth elsewhere", text});
   }
   return notes;
+}
+
+std::string PoseFit::cause(const RecordedTruth& truth) const {
+  for (std::size_t i = 0; i < objects_.size(); ++i)
+    if (const Best best = best_of(objects_[i].gaps, kExplained_m); best.meaning > 0)
+      return std::string("; with ") + truth_meanings()[best.meaning].text + " " + truth.objects()[i].name +
+             " is " + length(best.gap_m) + " from what the camera measured";
+  return {};
 }
 
 }  // namespace remote_touch

@@ -103,7 +103,9 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
            "its points form no camera image and have no depth: expected scenario.max_depth_m = ",
            Settings{}.max_depth_m, ", the default, which does not apply to them");
   read_truth(read_mesh);
-  if (truth_) fit_.add_truth(times_.source(0), cloud(0), *truth_);
+  if (!truth_) return;
+  fit_.add_truth(times_.source(0), cloud(0), *truth_);
+  truth_->require_view(recording_.camera, fit_.cause(*truth_));
 }
 
 void RecordedScene::read_truth(const MeshReader& read_mesh) {
