@@ -63,7 +63,7 @@ std::vector<std::string> names_in(std::string_view line) {
   std::string text;
   for (const char c : line) {
     if (c == '[' || c == '(') {
-      text.erase(text.find_last_not_of(' ') + 1);
+      text.erase(text.find_last_not_of(" \t") + 1);
       text += '_';
     } else if (c != ']' && c != ')') {
       text += c == ',' || c == '#' ? ' ' : c;
@@ -97,7 +97,9 @@ bool is_not_finite(double value) {
 }
 
 void require_near_origin(const std::string& where, const Vec3& p) {
-  if (!is_near_origin(p)) refuse(where, far_from_origin("the position is"));
+  if (is_near_origin(p)) return;
+  refuse(where, far_from_origin("the position is"),
+         (is_near_origin(p / 1000) ? "; positions may be millimetres instead of metres" : ""));
 }
 
 // Iterates R <- (R + R^-T) / 2, which converges quadratically to the orthogonal factor of the polar
@@ -182,8 +184,13 @@ class PoseReader {
       }
     if (is_comment && result_.poses.empty()) note_convention(where, words);
     if (is_comment) return;
-    if (words.empty() && !may_skip()) refuse(where, "is empty: ", shape());
-    if (!words.empty()) add_pose(where, words);
+    if (words.empty()) {
+      if (empty_line_.empty()) empty_line_ = where;
+      return;
+    }
+    add_pose(where, words);
+    // Line i is the pose of frame i, so that a line without a pose would shift those behind it.
+    if (result_.stamps_s.empty() && !empty_line_.empty()) refuse(empty_line_, "is empty: ", kMatrix);
   }
 
   PoseFile take() {
@@ -197,9 +204,6 @@ class PoseReader {
   }
 
  private:
-  const char* shape() const { return expected_ == PoseLines::stamped ? kStamped : kMatrix; }
-  bool may_skip() const { return expected_ == PoseLines::stamped || !result_.stamps_s.empty(); }
-
   // A comment of free text is not read, but a user who wrote a unit or an order there expects that it is.
   void note_convention(const std::string& where, const Words& words) {
     constexpr std::array<std::string_view, 9> kConventions = {"mm",           "millimetres", "millimeters",
@@ -286,6 +290,7 @@ class PoseReader {
   NumberColumns columns_;
   bool is_named_ = false;
   std::size_t equal_ = 0;
+  std::string empty_line_;  // "file:line" of the first one
   PoseFile result_;
 };
 

@@ -43,8 +43,8 @@ enum class PoseLines { of_frames, stamped, either };
 //
 // Throws InputError about "file:line" in these cases (about the file if it cannot be read or is longer than
 // kMaxTextBytes): the names are those of three or more elements of a pose, but not of a whole pose; another
-// number of words; a word that is no number; a number that is not finite; an empty line between poses that
-// are not stamped; the last row of a matrix differs from 0 0 0 1 by more than 1e-6; an element of R^T R - I
+// number of words; a word that is no number; a number that is not finite; an empty line before a pose that
+// is not stamped; the last row of a matrix differs from 0 0 0 1 by more than 1e-6; an element of R^T R - I
 // is above 1e-3; R mirrors; the norm of a quaternion differs from 1 by more than 1e-2; a translation is above
 // kMaxCoordinate_m along an axis; stamps decrease or are above 1e12 s; there are stamps, or none, although
 // `expected` says otherwise; a stamped file has no pose.

@@ -28,7 +28,7 @@ MeshObject object_of(const TruthObjectFiles& files, const MeshReader& read_mesh)
 Poses poses_by_number(const TruthObjectFiles& object, const std::vector<std::string>& frames) {
   Poses poses(frames.size());
   for (const auto& [numbers, frame] : frames_by_numbers(object.poses, frames))
-    if (const auto found = object.X_CO.find(numbers.front()); found != object.X_CO.end())
+    if (const auto found = object.X_CO.find(numbers.back()); found != object.X_CO.end())
       poses[frame] = found->second;
   return poses;
 }

@@ -153,6 +153,7 @@ void BagFrames::order_frames() {
     add_remark("has " + std::to_string(stamped.end() - last) +
                " message(s) with the stamp of another: not used");
   stamped.erase(last, stamped.end());
+  first_stamp_s_ = static_cast<double>(stamped.front().first) / 1e9;
   frames_.clear();
   for (const auto& [stamp_ns, place] : stamped) {
     frames_.push_back(place);

@@ -32,6 +32,8 @@ class BagFrames {
   BagFrames(const std::filesystem::path& path, const BagChoice& choice);
 
   const std::vector<double>& captured_s() const { return captured_s_; }
+  // Stamp of the first frame.
+  double first_stamp_s() const { return first_stamp_s_; }
   // Camera of the depth images; all 0 for clouds.
   CameraIntrinsics camera() const { return rays_ ? rays_->camera() : CameraIntrinsics{}; }
   // Pose of the messages' coordinate frame in the chosen one.
@@ -69,6 +71,7 @@ class BagFrames {
   std::size_t topic_ = 0;
   std::vector<MessagePlace> frames_;
   std::vector<double> captured_s_;
+  double first_stamp_s_ = 0;
   std::optional<ImageRays> rays_;  // only for depth images
   DepthUnits units_;
   std::string frame_id_;  // coordinate frame of the first frame, and so of all

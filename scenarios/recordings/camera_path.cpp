@@ -1,6 +1,8 @@
 #include "scenarios/recordings/camera_path.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "core/geometry/near_origin.h"
@@ -11,9 +13,30 @@
 namespace remote_touch {
 namespace {
 
+// Notes the longest time between two poses in which frames were captured, if it is long.
+void note_longest_gap(const std::vector<double>& stamps_s, const RecordingIndex& recording, PoseFile& poses) {
+  constexpr double kLong_s = 0.1;  // three frames of 30 Hz
+  double longest_s = 0, from_s = 0;
+  std::size_t frames = 0;
+  for (const RecordedFrame& frame : recording.frames) {
+    const double stamp_s = recording.first_stamp_s + frame.captured_s;
+    const auto next = std::upper_bound(stamps_s.begin(), stamps_s.end(), stamp_s);
+    if (next == stamps_s.begin() || next == stamps_s.end() || *next - *(next - 1) <= kLong_s) continue;
+    ++frames;
+    if (*next - *(next - 1) > longest_s) from_s = *(next - 1), longest_s = *next - from_s;
+  }
+  if (frames == 0) return;
+  std::ostringstream text;
+  text << poses.file.string() << ": " << frames << " of " << recording.frames.size()
+       << " frames lie between poses that are more than " << kLong_s << " s apart, at most " << longest_s
+       << " s, from " << from_s - recording.first_stamp_s << " s on: their poses are interpolated";
+  poses.notes.push_back({"unusual poses", text.str()});
+}
+
 // Replaces the poses by those at the times of the frames.
 void interpolate_at_frames(const RecordingIndex& recording, PoseFile& poses) {
   constexpr double kTolerance_s = 0.02;  // the tolerance of tum_layout.cpp
+  note_longest_gap(poses.stamps_s, recording, poses);
   const double first_s = poses.stamps_s.front(), last_s = poses.stamps_s.back();
   const PosePath path = path_of(poses, first_s);
   poses.poses.clear(), poses.stamps_s.clear();
@@ -46,7 +69,8 @@ CameraPath::CameraPath(const RigidTransform& X_WB, const std::string& poses, Pos
                        const RecordingIndex& recording, const std::filesystem::path& folder)
     : X_WB_(X_WB), direction_(direction) {
   if (poses.empty()) return;
-  poses_ = poses_of((folder / poses).lexically_normal(), recording);
+  // A path that ends in a slash has no file name, so that messages would not name the folder ".".
+  poses_ = poses_of((folder / poses / "").lexically_normal().parent_path(), recording);
   for (const RecordedFrame& frame : recording.frames) time_s_.push_back(frame.captured_s);
 }
 

@@ -24,6 +24,7 @@ class FrameStatistics {
   void add(std::size_t frame, const PointCloud& cloud, double max_depth_m);
 
   std::size_t frames_read() const { return frames_; }
+  bool has_points() const { return measured_ > 0; }
   // Returns "12 read: 68.3 % of 307200 points measured, depth 0.41 to 2.98 m, with colours". Clouds without a
   // camera have no depth; the text then has the range of each coordinate.
   std::string text() const;

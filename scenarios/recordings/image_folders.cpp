@@ -116,16 +116,16 @@ ImageCamera bop_camera(const fs::path& file, const std::vector<fs::path>& depth)
   for (const fs::path& image : depth) names.push_back(image.filename().string());
   const Json* first = nullptr;
   for (const auto& [numbers, frame] : frames_by_numbers(file, names)) {
-    const auto found = of_number.find(numbers.front());
+    const auto found = of_number.find(numbers.back());
     if (found == of_number.end())
-      refuse(file, "has no camera of image ", numbers.front(), ": expected one for ", depth[frame].string());
+      refuse(file, "has no camera of image ", numbers.back(), ": expected one for ", depth[frame].string());
     const Json& camera = *found->second;
     const bool is_whole = camera.is_object() && camera.contains("cam_K") && camera["cam_K"].is_array() &&
                           camera["cam_K"].size() == 9 && camera.contains("depth_scale");
-    if (!is_whole) refuse(file, "image ", numbers.front(), ": expected cam_K, 9 numbers, and depth_scale");
+    if (!is_whole) refuse(file, "image ", numbers.back(), ": expected cam_K, 9 numbers, and depth_scale");
     if (!first) first = &camera;
     if (camera["cam_K"] != (*first)["cam_K"] || camera["depth_scale"] != (*first)["depth_scale"])
-      refuse(file, "image ", numbers.front(),
+      refuse(file, "image ", numbers.back(),
              " has another camera than the first: expected images of one camera, as a recording has");
   }
   std::array<double, 10> k{};
@@ -232,7 +232,7 @@ std::optional<RecordingIndex> index_image_folder(const fs::path& folder) {
   const fs::path colours = folder / (is_scannet && !is_bop ? "color" : "rgb");
   if (fs::exists(own)) {
     const ImageCamera camera = read_camera_file(own);
-    if (camera.frame_rate_hz == 0) refuse(own, "has no key 'frame_rate_hz'");
+    if (camera.frame_rate_hz == 0 && !is_bop && !is_scannet) refuse(own, "has no key 'frame_rate_hz'");
     return index_images(depth, camera, own, colours);
   }
   if (is_bop) {

@@ -19,7 +19,6 @@ constexpr std::size_t kComparedPixels = 2000;
 // are read.
 constexpr double kMuchLess = 0.5;
 constexpr double kSmallGap_m = 0.005;  // errors of cameras and poses reach this size
-constexpr double kExplained_m = 0.01;  // a meaning of the poses that leaves more explains nothing
 
 double median(std::vector<double> values) {
   if (values.empty()) return kInfinite;
@@ -89,6 +88,8 @@ const std::vector<TruthMeaning>& truth_meanings() {
          [](X X_WO, X X_CW) { return X_CW * X_WO; }},
         {"poses world to object, and the inverse poses of the camera",
          [](X X_OW, X X_CW) { return X_CW * X_OW.inverse(); }},
+        {"positions 1000 times as large",
+         [](X X_CO, X) { return Eigen::Translation3d(999 * X_CO.translation()) * X_CO; }},
         {"10 times the depth scale", as_read, 10},
         {"0.1 times the depth scale", as_read, 0.1},
         {"5 times the depth scale", as_read, 5},
@@ -219,7 +220,7 @@ std::vector<Note> PoseFit::truth_notes(const RecordedTruth& truth) const {
     const ObjectFit& fit = objects_[i];
     if (fit.frames == 0) continue;
     const double gap_m = median(fit.gaps[0]);
-    const Best best = best_of(fit.gaps, kExplained_m);
+    const Best best = best_of(fit.gaps, truth.reach_m());
     const bool is_elsewhere =
         static_cast<double>(fit.near) <= kLeastShareNear * static_cast<double>(fit.measured);
     const bool is_beaten = gap_m > kSmallGap_m && best.meaning > 0;
@@ -239,11 +240,15 @@ std::vector<Note> PoseFit::truth_notes(const RecordedTruth& truth) const {
   return notes;
 }
 
-std::string PoseFit::cause(const RecordedTruth& truth) const {
-  for (std::size_t i = 0; i < objects_.size(); ++i)
-    if (const Best best = best_of(objects_[i].gaps, kExplained_m); best.meaning > 0)
-      return std::string("; with ") + truth_meanings()[best.meaning].text + " " + truth.objects()[i].name +
-             " is " + length(best.gap_m) + " from what the camera measured";
+PoseFit::Cause PoseFit::cause(const RecordedTruth& truth) const {
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const Best best = best_of(objects_[i].gaps, truth.reach_m());
+    const TruthMeaning& meaning = truth_meanings()[best.meaning];
+    if (best.meaning > 0)
+      return {std::string("; with ") + meaning.text + ", " + truth.objects()[i].name + " is " +
+                  length(best.gap_m) + " from what the camera measured",
+              meaning.depth_factor != 1};
+  }
   return {};
 }
 

@@ -32,9 +32,14 @@ class PoseFit {
   // Returns a note for each object that is nowhere near the measured points, is in the image in none of the
   // frames, or would be much nearer with another meaning of its poses.
   std::vector<Note> truth_notes(const RecordedTruth& truth) const;
-  // Returns "; with the inverse poses cube is 0.2 mm from what the camera measured" for the first object whose
-  // place another meaning of its poses, or of the depths, explains; empty: none does.
-  std::string cause(const RecordedTruth& truth) const;
+  // What explains the place of an object: "; with the inverse poses cube is 0.2 mm from what the camera
+  // measured". Empty: no other meaning of its poses or of the depths does.
+  struct Cause {
+    std::string text;
+    bool is_depth_scale = false;
+  };
+  // Returns the cause for the first object that has one.
+  Cause cause(const RecordedTruth& truth) const;
 
  private:
   // The gaps of some frames: one list with the poses as they are read, and one for each other meaning.

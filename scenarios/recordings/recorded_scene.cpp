@@ -105,7 +105,10 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
   read_truth(read_mesh);
   if (!truth_) return;
   fit_.add_truth(times_.source(0), cloud(0), *truth_);
-  truth_->require_view(recording_.camera, fit_.cause(*truth_));
+  const PoseFit::Cause cause = fit_.cause(*truth_);
+  truth_->require_view(recording_.camera, cause.text);
+  if (cause.is_depth_scale)
+    refuse(settings_.path, "its depths do not fit its true objects", cause.text, ": expected metres");
 }
 
 void RecordedScene::read_truth(const MeshReader& read_mesh) {
@@ -128,8 +131,9 @@ void RecordedScene::require_points() const {
     if (first.point(i).norm() <= kReach_m) return;  // false if not finite
   const std::string limit = std::to_string(layout_->camera ? settings_.max_depth_m : kReach_m);
   refuse(settings_.path, "its first frame has no point within ",
-         (layout_->camera ? "scenario.max_depth_m = " + limit : limit + " m"),
-         ": expected a frame of measured points, in metres");
+         (layout_->camera ? "scenario.max_depth_m = " + limit : limit + " m"), ": ", statistics_.text(),
+         ": expected a frame of measured points, in metres",
+         (layout_->camera && statistics_.has_points() ? "; the depth scale may be wrong" : ""));
 }
 
 int RecordedScene::frame_count() const {

@@ -45,9 +45,10 @@ class RecordedScene : public Scenario {
     BagChoice bag;  // used if the path is a bag of ROS
   };
 
-  // Throws InputError when the recording or its truth cannot be read, and when a later frame is not of the
-  // layout of the first one that is used, see conform(). read_mesh: reads the meshes of the truth. Without it
-  // the truth is the measured surface.
+  // Throws InputError when the recording or its truth cannot be read, when no true object is in the image or
+  // another depth scale would make them fit, and when a later frame is not of the layout of the first one
+  // that is used, see conform(). read_mesh: reads the meshes of the truth. Without it the truth is the
+  // measured surface.
   RecordedScene(const Settings& settings, const NoiseKey& key, const Kernels& kernels,
                 const MeshReader& read_mesh = {});
 

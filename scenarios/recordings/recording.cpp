@@ -45,6 +45,7 @@ RecordingIndex index_bag(const fs::path& path, const BagChoice& choice) {
   RecordingIndex index = index_of_clouds(RecordingIndex::Kind::bag);
   index.is_stamped = true;
   index.bag = std::make_shared<const BagFrames>(path, choice);
+  index.first_stamp_s = index.bag->first_stamp_s();
   index.camera = index.bag->camera();
   if (index.camera.width > 0) index.camera_source = "CameraInfo";
   for (const double captured_s : index.bag->captured_s()) index.frames.push_back({captured_s, {}, {}});

@@ -206,6 +206,21 @@ TEST_F(Truths, AreRefusedIfASolidIsOpenOrInsideOut) {
   const TriangleMesh inverted = meshes::inside_out(box_mesh({0.2, 0.2, 0.2}));
   expect_mesh_refused(inverted, true, "inside out): expected triangles counter-clockwise seen from outside");
   expect_mesh_refused(inverted, {}, "inside out): expected triangles counter-clockwise seen from outside");
+  const TriangleMesh slab = box_mesh({0.4, 0.2, 0.4}), post = box_mesh({0.1, 0.1, 0.1}, {0, 0.1, 0});
+  expect_mesh_refused(meshes::together(slab, meshes::inside_out(post)), {},
+                      "a part of the mesh is inside out: expected triangles counter-clockwise");
+}
+
+TEST_F(Truths, AreRefusedOutOfView) {
+  add("box", box_mesh({0.2, 0.2, 0.2}), kUnknown + at(2, 0, 1) + at(0, 0, -1));
+  const std::string place =
+      "box.txt: no object is in the image of any frame: box is at x 2, y 0, z 1 m in frame 1";
+  EXPECT_HAS(refusal([&] { read(3).require_view(kCamera, ""); }),
+             place + ": expected object frame to camera");
+  EXPECT_HAS(refusal([&] { read(3).require_view(kCamera, "; a cause"); }), place + "; a cause: expected");
+  read(3).require_view({}, "");
+  add("table", sheet(), kUnknown + kUnknown + at(0, 0, 1));
+  read(3).require_view(kCamera, "");
 }
 
 TEST_F(Truths, PassOnTheRefusalOfAReader) {

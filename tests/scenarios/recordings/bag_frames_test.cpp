@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/kernels/kernels.h"
+#include "scenarios/recordings/camera_path.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "tests/support/bag_files.h"
 #include "tests/support/scenes.h"
@@ -73,6 +74,36 @@ TEST_F(Frames, HaveTheTimesOfTheRecorderIfStampsAreMissing) {
       frames({cloud(0, 0, "/points", 0), cloud(1, 3, "/points", 0), cloud(2, 5, "/points", 0)});
   EXPECT_EQ(all.captured_s(), (std::vector<double>{0, 3 * 0.03125, 5 * 0.03125}));
   EXPECT_HAS(all.remark(), "has messages without a stamp");
+}
+
+// Frames at 0, 31.25 and 93.75 ms, poses at 0, 62.5 and 125 ms. x is the time since the first frame, m for s.
+TEST_F(Frames, StampedPosesBelongToTheirTimes) {
+  folder_.write("x.mcap", mcap_file({cloud(0, 0), cloud(1, 1), cloud(3, 2)}));
+  const RecordingIndex recording = index_recording(folder_ / "x.mcap");
+  const auto path = [&](const std::string& name, double start_s) {
+    std::string text;
+    for (const double x : {0.0, 0.0625, 0.125})
+      text += std::to_string(start_s + x) + " " + std::to_string(x) + " 0 0 0 0 0 1\n";
+    folder_.write(name, text);
+    return CameraPath(RigidTransform::Identity(), name, PoseDirection::camera_to_world, recording,
+                      folder_ / ".");
+  };
+  const CameraPath poses = path("poses.txt", 1.7e9);
+  for (const auto& [frame, x] : {std::pair(0, 0.0), {1, 0.03125}, {2, 0.09375}})
+    EXPECT_NEAR(poses.pose(frame).translation().x(), x, 1e-6) << frame;
+  EXPECT_TRUE(poses.notes().empty());
+  EXPECT_HAS(refusal([&] { path("other.txt", 100); }), "expected stamps of one clock");
+}
+
+TEST_F(Frames, PosesFarApartAreReported) {
+  folder_.write("x.mcap", mcap_file({cloud(0, 0), cloud(1, 1), cloud(8, 2)}));
+  const RecordingIndex recording = index_recording(folder_ / "x.mcap");
+  folder_.write("gap.txt", "1700000000 0 0 0 0 0 0 1\n1700000000.3 0.1 0 0 0 0 0 1\n");
+  const std::vector<Note> notes = CameraPath(RigidTransform::Identity(), "gap.txt",
+                                             PoseDirection::camera_to_world, recording, folder_ / ".")
+                                      .notes();
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_HAS(notes[0].text, "3 of 3 frames lie between poses that are more than 0.1 s apart, at most 0.3 s");
 }
 
 TEST_F(Frames, AreOfTheOnlyTopicThatFits) {

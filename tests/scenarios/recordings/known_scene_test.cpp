@@ -223,6 +223,7 @@ TEST_F(KnownScene, IsReadInTheLayoutOf7Scenes) {
   write_camera("seq-01", 0.001);
   const RecordedScene seven = scene(settings("seq-01", "."));
   expect_equal(seven, scene(settings("own", "poses.txt")));
+  EXPECT_HAS(seven.input(), "; camera_poses: seq-01, 12 poses");
   const auto notes = notes_of(seven);
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_HAS(notes.at("colours missing"), "the images of 7-Scenes are not registered");
@@ -358,11 +359,22 @@ TEST_F(KnownScene, TrueObjectsThatAreElsewhereAreRefusedOrReported) {
   EXPECT_HAS(outcome(kMillimetres),
              " m from what the camera measured there (median of the depth); with positions in "
              "millimetres it is ");
+  EXPECT_HAS(outcome([](RigidTransform X) {
+               X.translation() /= 1000;
+               return X;
+             }),
+             "; with positions 1000 times as large it is ");
   EXPECT_HAS(outcome(kTransposed), "; with transposed rotations it is ");
   EXPECT_HAS(outcome(kFlipped), "; with y and z of the body reversed (as in OpenGL) it is ");
   EXPECT_HAS(outcome(kInverse), "poses.txt: no object is in the image of any frame: object is at x ");
-  EXPECT_HAS(outcome(kInverse), "; with the inverse poses one is: expected object frame to camera frame");
-  EXPECT_HAS(outcome(kFlippedParent), "; with y and z of the parent frame reversed (as in OpenGL) one is");
+  EXPECT_HAS(outcome(kInverse), "; with the inverse poses, object is ");
+  EXPECT_HAS(outcome(kFlippedParent),
+             "; with y and z of the parent frame reversed (as in OpenGL), object is ");
+  EXPECT_HAS(outcome([](const RigidTransform& X) {
+               return pose({0, 0, -2}, {1, 0.5, 0}) * X;
+             }),
+             " m in frame 0: expected")
+      << "no cause explains it";
   EXPECT_HAS(outcome([](RigidTransform X) {
                X.translation().x() += 0.5;
                return X;
@@ -373,6 +385,36 @@ TEST_F(KnownScene, TrueObjectsThatAreElsewhereAreRefusedOrReported) {
                return X;
              }),
              "poses.txt: has no known pose");
+}
+
+// The poses of the object are those in a world V, whose origin is far from the camera.
+TEST_F(KnownScene, TrueObjectsInAWorldAreRefusedWithTheirCause) {
+  write_own("own");
+  folder_.write("own/truth/object.obj", "");
+  const RigidTransform X_VW = pose({2, 3, -4}, {0.5, 0, 0.2});
+  const Change to_V = [&](const RigidTransform& X) { return X_VW * X; };
+  const Change inverse = [&](const RigidTransform& X) { return (X_VW * X).inverse(); };
+  const auto refused = [&](const Change& of_object, const Change& of_camera) {
+    folder_.write("own/truth/poses.txt", matrices(Poses(kFrames, kX_WO), of_object));
+    folder_.write("own/poses.txt", matrices(camera_poses(), of_camera));
+    return refusal([&] { scene(settings("own", "poses.txt")); });
+  };
+  EXPECT_HAS(refused(to_V, to_V), "; with poses object to world, object is ");
+  EXPECT_HAS(refused(inverse, to_V), "; with poses world to object, object is ");
+  const std::string camera = ", and the inverse poses of the camera, object is ";
+  EXPECT_HAS(refused(to_V, inverse), "; with poses object to world" + camera);
+  EXPECT_HAS(refused(inverse, inverse), "; with poses world to object" + camera);
+}
+
+TEST_F(KnownScene, AWrongDepthScaleIsRefused) {
+  write_own("own");
+  folder_.write("own/truth/object.obj", ""), folder_.write("own/truth/poses.txt", matrices(object_poses()));
+  for (const auto& [factor, text] : {std::pair(0.1, "with 10 times"), {0.2, "with 5 times"}}) {
+    write_camera("own", factor / 1000);
+    EXPECT_HAS(
+        refusal([&] { scene(settings("own")); }),
+        std::string("own: its depths do not fit its true objects; ") + text + " the depth scale, object is");
+  }
 }
 
 }  // namespace

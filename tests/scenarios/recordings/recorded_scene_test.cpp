@@ -153,7 +153,14 @@ TEST_F(RecordedSceneTest, AFirstFrameWithoutUsablePointsIsRefused) {
   write_camera(folder_, "20", "empty/");
   settings.path = (folder_ / "empty").string();
   EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
-             "its first frame has no point within scenario.max_depth_m = 3");
+             "its first frame has no point within scenario.max_depth_m = 3.000000: 1 read: 0 % of 6 points "
+             "measured, without colours: expected a frame of measured points, in metres");
+  folder_.write_png("empty/depth/0000.png", 3, 2, PNG_FORMAT_LINEAR_Y,
+                    std::vector<std::uint16_t>(6, 5000).data());
+  EXPECT_HAS(
+      refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
+      "depth 5 to 5 m, without colours: expected a frame of measured points, in metres; the depth scale "
+      "may be wrong");
 }
 
 // A cloud in the coordinates of a map is refused. A single far point is not.
