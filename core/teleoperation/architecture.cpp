@@ -125,6 +125,7 @@ class WaveHand final : public HandEnd {
     HandEnd::observe(motion);
     prediction_.observe(motion.displacement_m / motion.ticks, motion.applied_N);
     sent_.wave.add(wave_ - std::sqrt(2 / impedance_) * motion.applied_N, motion.ticks * tick_s_);
+    receiver_.prolong((motion.ticks - 1) * tick_s_);
   }
   Message message() const override { return sent_; }
   Vec3 force(const Arrival& arrival) override {

@@ -83,6 +83,8 @@ class WaveReceiver {
  public:
   // Returns the wave for the coming tick.
   Vec3 next(const Wave& newest, double tick_s);
+  // The last wave lasted so much longer, because ticks were missed. The next waves are smaller by its energy.
+  void prolong(double time_s) { used_.add(used_.value, time_s); }
 
  private:
   Wave used_;

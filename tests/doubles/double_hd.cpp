@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/doubles/device_double.h"
 
@@ -18,7 +19,7 @@ struct ErrorInfo {
   int internal_code;
   unsigned device;
 };
-thread_local unsigned last_error = 0;
+thread_local std::vector<unsigned> errors;  // a stack: the newest is read first
 
 constexpr unsigned kHandle = 3, kInvalid = 0xFFFFFFFF;
 constexpr unsigned kBadHandle = 0x0104, kCommunication = 0x0302, kIllegalBegin = 0x0400, kIllegalEnd = 0x0401;
@@ -60,9 +61,9 @@ void stop_scheduler() {
 
 void keep(int error) {
   if (device.state().is_unplugged)
-    last_error = kCommunication;
+    errors.push_back(kCommunication);
   else if (error != 0)
-    last_error = static_cast<unsigned>(error);
+    errors.push_back(static_cast<unsigned>(error));
 }
 
 // Writes the 4x4 transform column by column.
@@ -88,9 +89,10 @@ DeviceDouble* device_double() {
 unsigned hdInitDevice(const char* name) {
   const DeviceDouble::State state = device.state();
   const bool is_there = state.devices > 0 && (name == nullptr || std::strcmp(name, "Left Device") == 0);
-  last_error = is_there ? static_cast<unsigned>(state.switching_error) : kCommunication;
-  device.open(last_error == 0);
-  return last_error == 0 ? kHandle : kInvalid;
+  const unsigned error = is_there ? static_cast<unsigned>(state.switching_error) : kCommunication;
+  if (error != 0) errors.push_back(error);
+  device.open(error == 0);
+  return error == 0 ? kHandle : kInvalid;
 }
 
 void hdDisableDevice(unsigned) {
@@ -98,19 +100,19 @@ void hdDisableDevice(unsigned) {
 }
 
 void hdMakeCurrentDevice(unsigned handle) {
-  if (handle != kHandle) last_error = kBadHandle;
+  if (handle != kHandle) errors.push_back(kBadHandle);
 }
 
 void hdBeginFrame(unsigned handle) {
-  if (handle != kHandle) last_error = kBadHandle;
-  if (is_in_frame) last_error = kIllegalBegin;
+  if (handle != kHandle) errors.push_back(kBadHandle);
+  if (is_in_frame) errors.push_back(kIllegalBegin);
   is_in_frame = true;
   keep(0);
 }
 
 void hdEndFrame(unsigned handle) {
-  if (handle != kHandle) last_error = kBadHandle;
-  if (!is_in_frame) last_error = kIllegalEnd;
+  if (handle != kHandle) errors.push_back(kBadHandle);
+  if (!is_in_frame) errors.push_back(kIllegalEnd);
   is_in_frame = false;
   device.enter(DeviceDouble::write_force);
   const int error = device.state().writing_error;
@@ -119,9 +121,10 @@ void hdEndFrame(unsigned handle) {
 }
 
 ErrorInfo hdGetError() {
-  const ErrorInfo info{last_error, last_error == 0 ? 0 : -28, kHandle};
-  last_error = 0;
-  return info;
+  if (errors.empty()) return {0, 0, kHandle};
+  const ErrorInfo newest{errors.back(), -28, kHandle};
+  errors.pop_back();
+  return newest;
 }
 
 const char* hdGetErrorString(unsigned) {
@@ -163,7 +166,7 @@ const char* hdGetString(unsigned) {
 }
 
 void hdSetDoublev(unsigned what, const double* values) {
-  if (!is_in_frame) last_error = 0x0402;
+  if (!is_in_frame) errors.push_back(0x0402);
   std::copy(values, values + 3, what == 0x2700 ? commanded.begin() : commanded.begin() + 3);
 }
 

@@ -300,7 +300,7 @@ SheetUpdate SheetTracker::on_frame(std::shared_ptr<const NeighbourSearch> frame,
   reserve_for_newest();
   if (!continues) return reacquire(proxy.p_W);
   recentre(ahead.norm() < kMiddle * unit_m_ ? Vec3(proxy.p_W + ahead) : proxy.p_W);
-  if (shows_ == Shows::points) level();
+  level();
   const double before = clearance(proxy.p_W);
   const PatchFrame unmoved = patch();
   before_.frame = unmoved, before_.map = map_, before_.known = false;

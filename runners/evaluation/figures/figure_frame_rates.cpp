@@ -30,7 +30,9 @@ std::vector<Threshold> thresholds(const SweepResult& lifts) {
   for (std::size_t rate = 0; rate < rates.size(); ++rate) {
     Threshold& threshold = list.emplace_back(Threshold{rates[rate]});
     for (std::size_t i = 0; i < accelerations.size(); ++i) {
-      const bool pops = popped[lifts.run(lifts.cell_at({rate, i}), 0)] > 0.5;
+      const double outcome = popped[lifts.run(lifts.cell_at({rate, i}), 0)];
+      if (std::isnan(outcome)) threshold.pops = outcome;  // no threshold is known, so its claim fails
+      const bool pops = outcome > 0.5;
       if (pops) threshold.pops = std::min(threshold.pops, accelerations[i]);
       if (!pops && threshold.pops < accelerations[i]) ++threshold.out_of_order;
       if (!pops && threshold.pops > accelerations[i]) threshold.survives = accelerations[i];

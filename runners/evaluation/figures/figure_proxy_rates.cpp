@@ -133,7 +133,7 @@ std::vector<Predecessor> predecessors(FigureContext& context, const std::vector<
     std::vector<Experiment> runs;
     for (const Predecessor& p : list)
       runs.push_back(rise(p.steps, p.step_m, 0.5 * (p.holds + p.pops) * kContactRadius_m));
-    const std::vector<double> popped = context.measure(runs, popped_through);
+    const std::vector<double> popped = known_pop_throughs(context, runs);
     for (std::size_t i = 0; i < list.size(); ++i)
       (popped[i] > 0.5 ? list[i].pops : list[i].holds) = 0.5 * (list[i].holds + list[i].pops);
   }

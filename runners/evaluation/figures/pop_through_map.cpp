@@ -8,6 +8,7 @@
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "analysis/statistics/proportion.h"
+#include "core/parameters/input_error.h"
 #include "runners/experiment/settings/second_implementation.h"
 
 namespace remote_touch {
@@ -18,6 +19,14 @@ std::string seed_setting(int seed) {
 
 std::string noise_setting(double noise) {
   return "scenario.noise_sigma_m=" + std::to_string(noise * kContactRadius_m);
+}
+
+std::vector<double> known_pop_throughs(FigureContext& context, const std::vector<Experiment>& lifts) {
+  std::vector<double> popped = context.measure(lifts, popped_through);
+  if (std::ranges::any_of(popped, [](double lift) { return std::isnan(lift); }))
+    throw InputError("popped_through",
+                     "is unknown for a lift of a figure: expected a known surface below it");
+  return popped;
 }
 
 double survived_share(FigureContext& context, const std::vector<Experiment>& lifts) {

@@ -100,17 +100,18 @@ double FollowSurface::risen_m(const Vec3& at_W, double time_s) const {
          scenario_.surface_height(at_W.x(), at_W.z(), 0);
 }
 
-// Compares the heights at the ends and in the middle of the line during the motion. Heights that are unknown
-// count as at rest.
+// Compares the heights along the line during the motion. Heights that are unknown count as at rest.
 void FollowSurface::follow(const Settings& s) {
-  constexpr double kEvery_s = 0.005, kSame_m = 1e-9, kMostTimes = 20000;
+  constexpr double kEvery_s = 0.005, kSame_m = 1e-9, kMostTimes = 20000, kMostHeights = 2e5;
   if (scenario_.frame_count() == 1) return;
   const double times = std::min(std::ceil(path_.duration_s() / kEvery_s), kMostTimes);
+  const Vec3 line_m = level_line_m(s);
+  const double pieces = std::ceil(std::clamp(line_m.norm() / kSampling_m, 2.0, kMostHeights / times));
   for (int i = 1; i <= times; ++i) {
     const double time_s = path_.duration_s() * i / times, first_m = risen_m(s.from_m, time_s);
     moves_ |= std::abs(first_m) > kSame_m;
-    for (const double part : {0.5, 1.0})
-      if (std::abs(risen_m(s.from_m + part * level_line_m(s), time_s) - first_m) > kSame_m)
+    for (double piece = 1; piece <= pieces; ++piece)
+      if (std::abs(risen_m(s.from_m + piece / pieces * line_m, time_s) - first_m) > kSame_m)
         throw InputError("trajectory.name = follow-surface",
                          "the surface changes its shape or place along the line at " +
                              std::to_string(time_s) +

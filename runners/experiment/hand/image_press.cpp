@@ -50,7 +50,7 @@ ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
   if (settings.row >= image_.camera.height || settings.column >= image_.camera.width)
     throw InputError("trajectory.row, column", "expected below " + std::to_string(image_.camera.height) +
                                                    " and " + std::to_string(image_.camera.width));
-  BridgeableImage image(std::move(first.depth), image_.camera.fx, settings.bridge_m);
+  BridgeableImage image(std::move(first.depth), image_.camera, settings.bridge_m);
   const NearestObject object = choose_pixel(image);
   const double surface_m = seen(0).supported_m;
   if (std::isnan(surface_m)) refuse_pixel(image);
@@ -63,7 +63,7 @@ ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
 
 bool ImagePress::has_support(const DepthImage& image, int pixel) const {
   const int u = pixel % image.width, v = pixel / image.width;
-  return std::isfinite(supported_depth(image, u, v, image_.camera.fx, support()));
+  return std::isfinite(supported_depth(image, u, v, image_.camera, support()));
 }
 
 // Sets row_ and column_ to the pixel to press: the pixel of the nearest large object that can be touched and
@@ -109,7 +109,7 @@ void ImagePress::refuse_pixel(BridgeableImage& image) const {
   std::string expected = "a smaller margin_m or a larger bridge_m";
   for (const bool bridges : {false, true}) {
     const DepthImage& surface = bridges ? image.closed() : image.measured();
-    const auto nearest = nearest_supported(surface, {row_, column_}, image_.camera.fx, support());
+    const auto nearest = nearest_supported(surface, {row_, column_}, image_.camera, support());
     if (!nearest) continue;
     expected = "the nearest pixel that can be touched, " + pixel_text(nearest->row, nearest->column) +
                ", or " + expected;
@@ -142,21 +142,21 @@ void ImagePress::note_missed_object(const NearestObject& object, const DepthImag
 const ImagePress::Seen& ImagePress::seen(int frame) const {
   const auto known = seen_.find(frame);
   if (known != seen_.end()) return known->second;
-  const double focal_px = image_.camera.fx;
+  const CameraIntrinsics& camera = image_.camera;
   const FrameImage image = image_of(scenario_, frame, image_, kSubject);
   const DepthImage& measured = image.depth;
   Seen now;
   now.X_WC = image.layout.X_WC;
-  now.supported_m =
-      supported_depth(bridges_holes_ ? bridged(measured, focal_px, settings_.bridge_m) : measured, column_,
-                      row_, focal_px, support());
+  now.supported_m = supported_depth(bridges_holes_ ? bridged(measured, camera, settings_.bridge_m) : measured,
+                                    column_, row_, camera, support());
   // A later frame with a hole at the pixel uses the depth of the first frame, to convert the margins to
   // pixels.
   double z = measured.z_m[static_cast<std::size_t>(row_) * measured.width + column_];
   if (!std::isfinite(z) && frame != 0) z = seen(0).supported_m;
   const auto around = [&](double radius_m) {
-    const int half = reach_px(measured, focal_px, radius_m, z);
-    return PixelWindow{column_ - half, column_ + half, row_ - half, row_ + half};
+    const int across = reach_px(measured, camera.fx, radius_m, z);
+    const int down = reach_px(measured, camera.fy, radius_m, z);
+    return PixelWindow{column_ - across, column_ + across, row_ - down, row_ + down};
   };
   now.shown_m = median_depth(measured, around(0.5 * settings_.bridge_m));
   now.nearest_m = nearest_depth(measured, around(std::max(settings_.margin_m, 0.5 * settings_.bridge_m)));

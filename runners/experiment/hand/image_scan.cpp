@@ -117,7 +117,7 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
   const auto flight_offset = [&](int u, int from, int to) {
     const double other = depth_at(u == from ? to : from);
     const double planned = std::min(other - depth_at(u), 0.0) - s.clearance_m;
-    const int half = reach_px(image, camera.fx, s.margin_m, std::min(depth_at(from), depth_at(to)));
+    const int half = reach_px(image, camera.fy, s.margin_m, std::min(depth_at(from), depth_at(to)));
     const double nearest = nearest_depth(image, {from, to, scan_.row - half, scan_.row + half});
     // No detour is needed if the hand is at least edge_jump_m in front of the nearest pixel. A hand that is
     // nearer could touch it.

@@ -30,7 +30,7 @@ std::vector<ScanPatch> supported_patches(const std::vector<double>& depth, int f
 class RowSearch {
  public:
   RowSearch(const DepthImage& image, const CameraIntrinsics& camera, const ScanRowRequest& request)
-      : image_(image, camera.fx, request.bridge_m), camera_(camera), request_(request) {
+      : image_(image, camera, request.bridge_m), camera_(camera), request_(request) {
     first_ = request.first_column >= 0 ? request.first_column : 0;
     last_ = request.last_column >= 0 ? request.last_column : image.width - 1;
     object_ = nearest_large_object(image_, camera);
@@ -79,7 +79,7 @@ class RowSearch {
 
   double surface_depth(int u, int row, double edge_jump_m, bool bridges) {
     const DepthImage& image = bridges ? image_.closed() : image_.measured();
-    const double z = supported_depth(image, u, row, camera_.fx, {edge_jump_m, request_.margin_m});
+    const double z = supported_depth(image, u, row, camera_, {edge_jump_m, request_.margin_m});
     return is_within_span(z) ? z : std::nan("");
   }
 

@@ -10,15 +10,17 @@
 
 namespace remote_touch {
 
-double supported_depth(const DepthImage& image, int u, int v, double focal_px, const Support& support) {
+double supported_depth(const DepthImage& image, int u, int v, const CameraIntrinsics& camera,
+                       const Support& support) {
   if (u < 0 || v < 0 || u >= image.width || v >= image.height) return std::nan("");
   const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
   if (!(std::isfinite(z) && z > 0)) return std::nan("");
-  const int half = reach_px(image, focal_px, support.margin_m, z);
-  if (u <= half || v <= half || u + half >= image.width || v + half >= image.height) return std::nan("");
+  const int across = reach_px(image, camera.fx, support.margin_m, z);
+  const int down = reach_px(image, camera.fy, support.margin_m, z);
+  if (u <= across || v <= down || u + across >= image.width || v + down >= image.height) return std::nan("");
   std::vector<double> seen;
-  for (int y = v - half; y <= v + half; ++y) {
-    for (int x = u - half; x <= u + half; ++x) {
+  for (int y = v - down; y <= v + down; ++y) {
+    for (int x = u - across; x <= u + across; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
       // NaN fails both comparisons, so a hole ends the search too.
       const bool joined = std::abs(image.z_m[i] - image.z_m[i - 1]) <= support.edge_jump_m &&
@@ -36,14 +38,14 @@ int reach_px(const DepthImage& image, double focal_px, double length_m, double d
   return static_cast<int>(std::clamp(focal_px * length_m / depth_m, 1.0, most));
 }
 
-std::optional<ImagePixel> nearest_supported(const DepthImage& image, const ImagePixel& to, double focal_px,
-                                            const Support& support) {
+std::optional<ImagePixel> nearest_supported(const DepthImage& image, const ImagePixel& to,
+                                            const CameraIntrinsics& camera, const Support& support) {
   std::optional<ImagePixel> nearest;
   long least = std::numeric_limits<long>::max();
   for (int v = 0; v < image.height; ++v)
     for (int u = 0; u < image.width; ++u) {
       const long across = u - to.column, down = v - to.row, squared = across * across + down * down;
-      if (squared >= least || std::isnan(supported_depth(image, u, v, focal_px, support))) continue;
+      if (squared >= least || std::isnan(supported_depth(image, u, v, camera, support))) continue;
       least = squared;
       nearest = ImagePixel{v, u};
     }
@@ -66,19 +68,22 @@ bool is_rim(const DepthImage& image, int u, int v) {
 
 }  // namespace
 
-DepthImage bridged(const DepthImage& image, double focal_px, double hole_m) {
+// Distances are in pixels along a row.
+DepthImage bridged(const DepthImage& image, const CameraIntrinsics& camera, double hole_m) {
   constexpr double kMaxReach_px = 64;  // bounds the work for points close to the lens
+  const double row_distance = camera.fx / camera.fy;
   DepthImage closed = image;
-  std::vector<int> distance_squared(image.z_m.size(), std::numeric_limits<int>::max());
+  std::vector<double> distance_squared(image.z_m.size(), std::numeric_limits<double>::infinity());
   for (int v = 0; v < image.height; ++v)
     for (int u = 0; u < image.width; ++u) {
       const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
       if (!(std::isfinite(z) && z > 0) || !is_rim(image, u, v)) continue;
-      const double reach = std::min(0.5 * hole_m * focal_px / z, kMaxReach_px);
-      const int half = static_cast<int>(reach);
-      for (int y = std::max(0, v - half); y <= std::min(image.height - 1, v + half); ++y)
-        for (int x = std::max(0, u - half); x <= std::min(image.width - 1, u + half); ++x) {
-          const int squared = (x - u) * (x - u) + (y - v) * (y - v);
+      const double reach = std::min(0.5 * hole_m * camera.fx / z, kMaxReach_px);
+      const int across = static_cast<int>(reach);
+      const int down = static_cast<int>(std::min(reach / row_distance, kMaxReach_px));
+      for (int y = std::max(0, v - down); y <= std::min(image.height - 1, v + down); ++y)
+        for (int x = std::max(0, u - across); x <= std::min(image.width - 1, u + across); ++x) {
+          const double below = (y - v) * row_distance, squared = (x - u) * (x - u) + below * below;
           const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
           if (squared > reach * reach || std::isfinite(image.z_m[i]) || squared > distance_squared[i])
             continue;
@@ -90,7 +95,7 @@ DepthImage bridged(const DepthImage& image, double focal_px, double hole_m) {
 }
 
 const DepthImage& BridgeableImage::closed() {
-  if (!closed_) closed_ = bridged(measured_, focal_px_, hole_m_);
+  if (!closed_) closed_ = bridged(measured_, camera_, hole_m_);
   return *closed_;
 }
 

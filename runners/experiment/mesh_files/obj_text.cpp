@@ -81,7 +81,8 @@ class ShapeLines {
   }
 
   // Drops the colour, because the library skips vertices whose colour does not have three numbers, and the
-  // weight w, by which it would divide: w belongs to rational curves and surfaces.
+  // weight w, by which it would divide: w belongs to rational curves and surfaces. Puts a digit before a
+  // leading point, because the library skips vertices with such a number.
   void add_position(std::string_view line) {
     const std::vector<std::string_view> numbers = words_before_comment(line.substr(1));
     if (numbers.size() < 3) refuse_line(obj_, at_, "a vertex has fewer than three coordinates");
@@ -92,7 +93,7 @@ class ShapeLines {
     for (const std::string_view number : numbers)
       if (!is_number(number)) refuse_line(obj_, at_, in_quotes(number) + " in a vertex: expected a number");
     text_ += 'v';
-    for (std::size_t i = 0; i < 3; ++i) text_.append(" ").append(numbers[i]);
+    for (std::size_t i = 0; i < 3; ++i) text_.append(numbers[i][0] == '.' ? " 0" : " ").append(numbers[i]);
     text_ += '\n';
     ++vertices_;
   }

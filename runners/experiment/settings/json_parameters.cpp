@@ -67,7 +67,9 @@ struct Reader {
     return true;
   }
   bool operator()(std::uint64_t* out) const {
-    if (!json.is_number_unsigned()) return false;
+    // A positive integer from a text is unsigned; one that was made in memory may be signed.
+    if (!json.is_number_integer()) return false;
+    if (!json.is_number_unsigned() && json.get<std::int64_t>() < 0) return false;
     *out = json.get<std::uint64_t>();
     return static_cast<double>(*out) >= p.low && static_cast<double>(*out) <= p.high;
   }

@@ -19,11 +19,15 @@ double shown_depth(const PointCloud& cloud, const RigidTransform& X_CW, const Ve
   const double row = std::floor(camera.fy * p_C.y() / p_C.z() + camera.cy + 0.5);
   if (!(column >= 0 && row >= 0 && column < camera.width && row < camera.height)) return unknown;
   const int u = static_cast<int>(column), v = static_cast<int>(row);
-  const int reach = static_cast<int>(std::clamp(camera.fx * reach_m / p_C.z(), 1.0, kMaxReach_px));
+  const auto reach_px = [&](double focal_px) {
+    return static_cast<int>(std::clamp(focal_px * reach_m / p_C.z(), 1.0, kMaxReach_px));
+  };
+  const int across = reach_px(camera.fx), down = reach_px(camera.fy);
   std::vector<double> depths;
-  for (int y = std::max(0, v - reach); y <= std::min<int>(camera.height - 1, v + reach); ++y)
-    for (int x = std::max(0, u - reach); x <= std::min<int>(camera.width - 1, u + reach); ++x) {
-      if ((x - u) * (x - u) + (y - v) * (y - v) > reach * reach) continue;
+  for (int y = std::max(0, v - down); y <= std::min<int>(camera.height - 1, v + down); ++y)
+    for (int x = std::max(0, u - across); x <= std::min<int>(camera.width - 1, u + across); ++x) {
+      const int right = (x - u) * down, below = (y - v) * across;
+      if (right * right + below * below > across * across * down * down) continue;
       const std::size_t i = static_cast<std::size_t>(y) * camera.width + x;
       if (cloud.is_measured(i)) depths.push_back((X_CW * cloud.point(i)).z());
     }

@@ -43,6 +43,7 @@ class OpenHaptics : public GatedDevice {
   void switch_off() noexcept override;
 
   void learn_traits();
+  HdLibrary::Error take_errors() const noexcept;
   DeviceFault newest_error(const char* what) const noexcept;
   bool frame(DeviceCycle& cycle) noexcept;
   bool is_scheduler_done() noexcept;
@@ -63,9 +64,10 @@ class OpenHaptics : public GatedDevice {
 
 OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject, Clock& clock)
     : GatedDevice(clock) {
+  take_errors();  // those that an earlier device has left
   const bool is_default = address.empty() || address == "Default Device";
   device_ = hd_.init_device(is_default ? nullptr : address.c_str());
-  const HdLibrary::Error error = hd_.get_error();
+  const HdLibrary::Error error = take_errors();
   if (error.code != 0 || device_ == HdLibrary::invalid_handle) {
     const char* text = hd_.get_error_string(error.code);
     throw InputError(subject, std::string("cannot be opened (") + (text != nullptr ? text : "unknown error") +
@@ -90,12 +92,12 @@ void OpenHaptics::learn_traits() {
   const auto number = [this](unsigned what) {
     double value = 0;
     hd_.get_doublev(what, &value);
-    return hd_.get_error().code == 0 ? value : 0;
+    return take_errors().code == 0 ? value : 0;
   };
   const auto axes = [this](unsigned what) {
     int count = 0;
     hd_.get_integerv(what, &count);
-    return hd_.get_error().code == 0 && count >= 6 ? 6 : 3;
+    return take_errors().code == 0 && count >= 6 ? 6 : 3;
   };
   if (const char* model = hd_.get_string(HdLibrary::device_model_type); model != nullptr)
     traits_.name = model;
@@ -107,8 +109,17 @@ void OpenHaptics::learn_traits() {
   if (traits_.actuated_axes == 6) traits_.max_torque_Nm = number(HdLibrary::nominal_max_torque) * kNmPerMNm;
 }
 
+// Returns the newest error. The library keeps a stack of errors. It is emptied, so that an older error is not
+// taken for that of a later call.
+HdLibrary::Error OpenHaptics::take_errors() const noexcept {
+  constexpr int kMost = 100;  // for a library that never runs out of errors
+  const HdLibrary::Error newest = hd_.get_error();
+  for (int i = 0; newest.code != 0 && i < kMost && hd_.get_error().code != 0;) ++i;
+  return newest;
+}
+
 DeviceFault OpenHaptics::newest_error(const char* what) const noexcept {
-  const HdLibrary::Error error = hd_.get_error();
+  const HdLibrary::Error error = take_errors();
   return error.code == 0 ? DeviceFault{} : fault_of(kHdFaults, static_cast<int>(error.code), what);
 }
 

@@ -172,6 +172,26 @@ TEST(SweepAnswers, CountIndependentRunsByTheConfiguration) {
   EXPECT_HAS(sweep_answer(sweep(), "{}", question).caption, "does not tell which runs share random numbers");
 }
 
+// What the runs of a pair share is said of all pairs, not of those of the first cell, which may draw nothing.
+TEST(SweepAnswers, TellWhatPairsShare) {
+  SweepQuestion question;
+  question.differences = {"max_force"}, question.between = "x";
+  const auto caption = [&](std::string config, const char* first_axis) {
+    const std::string spacing = R"("scenario.spacing_m", "values": [0.005, 0.01])";
+    config.replace(config.find(spacing), spacing.size(), first_axis);
+    config.replace(config.find("0.001"), 5, "0");
+    return sweep_answer(sweep(), config, question).caption;
+  };
+  const std::string registered =
+      R"(, "slave": {"natural_frequency_hz": 10}, "feedback": {"force": "none"}, "registration": {"offset_m": 0})";
+  EXPECT_HAS(caption(kConfig, R"("scenario.noise_sigma_m", "values": [0, 0.002])"),
+             "whose noise is independent.");
+  EXPECT_HAS(caption(kConfig, R"("scenario.spacing_m", "values": [0.005, 0.02])"),
+             "which draw no random number.");
+  EXPECT_HAS(caption(config_over_x(registered), R"("registration.offset_m", "values": [0, 0.002])"),
+             "some of which share random numbers.");
+}
+
 // All tests of one command are one family.
 TEST(SweepAnswers, AdjustAllTestsTogether) {
   SweepQuestion question;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/measures/no_value.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/note_kinds.h"
 #include "tests/support/test_files.h"
 
@@ -48,6 +50,28 @@ TEST(SweepNotes, AResultWithoutNotesHasNoLines) {
   SweepResult result = two_by_three(1);
   result.note_kinds.clear(), result.notes.clear();
   EXPECT_EQ(note_lines(result), Lines{});
+}
+
+// A run of three ticks at these distances; its first frame comes in the second tick.
+std::vector<Note> notes_of_outcome(double first_m, double second_m, double last_m, bool has_frames = true) {
+  Trace trace;
+  for (const double distance_m : {first_m, second_m, last_m}) {
+    RenderOutput out;
+    out.frame_index = has_frames && trace.length() > 0 ? 0 : -1;
+    trace.append(0.001 * static_cast<double>(trace.length()), {}, out, {distance_m, distance_m, 0});
+  }
+  std::vector<Note> notes;
+  add_unknown_outcome(built_in_measures(), trace, notes);
+  return notes;
+}
+
+TEST(UnknownOutcome, HasANoteIfTheDistanceWasKnownWithAFrame) {
+  EXPECT_TRUE(notes_of_outcome(0.01, 0.01, 0.01).empty());
+  EXPECT_TRUE(notes_of_outcome(0.01, 0.01, 0.01, false).empty()) << "another note says that no frame came";
+  EXPECT_TRUE(notes_of_outcome(0.01, kNoValue, kNoValue).empty());
+  const std::vector<Note> notes = notes_of_outcome(0.01, 0.01, kNoValue);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_HAS(notes[0].text, "true surface is unknown in 33.3 % of the ticks, last at 0.002 s");
 }
 
 TEST(NoteCounts, CountSingleRunsAndSweepsTogether) {

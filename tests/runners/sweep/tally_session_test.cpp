@@ -87,6 +87,14 @@ TEST_F(TallySessions, AnswerTheQuestionsThatNeedNoSingleRuns) {
           else
             EXPECT_NEAR((*values)[row], expected, 1e-12 + 1e-9 * std::abs(expected)) << column.name;
         }
+  for (std::size_t t = 0; t < ours.tables.size(); ++t)
+    for (std::size_t i = 0; i < ours.tables[t].columns.size(); ++i) {
+      const Column &column = ours.tables[t].columns[i], &expected = theirs.tables[t].columns[i];
+      EXPECT_EQ(column.name, expected.name);
+      if (std::holds_alternative<std::vector<std::int32_t>>(column.values)) {
+        EXPECT_EQ(column.values, expected.values) << column.name;
+      }
+    }
   question = {};
   question.differences = {"max_penetration"}, question.between = "noise_sigma_m";
   EXPECT_HAS(refusal([&] { sweep_answer(tally, config, question); }), "a tally does not keep pairs of runs");

@@ -64,8 +64,7 @@ bool can_be_touched(const TruthFrame& frame, const ImagePixel& at) {
   const std::size_t pixel = pixel_of(frame.camera(), at.row, at.column);
   const Vec3 normal_C = true_normal_C(frame.truth, frame.source, frame.exact, pixel);
   if (!(-frame.true_point_C(at).normalized().dot(normal_C) >= kMinFacing)) return false;
-  const double depth_m =
-      supported_depth(frame.measured.depth, at.column, at.row, frame.camera().fx, Support{});
+  const double depth_m = supported_depth(frame.measured.depth, at.column, at.row, frame.camera(), Support{});
   return std::abs(depth_m - frame.exact.depth.z_m[pixel]) <= kFarthest_m;  // false if the depth is NaN
 }
 

@@ -205,8 +205,10 @@ TEST(Bridging, ClosesHolesUpToTheLimit) {
     DepthImage image{50, 40, {}};
     for (int i = 0; i < 50 * 40; ++i)
       image.z_m.push_back(random() < p * 4294967296.0 ? 0.3 + 0.1 * (random() % 4) : kNaN);
-    const double focal = 510, hole = 0.008;  // reaches 6.8, 5.1, 4.08 and 3.4 pixels: no distance is equal
-    const DepthImage closed = bridged(image, focal, hole);
+    // Reaches of 6.8, 5.1, 4.08 and 3.4 pixels along a row, half as many along a column: no distance is
+    // equal.
+    const double focal = 510, hole = 0.008;
+    const DepthImage closed = bridged(image, {.fx = focal, .fy = focal / 2}, hole);
     int filled = 0;
     for (int v = 0; v < 40; ++v)
       for (int u = 0; u < 50; ++u) {
@@ -221,7 +223,7 @@ TEST(Bridging, ClosesHolesUpToTheLimit) {
         double best = kNaN, least = 1e9;
         for (int y = 0; y < 40; ++y)
           for (int x = 0; x < 50; ++x) {
-            const double z = at(image, x, y), d = std::hypot(x - u, y - v);
+            const double z = at(image, x, y), d = std::hypot(x - u, 2 * (y - v));
             bool is_rim = false;
             for (int b = std::max(0, y - 1); b <= std::min(39, y + 1); ++b)
               for (int a = std::max(0, x - 1); a <= std::min(49, x + 1); ++a)

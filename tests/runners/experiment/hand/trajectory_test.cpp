@@ -12,6 +12,7 @@
 #include "runners/experiment/hand/polyline_path.h"
 #include "runners/experiment/hand/press.h"
 #include "runners/experiment/hand/waypoints.h"
+#include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/camera_scene.h"
 #include "scenarios/synthetic/flat_grid.h"
 #include "scenarios/synthetic/moving_lift.h"
@@ -178,7 +179,6 @@ TEST(FollowSurface, LiftsOffOverSteps) {
   EXPECT_GT(inside, 5000);
 }
 
-// A line of no length has no direction: the hand would be nowhere.
 // The depth is that below the true surface, as it moves or as the newest frame shows it.
 TEST(FollowSurface, FollowsASurfaceThatRisesAndSinksAsAWhole) {
   MovingShape::Settings moves;
@@ -203,8 +203,12 @@ TEST(FollowSurface, RefusesASurfaceThatChangesAlongItsLine) {
   rocks.motion.rock_deg = 5;
   for (const auto& settings : {slides, rocks})
     EXPECT_THROW(FollowSurface({}, MovingShape(settings, NoiseKey{1}, scenes::kernels())), InputError);
+  // The heart beats between the ends and the middle of the line, which are on its table.
+  const BeatingHeart heart({}, NoiseKey{1}, scenes::kernels());
+  EXPECT_THROW(FollowSurface({{-0.15, 0, 0}, {0.25, 0, 0}}, heart), InputError);
 }
 
+// A line of no length has no direction: the hand would be nowhere.
 TEST(FollowSurface, RefusesEndsThatDifferOnlyInHeight) {
   FollowSurface::Settings s;
   EXPECT_EQ(validate(s), "");

@@ -196,7 +196,7 @@ TEST_F(ChangedMeshTest, ObjNumbersAreWholeWords) {
     EXPECT_HAS(vertex(std::string("v 1 ") + number + " 0"),
                std::string("x.obj: cannot be read (line 4: '") + number)
         << number;
-  for (const char* number : {"1.", "+1", "1e0", "0.1E+01", "1.0000", "01"})
+  for (const char* number : {"1.", "+1", "1e0", "0.1E+01", "1.0000", "01", ".5", "+.5"})
     EXPECT_EQ(vertex(std::string("v 1 ") + number + " 0"), kRead) << number;
   EXPECT_HAS(vertex("v 1 1 0 1 1"), "line 4: a vertex has 5 numbers: expected x y z, then w, or a colour");
   EXPECT_HAS(vertex("v 1 1 0 0 0 0 0 0"), "line 4: a vertex has 8 numbers");

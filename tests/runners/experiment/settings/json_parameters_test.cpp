@@ -64,6 +64,16 @@ TEST(ReadParameters, ATextHasNoZeroInIt) {
   EXPECT_EQ(title, "a b");
 }
 
+TEST(ReadParameters, AnIntegerMadeInMemoryMayBeSigned) {
+  std::uint64_t seed = 0;
+  const auto read = [&](int value) {
+    return refusal([&] { read_parameters({{"seed", value}}, {{"seed", &seed, 0, 10, ""}}, ""); });
+  };
+  EXPECT_EQ(read(1), "no InputError");
+  EXPECT_EQ(seed, 1u);
+  EXPECT_HAS(read(-1), "seed = -1: expected integers 0 to 10");
+}
+
 TEST(ReadParameters, AKeyOfAnyBytesIsShown) {
   Json object = Json::object();
   object[std::string("a\0\xff", 3)] = 1;

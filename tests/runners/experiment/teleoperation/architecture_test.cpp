@@ -264,6 +264,22 @@ TEST(Architecture, LostWavesLeaveNoErrorOfThePosition) {
   }
 }
 
+// A hand that is held still sends back what comes. Once it misses ticks, as it may live: the waves that follow
+// pay for it.
+TEST(Architecture, WavesOfMissedTicksHaveNoEnergyOfTheirOwn) {
+  const Plant p = plant_with(Feedback::wave);
+  const Ends ends = make_ends(p.remote.feedback, p.remote.slave, p.hand.mass_kg, kTick_s);
+  HandEnd::Arrival arrival;
+  arrival.has_come = true;
+  Vec3 force_N = Vec3::Zero();
+  for (int i = 0; i < 100; ++i) {
+    ends.hand->observe({Vec3::Zero(), Vec3::Zero(), force_N, i == 10 ? 20.0 : 1.0});
+    arrival.message.wave.add(Vec3(1, 0, 0), kTick_s);
+    force_N = ends.hand->force(arrival);
+  }
+  EXPECT_LE(ends.hand->message().wave.energy_J, arrival.message.wave.energy_J);
+}
+
 TEST(Architecture, AllocatesNothingInATick) {
   for (const Feedback force :
        {Feedback::slave_force, Feedback::passive_slave_force, Feedback::position_position, Feedback::wave}) {

@@ -52,6 +52,18 @@ TEST_F(OpenHapticsTest, HasTraitsInOurUnits) {
   EXPECT_DOUBLE_EQ(traits.max_torque_Nm, 0.3);
 }
 
+// Each of the three calls that read the state leaves an error.
+TEST_F(OpenHapticsTest, NoErrorOfATickReachesALaterOne) {
+  const auto device = open_open_haptics("", clock_);
+  std::vector<int> codes;
+  run_ticks(*device, 4, [&](int i) {
+    double_->set([i](DeviceDouble::State& state) { state.reading_error = i == 0 ? 0x0300 : 0; });
+    DeviceReading reading;
+    codes.push_back(device->read(reading).code);
+  });
+  EXPECT_EQ(codes, (std::vector<int>{0x0300, 0, 0, 0}));
+}
+
 // The cycle still runs without a scheduler: its ticks receive the reason as a fault, and decide when it ends.
 void expect_fault_of_the_scheduler(HapticDevice& device, DeviceDouble& behind, int before, const char* what) {
   DeviceFault fault, written;
