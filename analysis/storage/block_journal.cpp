@@ -65,6 +65,31 @@ bool has_no_links(int error) {
   return error == EPERM || error == EOPNOTSUPP || error == ENOSYS || error == EMLINK;
 }
 
+[[noreturn]] void refuse_beside(const std::filesystem::path& journal) {
+  throw InputError(journal.string(),
+                   "exists, an earlier recording that did not end: use another name for the new one, or "
+                   "recover it with " +
+                       way_to_recover(journal) + " and remove it");
+}
+
+// Replaces a useless journal. Of several writers that meet it, only the one that holds its lock may do so.
+// Returns 0, or the errno; EEXIST: another writer was faster.
+int replace_useless(const std::filesystem::path& journal, const std::filesystem::path& by) {
+  const int old = ::open(journal.c_str(), O_RDONLY | O_CLOEXEC);
+  int error = old < 0 && errno != ENOENT ? errno : 0;
+  if (old >= 0) {
+    const int locked = lock_error(old, LOCK_EX | LOCK_NB);
+    struct stat judged {
+    }, named{};
+    const bool is_same = ::fstat(old, &judged) == 0 && ::stat(journal.c_str(), &named) == 0 &&
+                         judged.st_ino == named.st_ino && judged.st_dev == named.st_dev;
+    if ((locked != 0 && !has_no_locks(locked)) || !is_same) error = EEXIST;
+  }
+  if (error == 0 && ::rename(by.c_str(), journal.c_str()) != 0) error = errno;
+  if (old >= 0) ::close(old);
+  return error;
+}
+
 // True if nothing can be recovered from the journal: its writer was killed before the second block was whole.
 bool is_useless(const std::filesystem::path& journal) {
   if (!is_journal(journal)) return false;
@@ -100,11 +125,7 @@ void require_no_journal_beside(const std::filesystem::path& target) {
   const std::filesystem::path journal = journal_of(target);
   std::error_code unreachable;
   if (!std::filesystem::exists(std::filesystem::symlink_status(journal, unreachable))) return;
-  if (is_useless(journal)) return;
-  throw InputError(journal.string(),
-                   "exists, an earlier recording that did not end: use another name for the new one, or "
-                   "recover it with " +
-                       way_to_recover(journal) + " and remove it");
+  if (!is_useless(journal)) refuse_beside(journal);
 }
 
 JournalWriter::JournalWriter(const std::filesystem::path& target, const JournalBlock& first)
@@ -151,7 +172,9 @@ void JournalWriter::give_name(const std::filesystem::path& temporary) const {
   const int error = errno;
   require_no_journal_beside(target_);
   if (error != EEXIST && !has_no_links(error)) refuse(error);
-  if (::rename(temporary.c_str(), file_.c_str()) != 0) refuse(errno);
+  const int replacing = replace_useless(file_, temporary);
+  if (replacing == EEXIST) refuse_beside(file_);
+  if (replacing != 0) refuse(replacing);
 }
 
 void JournalWriter::refuse(int error) const {
