@@ -1,5 +1,5 @@
 // Measures of a run with contact, as scalars of a trace: the height of the rendered surface over the true
-// one, and when the force ends.
+// one, and when the force ends. An unknown force is none.
 #pragma once
 
 namespace remote_touch {

@@ -83,7 +83,10 @@ Settling settling_of(const Trace& trace) {
 
 double force_overshoot(const Trace& trace) {
   const Settling run = settling_of(trace);
-  return std::isnan(run.final_N) ? kNoValue : max_of(run.magnitude_N) / run.final_N - 1;
+  if (std::isnan(run.final_N)) return kNoValue;
+  constexpr double kRounding = 1e-12;  // of the mean
+  const double overshoot = max_of(run.magnitude_N) / run.final_N - 1;
+  return overshoot > kRounding ? overshoot : 0;
 }
 
 double force_settling_time_s(const Trace& trace) {

@@ -3,8 +3,8 @@
 // estimates, so the hand feels a force along the surface.
 //
 // The measures use the ticks in contact (touching or entrenched, with a force) in which n =
-// Trace::true_normal is known. F is the force without the part of guidance. A measure is NaN if there is no
-// such tick.
+// Trace::true_normal is known. An unknown force is none. F is the force without the part of guidance. A
+// measure is NaN if there is no such tick.
 #pragma once
 
 namespace remote_touch {

@@ -190,10 +190,13 @@ constexpr Row kMeasures[] = {
      "rms difference of the force from its mean over 100 ms, divided by the mean force", all, smaller,
      relative_ripple},
     {"rendered_stiffness", "N/m",
-     "slope of the force along the normal of the true surface over the depth of the HIP, during a press",
+     "slope of the force along the normal of the true surface over the depth of the HIP, during a press "
+     "below that surface, also before the force begins",
      contact, neither, rendered_stiffness_N_per_m},
-    {"stiffness_error", "1", "rendered stiffness divided by that of the virtual coupling, minus 1", contact,
-     near_zero, stiffness_error},
+    {"stiffness_error", "1",
+     "rendered stiffness divided by the slope of the same forces over the stretch of the virtual coupling, "
+     "minus 1",
+     contact, near_zero, stiffness_error},
     {"stiffness_nonlinearity", "1",
      "rms distance of the force of a press from its line over the depth, divided by its maximum", contact,
      smaller, stiffness_nonlinearity},
@@ -268,9 +271,11 @@ constexpr Row kMeasures[] = {
      first_slave_contact_time_s},
     {"slave_anticipation", "s", "time by which the hand feels a force before the slave does", slave, larger,
      slave_anticipation_s},
-    {"command_packet_rate", "1/s", "mean number of commands sent in a second", slave, neither,
+    {"command_packet_rate", "1/s",
+     "number of commands sent after the first tick, divided by the time from it to the last", slave, neither,
      command_packet_rate_per_s},
-    {"force_packet_rate", "1/s", "mean number of forces sent in a second", slave, neither,
+    {"force_packet_rate", "1/s",
+     "number of forces sent after the first tick, divided by the time from it to the last", slave, neither,
      force_packet_rate_per_s},
     {"max_device_force", "N", "maximum force of the device on the hand", slave, neither, max_device_force_N},
     {"min_channel_energy", "J",
@@ -278,8 +283,9 @@ constexpr Row kMeasures[] = {
      neither, min_channel_energy_J},
     {"dissipated_energy", "J", "energy that passivity control has kept from leaving this channel", slave,
      neither, dissipated_energy_J},
-    {"frame_packet_rate", "1/s", "mean number of frames that arrived in a second", slave, neither,
-     frame_packet_rate_per_s},
+    {"frame_packet_rate", "1/s",
+     "number of frames that arrived after the first tick, divided by the time from it to the last", slave,
+     neither, frame_packet_rate_per_s},
 
     {"guidance_fraction", "1", "fraction of ticks with active guidance to a visible target", guidance,
      neither, guidance_fraction},
@@ -295,7 +301,12 @@ const std::vector<Measure>& built_in_measures() {
   static const std::vector<Measure> all = [] {
     std::vector<Measure> made;
     for (const Row& row : kMeasures)
-      made.push_back({row.name, row.unit, row.meaning, row.runs, row.compute, row.better});
+      made.push_back({row.name, row.unit, row.meaning, row.runs,
+                      [compute = row.compute](const Trace& trace) {
+                        const double value = compute(trace);
+                        return std::isnan(value) ? kNoValue : value;  // a NaN of one sign
+                      },
+                      row.better});
     return made;
   }();
   return all;

@@ -34,8 +34,10 @@ double deadband_packets_per_s(const Trace& trace, double weber) {
   const double duration_s = (trace.time_s.back() - trace.time_s.front()) * (intervals + 1) / intervals;
   double packets = 1;
   Vec3 sent_N = trace.force_N.front();
-  for (const Vec3& force_N : trace.force_N)
+  for (const Vec3& force_N : trace.force_N) {
+    if (!force_N.allFinite()) return kNoValue;
     if (is_felt(sent_N, force_N, weber)) sent_N = force_N, ++packets;
+  }
   return packets / duration_s;
 }
 

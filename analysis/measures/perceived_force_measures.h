@@ -14,7 +14,7 @@ struct Trace;
 double felt_jump_fraction(const Trace& trace, double weber);
 // Packets per second of a connection with a perceptual dead-band (IEEE 1918.1.1): the first tick is sent, and
 // then each tick whose force differs from the last force sent by more than weber times that force. NaN with
-// fewer than two ticks.
+// fewer than two ticks, or if a force is unknown.
 double deadband_packets_per_s(const Trace& trace, double weber);
 
 }  // namespace remote_touch

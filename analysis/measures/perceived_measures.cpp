@@ -30,7 +30,7 @@ double max_weber_fraction(const Trace& trace, bool at_updates) {
       trace.length(),
       [&](std::size_t i) {
         return i > 0 && trace.frame_update(i) == at_updates &&
-               trace.force_N[i - 1].norm() >= kMinWeberForce_N;
+               !(trace.force_N[i - 1].norm() < kMinWeberForce_N);  // or unknown
       },
       [&](std::size_t i) { return change_N(trace, i).norm() / trace.force_N[i - 1].norm(); });
 }

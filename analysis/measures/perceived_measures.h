@@ -25,7 +25,8 @@ inline constexpr double kMinWeberForce_N = 0.1;
 
 // The Weber fraction of a change of force: |F_i - F_(i-1)| / |F_(i-1)|, with magnitudes of vectors, if
 // |F_(i-1)| is at least kMinWeberForce_N. 1: the force ends, or it doubles. Maximum over the ticks with a
-// frame update (jump), and over the other ticks (change). NaN if there is no such tick.
+// frame update (jump), and over the other ticks (change). NaN if there is no such tick, or if a force of
+// such a tick is unknown.
 //
 // A hand that presses changes the force in every tick, also without a frame. So a jump is the change minus
 // the one of the tick before, F_(i-1) - F_(i-2), if that tick had no update and there was a force in both.
@@ -41,7 +42,7 @@ inline constexpr double kSliding_m_per_s = 0.001;
 // moved along the surface since the tick before, with kSliding_m_per_s or more. F is the force without
 // guidance. Coulomb friction of coefficient mu has the value mu. A force that pulls the hand along has a
 // negative value. Tilts of the force to all sides cancel here; mean_lateral_force() includes them. The
-// surface must be at rest along itself. NaN if there is no such tick.
+// surface must be at rest along itself. Ticks with an unknown force do not count. NaN if no tick counts.
 double apparent_friction(const Trace& trace);
 
 // The ripple of the force: root mean square of |F - its mean over the window of kRippleWindow_s around the

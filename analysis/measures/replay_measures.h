@@ -5,7 +5,7 @@
 //
 // F is the force on the hand without the part of guidance. E is Trace::expected_force_N. Ticks in which E is
 // NaN are not used. Every measure is NaN if no tick qualifies. A force that is not finite makes the error
-// NaN.
+// NaN, and is no contact.
 #pragma once
 
 namespace remote_touch {

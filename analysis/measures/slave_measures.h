@@ -34,9 +34,11 @@ double max_device_force_N(const Trace& trace);
 // an earlier tick.
 double first_slave_contact_time_s(const Trace& trace);
 // Time of first contact of the slave less that of the first tick in which the device exerts a force on the
-// hand, s. Positive: the hand is warned. NaN if one of them never happens.
+// hand, s. An unknown force of the device is none. Positive: the hand is warned. NaN if one of them never
+// happens.
 double slave_anticipation_s(const Trace& trace);
-// Packets per second of the run. NaN for a run of one tick.
+// Packets after the first tick, divided by the time from the first tick to the last. NaN for a run of one
+// tick. The frames are those that arrived.
 double command_packet_rate_per_s(const Trace& trace);
 double force_packet_rate_per_s(const Trace& trace);
 double frame_packet_rate_per_s(const Trace& trace);

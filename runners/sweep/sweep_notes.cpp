@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "analysis/measures/first_tick.h"
+#include "analysis/measures/surface_side.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/note_kinds.h"
@@ -14,18 +16,20 @@ namespace remote_touch {
 
 namespace {
 
-// pre: the distance to the true surface is unknown in some tick, as in every run whose outcome is unknown.
+// pre: the distance that judges the run is unknown in some tick, as in every run with a frame whose outcome
+// is unknown.
 std::string text_of_unknown_outcome(const Trace& trace) {
+  const std::vector<double>& distance_m = judged_distance_m(trace);
   std::size_t unknown = 0, last = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
-    if (std::isnan(trace.signed_distance_m[i])) last = i, ++unknown;
+    if (std::isnan(distance_m[i])) last = i, ++unknown;
   char text[320];
   std::snprintf(
       text, sizeof text,
-      "it is not known whether the %s popped through: its distance to the true surface is unknown in "
+      "it is not known whether the %s popped through: its distance to the %s surface is unknown in "
       "%.3g %% of the ticks, last at %.6g s, beside an object or at a depth edge for example; choose a "
       "larger scene, or a hand that stays over it",
-      trace.has_tool() ? "tool" : "proxy",
+      trace.has_tool() ? "tool" : "proxy", trace.has_measured_surface() ? "measured" : "true",
       100 * static_cast<double>(unknown) / static_cast<double>(trace.length()), trace.time_s[last]);
   return text;
 }
@@ -81,12 +85,13 @@ void refuse_notes(const SweepTally& tally) {
 }
 
 void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes) {
-  const auto is_known = [](double distance_m) { return !std::isnan(distance_m); };
+  const auto is_known = [&](std::size_t i) {
+    return trace.frame_index[i] >= 0 && !std::isnan(trace.signed_distance_m[i]);
+  };
   const auto is_unknown = [&](const Measure& measure) {
     return is_outcome(measure.name) && applies(measure, trace) && std::isnan(measure.compute(trace));
   };
-  if (std::any_of(trace.signed_distance_m.begin(), trace.signed_distance_m.end(), is_known) &&
-      std::any_of(measures.begin(), measures.end(), is_unknown))
+  if (first_tick(trace, is_known) >= 0 && std::any_of(measures.begin(), measures.end(), is_unknown))
     notes.push_back({"outcome unknown", text_of_unknown_outcome(trace)});
 }
 

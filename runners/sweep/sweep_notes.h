@@ -35,8 +35,8 @@ std::vector<std::string> note_lines(const SweepTally& tally);
 void refuse_notes(const SweepResult& result);
 void refuse_notes(const SweepTally& tally);
 
-// Adds the note "outcome unknown" if the distance to the true surface is known in some tick but a measure of
-// the outcome is NaN.
+// Adds the note "outcome unknown" if the distance to the true surface is known in some tick with a frame but a
+// measure of the outcome is NaN.
 void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes);
 
 // The notes on runs that are not stored as one sweep, such as those of a figure. Any thread may add some.

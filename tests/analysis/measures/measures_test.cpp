@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "analysis/measures/contact_measures.h"
@@ -198,6 +200,62 @@ TEST(Measures, AnUnknownNumberNeverMakesAMeasureBetter) {
               << measure.name << ", " << name << ", tick " << tick << ": " << before << " to " << after;
         }
       }
+  }
+}
+
+// A hand that presses and slides, with a frame every ten ticks and forces that are steady at the end.
+Trace pressed_and_slid(bool tool) {
+  Trace trace;
+  for (int i = 0; i < 600; ++i) {
+    RenderOutput out;
+    DeviceState device{{1e-4 * i, -2e-5 * std::min(i, 300), 0}};
+    const double size = i < 50 ? 0 : -500 * device.position_W.y() + (i < 400 && i / 10 % 2 == 0 ? 0.5 : 0);
+    out.force_N = size * Vec3(0.2, 1, 0), out.normal_W = Vec3::UnitY(), out.frame_index = i / 10;
+    out.state = ContactState::contact, out.nearest_distance_m = 0.005;
+    if (tool) out.tool.emplace();
+    Trace::Truth truth{0.005, 0.005, 0};
+    truth.contact = Trace::TrueContact{0, device.position_W.y()}, truth.normal = Vec3::UnitY(),
+    truth.expected_force_N = i == 350 ? Vec3::Zero() : Vec3(0, 1, 0);
+    trace.append(0.001 * i, device, out, truth);
+  }
+  return trace;
+}
+
+// Each measure that uses the force of a tick has no value if this force is unknown, except those whose header
+// says that an unknown force is none, or that the tick does not count.
+TEST(Measures, OfAForceThatIsUnknownInOneTickHaveNoValue) {
+  const std::set<std::string> leave_it_out = {
+      "force_fraction",       "contact_force_fraction", "last_force_time",        "mean_distance",
+      "distance_sd",          "mean_lateral_force",     "lateral_force_95",       "mean_force_angle",
+      "apparent_friction",    "rendered_stiffness",     "stiffness_error",        "stiffness_nonlinearity",
+      "stiffness_hysteresis", "force_direction_error",  "false_contact_fraction", "lost_contact_fraction"};
+  std::set<std::string> used;
+  for (const bool tool : {false, true})
+    for (const std::size_t tick : {49u, 50u, 109u, 110u, 111u, 240u, 350u, 450u, 560u, 598u, 599u})
+      for (const Measure& measure : built_in_measures()) {
+        const auto value_with = [&](double factor) {
+          Trace trace = pressed_and_slid(tool);
+          trace.force_N[tick] = factor * (trace.force_N[tick] + Vec3(0.1, 0.1, 0));
+          return value_of(measure, trace);
+        };
+        const double value = value_with(1);
+        if (value == value_with(5) && value == value_with(0)) continue;
+        if (std::isnan(value) || leave_it_out.contains(measure.name)) continue;
+        used.insert(measure.name);
+        EXPECT_TRUE(std::isnan(value_with(kNoValue))) << measure.name << ", tick " << tick;
+      }
+  for (const char* name :
+       {"max_force", "rms_force_jump", "jump_fraction_5", "packet_rate_5", "max_relative_jump",
+        "max_relative_change", "force_overshoot", "force_ripple", "energy_injected"})
+    EXPECT_TRUE(used.contains(name)) << name;
+}
+
+TEST(Measures, PrintNoNanWithASign) {
+  Trace trace = steady_run(false);
+  trace.force_N[200].setConstant(-kNoValue);
+  for (const Measure& measure : built_in_measures()) {
+    const double value = value_of(measure, trace);
+    EXPECT_FALSE(std::isnan(value) && std::signbit(value)) << measure.name;
   }
 }
 

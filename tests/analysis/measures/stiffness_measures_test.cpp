@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -63,11 +64,17 @@ TEST(Stiffness, OfASpringIsItsOwn) {
   EXPECT_NEAR(stiffness_hysteresis(trace), 0, 1e-12);
 }
 
-TEST(Stiffness, DoesNotDependOnTheHeightOfTheRenderedSurface) {
+TEST(Stiffness, IsTheSameIfTheSurfaceIsRenderedTooHigh) {
   std::vector<Tick> ticks = pressed([](double depth_m) { return 500 * depth_m + 0.7; });
   for (Tick& tick : ticks) tick.sunk_m = -0.7 / 500;
   EXPECT_NEAR(rendered_stiffness_N_per_m(trace_of(ticks)), 500, 1e-9);
   EXPECT_NEAR(stiffness_error(trace_of(ticks)), 0, 1e-9);
+}
+
+// The force k (x - a) that begins at the depth a has, from 0 to L, the slope k (1 - a/L)^2 (1 + 2 a/L).
+TEST(Stiffness, IsSmallerIfTheForceBeginsTooDeep) {
+  const Trace trace = trace_of(pressed([](double depth_m) { return 500 * std::max(0.0, depth_m - 0.001); }));
+  EXPECT_NEAR(rendered_stiffness_N_per_m(trace), 500 * 25.0 / 36 * 4 / 3, 1);
 }
 
 // Two springs in a row, 600 N/m of the coupling and 2400 N/m of the surface: 480 N/m, a fifth less.
