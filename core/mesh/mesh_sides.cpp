@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include "core/geometry/bounding_box.h"
 #include "core/mesh/mesh_check.h"
@@ -16,11 +19,13 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-// Compares the faces whose boxes overlap. A set of faces is divided at a plane, and the faces on the plane
-// belong to both halves.
+// Finds the pairs of faces that cross, some of them several times. Compares the faces whose boxes overlap. A
+// set of faces is divided at a plane, and the faces on the plane belong to both halves.
 class CrossingSearch {
  public:
-  explicit CrossingSearch(const TriangleMesh& mesh) : mesh_(mesh), is_crossed_(mesh.triangles.size(), 0) {
+  using Use = std::function<void(int, int)>;  // takes two faces that cross
+
+  CrossingSearch(const TriangleMesh& mesh, Use use) : mesh_(mesh), use_(std::move(use)) {
     BoundingBox all;
     for (const auto& triangle : mesh.triangles) {
       BoundingBox box;
@@ -30,18 +35,17 @@ class CrossingSearch {
     if (!boxes_.empty()) rounding_m_ = 1e-12 * (all.diagonal().norm() + all.center().norm());
   }
 
-  std::vector<char> take() {
+  void search() const {
     std::vector<int> faces(mesh_.triangles.size());
     std::iota(faces.begin(), faces.end(), 0);
     search(std::move(faces));
-    return std::move(is_crossed_);
   }
 
  private:
   static constexpr std::size_t kFew = 16;
   static constexpr double kDivides = 1.3;  // a useful plane leaves both halves together this many faces
 
-  void search(std::vector<int> faces) {
+  void search(std::vector<int> faces) const {
     for (int axis = 0; faces.size() > kFew && axis < 3; ++axis) {
       std::vector<int> below, above;
       divide(faces, axis, below, above);
@@ -54,7 +58,7 @@ class CrossingSearch {
     for (std::size_t i = 0; i < faces.size(); ++i)
       for (std::size_t j = i + 1; j < faces.size(); ++j)
         if (boxes_[faces[i]].intersects(boxes_[faces[j]]) && cross(faces[i], faces[j]))
-          is_crossed_[faces[i]] = is_crossed_[faces[j]] = 1;
+          use_(faces[i], faces[j]);
   }
 
   void divide(const std::vector<int>& faces, int axis, std::vector<int>& below,
@@ -112,8 +116,8 @@ class CrossingSearch {
   static Vec3 normal(const Corners& t) { return (t[1] - t[0]).cross(t[2] - t[0]).normalized(); }
 
   const TriangleMesh& mesh_;
+  Use use_;
   std::vector<BoundingBox> boxes_;
-  std::vector<char> is_crossed_;
   double rounding_m_ = 0;
 };
 
@@ -141,6 +145,73 @@ std::vector<int> uncrossed_parts(const TriangleMesh& mesh, const std::vector<cha
   return parts_of(mesh, joining, count);
 }
 
+// Returns the number of the closed part of each face. sheet_of: the sheet of each face; a sheet is connected
+// by edges of two faces. A sheet is a part if it is closed by itself; else all sheets that end at an edge
+// belong together.
+std::vector<int> closed_parts(const TriangleMesh& mesh, const std::vector<int>& sheet_of, int& count) {
+  const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
+  std::vector<MeshEdge> joining;
+  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
+    const auto ends_here = [&](int sheet) {
+      int forward_minus_back = 0;
+      for (std::size_t e = first; e < last; ++e)
+        if (sheet_of[edges[e].triangle] == sheet) forward_minus_back += edges[e].forward ? 1 : -1;
+      return forward_minus_back != 0;
+    };
+    for (std::size_t e = first; e < last; ++e)
+      if (last - first == 2 || ends_here(sheet_of[edges[e].triangle])) joining.push_back(edges[e]);
+  });
+  return parts_of(mesh, joining, count);
+}
+
+bool are_all_inverted_in_one(const std::vector<int>& part_of, int count, const std::vector<FaceSide>& sides) {
+  std::vector<char> is_inverted(static_cast<std::size_t>(count), 1);
+  for (std::size_t f = 0; f < sides.size(); ++f)
+    if (sides[f] != FaceSide::inverted) is_inverted[part_of[f]] = 0;
+  return std::find(is_inverted.begin(), is_inverted.end(), 1) != is_inverted.end();
+}
+
+using Triangles = std::vector<std::array<int, 3>>;
+
+// Returns the sign of the volume of a closed part; 0 if rounding hides it, as of a sheet with two sides.
+int volume_sign(const std::vector<Vec3>& vertices, const Triangles& part) {
+  const Vec3 o = vertices[part.front()[0]];
+  double volume = 0, rounding = 0;
+  for (const auto& [i, j, k] : part) {
+    const Vec3 a = vertices[i] - o, b = vertices[j] - o, c = vertices[k] - o;
+    volume += a.dot(b.cross(c));
+    rounding += 1e-14 * a.norm() * b.norm() * c.norm();
+  }
+  return (volume > rounding) - (volume < -rounding);
+}
+
+// True if a part of negative volume is no hollow: no part of positive volume has it wholly inside.
+// is_crossed: false if no face is crossed.
+bool has_negative_part_outside(const TriangleMesh& mesh, const std::vector<int>& part_of, int count,
+                               bool is_crossed) {
+  std::vector<Triangles> parts(static_cast<std::size_t>(count));
+  for (std::size_t f = 0; f < part_of.size(); ++f) parts[part_of[f]].push_back(mesh.triangles[f]);
+  std::vector<int> outer, negative;
+  for (int part = 0; part < count; ++part)
+    if (const int sign = volume_sign(mesh.vertices, parts[part]))
+      (sign > 0 ? outer : negative).push_back(part);
+  if (negative.empty()) return false;
+  std::set<std::pair<int, int>> crossing;
+  const auto cross = [&](int f, int g) { crossing.emplace(std::minmax(part_of[f], part_of[g])); };
+  if (is_crossed) CrossingSearch(mesh, cross).search();
+  TriangleMesh alone{mesh.vertices, {}};
+  for (const int part : outer) {
+    alone.triangles = parts[part];
+    const TriangleTree tree(alone);
+    std::erase_if(negative, [&](int other) {
+      const auto& [a, b, c] = parts[other].front();
+      const Vec3 middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3;
+      return !crossing.contains(std::minmax(part, other)) && tree.winding_number(middle) > 0.5;
+    });
+  }
+  return !negative.empty();
+}
+
 // Returns the side of one face by the winding numbers on both sides of its middle.
 FaceSide side_of(const TriangleMesh& mesh, const TriangleTree& tree, int face) {
   const auto& [a, b, c] = mesh.triangles[face];
@@ -166,7 +237,9 @@ bool is_closed_surface(const TriangleMesh& mesh) {
 }
 
 std::vector<char> crossed_faces(const TriangleMesh& mesh) {
-  return CrossingSearch(mesh).take();
+  std::vector<char> is_crossed(mesh.triangles.size(), 0);
+  CrossingSearch(mesh, [&](int f, int g) { is_crossed[f] = is_crossed[g] = 1; }).search();
+  return is_crossed;
 }
 
 std::vector<FaceSide> face_sides(const TriangleMesh& mesh) {
@@ -196,12 +269,12 @@ std::vector<FaceSide> face_sides(const TriangleMesh& mesh) {
 }
 
 bool has_inverted_part_in(const TriangleMesh& mesh, const std::vector<FaceSide>& sides) {
-  int count = 0;
-  const std::vector<int> part_of = parts_of(mesh, edges_by_vertices(mesh), count);
-  std::vector<char> is_inverted(static_cast<std::size_t>(count), 1);
-  for (std::size_t f = 0; f < sides.size(); ++f)
-    if (sides[f] != FaceSide::inverted) is_inverted[part_of[f]] = 0;
-  return std::find(is_inverted.begin(), is_inverted.end(), 1) != is_inverted.end();
+  int sheets = 0, parts = 0;
+  const std::vector<int> sheet_of = uncrossed_parts(mesh, std::vector<char>(sides.size(), 0), sheets);
+  if (are_all_inverted_in_one(sheet_of, sheets, sides)) return true;
+  const std::vector<int> part_of = closed_parts(mesh, sheet_of, parts);
+  const bool is_crossed = std::find(sides.begin(), sides.end(), FaceSide::crossed) != sides.end();
+  return has_negative_part_outside(mesh, part_of, parts, is_crossed);
 }
 
 }  // namespace remote_touch

@@ -24,9 +24,10 @@ bool is_closed_surface(const TriangleMesh& mesh);
 // pre: mesh is the result of welded_mesh(), has a triangle, and is_closed_surface(mesh).
 std::vector<FaceSide> face_sides(const TriangleMesh& mesh);
 
-// True if all faces of a part are inverted; edges connect the faces of a part. A surface that crosses itself
-// may have some inverted faces: a pocket that it winds around backwards is outside. pre: sides is the result
-// of face_sides().
+// True if a part is inside out and is no hollow: its volume is negative, and it does not lie wholly in one
+// other part of positive volume; or all its faces are inverted, as of a hollow in a hollow. A surface that
+// crosses itself may have some inverted faces: a pocket that it winds around backwards is outside. pre: sides
+// is the result of face_sides().
 bool has_inverted_part_in(const TriangleMesh& mesh, const std::vector<FaceSide>& sides);
 
 // Returns for each face whether another one crosses it, or lies on a part of it. Faces that only touch, in a

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/mesh/mesh_distance.h"
 #include "core/mesh/mesh_repair.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
@@ -123,6 +124,20 @@ TEST(MeshRepair, TurnsEachPartOutwardsForItself) {
   const TriangleMesh mixed = meshes::together(kBox, meshes::inside_out(box_mesh({1, 1, 1}, {10, 0, 0})));
   EXPECT_NEAR(check_mesh(repair_mesh(mixed, done)).volume_m3, 25, 1e-12);
   EXPECT_EQ(done.flipped_triangles, 12);
+}
+
+TEST(MeshRepair, TurnsAPartOutwardsThatCrossesOrTouchesAnother) {
+  const double top = kBox.vertices.back().z();
+  for (const double height : {0.0, 0.5}) {
+    const TriangleMesh post = box_mesh({1, 1, 1}, {1, 1, top + height});
+    const TriangleMesh mixed = meshes::together(kBox, meshes::inside_out(post));
+    EXPECT_TRUE(MeshDistance(mixed).has_inverted_part());
+    MeshRepair done;
+    const MeshDistance repaired(repair_mesh(mixed, done));
+    EXPECT_EQ(done.flipped_triangles, 12);
+    EXPECT_FALSE(repaired.has_inverted_part());
+    EXPECT_NEAR(repaired.nearest({1, 1, top + height + 0.25}, 1)->distance_m, -0.25, 1e-12);
+  }
 }
 
 // The walk begins at the only triangle that is the wrong way round, so it turns all others first.

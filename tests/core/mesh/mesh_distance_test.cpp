@@ -288,6 +288,64 @@ TEST(MeshSides, PartsThatAreInsideOutAreFoundWhereverTheyAre) {
   EXPECT_FALSE(MeshDistance(torus(24, 12)).has_inverted_part());
 }
 
+TriangleMesh box_from(const Vec3& low, const Vec3& high) {
+  return box_mesh(high - low, (low + high) / 2);
+}
+
+bool is_inverted_with(const TriangleMesh& mesh, const TriangleMesh& part) {
+  return MeshDistance(meshes::together(mesh, meshes::inside_out(part))).has_inverted_part();
+}
+
+// The parts cross, stand on a face, have an edge or a face in common, or are the same.
+TEST(MeshSides, APartThatIsInsideOutIsFoundWhereItCrossesOrTouchesAnother) {
+  const TriangleMesh slab = box_from({-4, -2, -3}, {4, 0, 3});
+  for (const TriangleMesh& part :
+       {box_from({-1, -1, -1}, {1, 1, 1}), box_from({-1, 0, -1}, {1, 2, 1}), box_from({3, -1, 2}, {5, 1, 4}),
+        box_from({-4, 0, 3}, {4, 1, 4}), box_from({-4, 0, -3}, {4, 1, 3}), box_from({-4, 0, -3}, {4, 9, 3}),
+        box_from({-4, -2, -3}, {4, 1, 3}), box_from({-5, -3, -4}, {5, 1, 4}),
+        box_from({-4, 1e-9, -3}, {4, 1, 3})}) {
+    SCOPED_TRACE(bounding_box(part.vertices).min().transpose());
+    EXPECT_TRUE(is_inverted_with(slab, part));
+    EXPECT_TRUE(MeshDistance(meshes::together(meshes::inside_out(part), slab)).has_inverted_part());
+    EXPECT_FALSE(MeshDistance(meshes::together(slab, part)).has_inverted_part());
+  }
+  EXPECT_FALSE(MeshDistance(meshes::together(slab, slab)).has_inverted_part());
+  EXPECT_TRUE(is_inverted_with(meshes::inside_out(slab), slab));
+}
+
+TEST(MeshSides, AHollowLiesWhollyInOneOtherPart) {
+  const TriangleMesh ell = prism(kL, 1), room = box_from({0.2, 0.2, 0.2}, {0.8, 0.8, 0.8});
+  EXPECT_FALSE(is_inverted_with(ell, room));
+  const TriangleMesh column = box_from({0.4, 0.4, 0.1}, {0.5, 0.5, 0.9});
+  const TriangleMesh crate = box_from({0.3, 0.3, 0.2}, {0.5, 0.5, 0.4});
+  EXPECT_FALSE(is_inverted_with(meshes::together(ell, column), room)) << "a part crosses the hollow";
+  EXPECT_FALSE(is_inverted_with(meshes::together(crate, ell), room)) << "a part stands in the hollow";
+  EXPECT_FALSE(
+      is_inverted_with(meshes::together(ell, meshes::moved(ell, meshes::rotated(), {0, 0, 0.5})), room));
+  EXPECT_TRUE(is_inverted_with(ell, box_from({0.2, 0.2, 0.2}, {0.8, 0.8, 1.1}))) << "a face pokes out";
+  EXPECT_TRUE(is_inverted_with(ell, box_from({0.2, 0.2, 0.2}, {0.8, 0.8, 1}))) << "a face is open";
+  EXPECT_TRUE(
+      is_inverted_with(ell, pyramid({{0.2, 0.2, 0.2}, {0.8, 0.2, 0.2}, {0.5, 0.8, 0.2}}, {0.5, 0.5, 1.2})))
+      << "an apex pokes out";
+  const TriangleMesh beam =
+      meshes::moved(meshes::tetrahedron({0.9, 0.1, 0}, {2.9, 0.5, 0}, {0.5, 1.9, 0}, {0.9, 0.9, 0.2}),
+                    Eigen::Matrix3d::Identity(), {0, 0, 0.4});
+  EXPECT_TRUE(is_inverted_with(ell, beam)) << "an edge pokes out, and no vertex";
+  EXPECT_TRUE(is_inverted_with(meshes::together(ell, meshes::inside_out(room)),
+                               box_from({0.4, 0.4, 0.4}, {0.5, 0.5, 0.5})))
+      << "within another hollow";
+}
+
+TEST(MeshSides, ASheetWithTwoSidesIsNotInsideOut) {
+  TriangleMesh sheet = meshes::moved(Sheet(6, 0.1).mesh, meshes::rotated(), {0.1, 0.2, 0.3});
+  for (std::size_t t = 0, count = sheet.triangles.size(); t < count; ++t) {
+    const auto [a, b, c] = sheet.triangles[t];
+    sheet.triangles.push_back({b, a, c});
+  }
+  EXPECT_FALSE(MeshDistance(sheet).has_inverted_part());
+  EXPECT_FALSE(MeshDistance(meshes::together(box_mesh({1, 1, 1}), sheet)).has_inverted_part());
+}
+
 // A pyramid over a bent, concave base crosses itself: a pocket of it, around which it winds backwards, is
 // outside.
 TEST(MeshSides, APocketOfASurfaceThatCrossesItselfIsOutside) {
