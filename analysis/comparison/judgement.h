@@ -20,7 +20,8 @@ bool is_change(Judgement judgement);  // better, worse or changed
 // "equal", "within_margin", "better", ...
 const char* name_of(Judgement judgement);
 
-// Judges one number: equal, better, worse or changed. A number that was or became NaN is changed.
+// Judges one number: equal, better, worse or changed. A number that was or became NaN is changed, and so is
+// one that differs by at most 1e-9 of itself, which may be rounding.
 Judgement judge_value(double baseline, double candidate, Better better, const Tolerance& tolerance);
 
 // True for a measure that says nothing about a run without any contact, such as the greatest depth in the

@@ -166,26 +166,32 @@ MeasureComparison compare_values(const Pairs& pairs, const Runs& runs) {
 RegionComparison paired_tests(const Pairs& pairs, const std::vector<RunCluster>& clusters) {
   RegionComparison result;
   ClusterChanges tested;
-  std::vector<double> before;
+  std::vector<double> baseline;
+  std::vector<EventCounts> events_before, events_now;  // of each cluster
   FixedPairs fixed_shifts, fixed_differences;
+  bool is_anything_to_test = false;
   for (const RunCluster& cluster : clusters) {
     std::vector<PairChange> changes;
+    EventCounts& was = events_before.emplace_back();
+    EventCounts& is = events_now.emplace_back();
     for (const std::size_t run : cluster.runs) {
       const bool finite = pairs.finite(run), equal = pairs.equal(run);
       ++result.runs;
       result.outside += equal ? 0 : 1, result.unpaired += equal || finite ? 0 : 1;
       if (!finite && pairs.event) {
         changes.push_back(unknown_change(pairs, run));
+        ++was.unknown, ++is.unknown;
         if (cluster.is_fixed) fixed_shifts.add(changes.back(), 0);
       }
+      is_anything_to_test |= !cluster.is_fixed && !equal && (finite || pairs.event);
       if (!finite) continue;
-      changes.push_back(change_of(pairs, run)), before.push_back(pairs.baseline[run]);
+      changes.push_back(change_of(pairs, run)), baseline.push_back(pairs.baseline[run]);
       const PairChange& change = changes.back();
       ++result.pairs;
       result.up += change.shift > 0, result.down += change.shift < 0;
       result.got_better += change.worse<0, result.got_worse += change.worse> 0;
-      result.baseline_events += pairs.baseline[run] == 1,
-          result.candidate_events += pairs.candidate[run] == 1;
+      ++(pairs.baseline[run] == 1 ? was.events : was.without);
+      ++(pairs.candidate[run] == 1 ? is.events : is.without);
       if (!cluster.is_fixed) continue;
       fixed_shifts.add(change, change.shift), fixed_differences.add(change, change.difference);
       result.fixed_not_better += !equal && change.worse >= 0;
@@ -193,23 +199,22 @@ RegionComparison paired_tests(const Pairs& pairs, const std::vector<RunCluster>&
     if (!cluster.is_fixed && !changes.empty()) tested.add(changes, pairs.better);
   }
   result.tested = static_cast<std::int64_t>(tested.shifts.size());
+  result.clusters = static_cast<std::int64_t>(clusters.size());
   result.difference = with_fixed(estimated_event_difference(tested.shifts), result.tested, fixed_shifts);
   result.worse_share = estimated_event_difference(tested.worse);
   if (pairs.event) {
-    const auto interval_of = [&](double events) {
-      const auto with = static_cast<std::int64_t>(events);
-      const Estimate e =
-          estimated_fraction(EventCounts{with, result.pairs - with, result.runs - result.pairs});
-      return std::pair(e.low, e.high);
-    };
-    result.baseline_fraction = interval_of(result.baseline_events);
-    result.candidate_fraction = interval_of(result.candidate_events);
+    const EventCounts before = sum_of(events_before), now = sum_of(events_now);
+    result.baseline_events = static_cast<int>(before.events);
+    result.candidate_events = static_cast<int>(now.events);
+    const bool are_fixed = result.tested == 0;
+    result.baseline_fraction = are_fixed ? exact_fraction(before) : estimated_fraction(events_before);
+    result.candidate_fraction = are_fixed ? exact_fraction(now) : estimated_fraction(events_now);
   } else {
-    result.baseline_events = result.candidate_events = 0;
     result.mean = with_fixed(estimated_difference(tested.differences), result.tested, fixed_differences);
-    result.baseline_spread = standard_deviation(before);
+    result.baseline_spread = standard_deviation(baseline);
     result.worse_by = estimated_difference(tested.worse_by);
   }
+  if (!is_anything_to_test) result.difference.p = result.mean.p = std::numeric_limits<double>::quiet_NaN();
   return result;
 }
 

@@ -165,6 +165,11 @@ void judge(const PairedRule& rule, bool needs_tests, SweepComparison& result) {
   std::vector<double> p;
   for (const RegionComparison& c : result.by_region) p.push_back(c.difference.p), p.push_back(c.mean.p);
   const std::vector<double> adjusted = holm_adjusted(p);
+  result.tests = tests_among(p);
+  const std::int64_t needed = pairs_for_family(result.tests, rule.alpha);
+  if (result.tests > 0 && std::all_of(result.by_region.begin(), result.by_region.end(),
+                                      [&](const RegionComparison& c) { return c.tested < needed; }))
+    result.needed_clusters = needed;
   auto next = adjusted.begin();
   for (RegionComparison& c : result.by_region) {
     for (const Estimate* test : {&c.difference, &c.mean}) {

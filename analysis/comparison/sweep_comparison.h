@@ -58,6 +58,7 @@ struct FirstDifference {
 struct RegionComparison {
   std::size_t region = 0, measure = 0;
   std::int64_t runs = 0;
+  std::int64_t clusters = 0;  // independent ones: runs that share random numbers count as one
   std::int64_t pairs = 0;     // finite in both
   std::int64_t outside = 0;   // runs outside the tolerance
   std::int64_t unpaired = 0;  // runs outside: not finite in one or both, or an event neither 0 nor 1
@@ -68,12 +69,14 @@ struct RegionComparison {
   std::int64_t tested = 0;
   std::int64_t fixed_not_better = 0;  // runs without random numbers that differ and got no better
   // (up - down) / pairs, as the mean over clusters, with the test of estimated_event_difference(). The
-  // interval also includes the runs without random numbers, which are exact; p is that of the other runs.
+  // interval also includes the runs without random numbers, which are exact; p is that of the other runs. If
+  // none of them differs, there is nothing to test, and no p.
   Estimate difference = {};
 
-  // Events only: counts in both sweeps, with exact intervals of the fractions of pairs.
+  // Events only: counts in both sweeps, and the fractions of pairs, see estimated_fraction(). Those of runs
+  // without random numbers are exact and have no interval.
   int baseline_events = 0, candidate_events = 0;
-  std::pair<double, double> baseline_fraction = {0, 1}, candidate_fraction = {0, 1};
+  Estimate baseline_fraction = {}, candidate_fraction = {};
   // Other measures only: the mean difference in the same way, with the test of estimated_difference(), in
   // which pairs within the tolerance count as equal; and the baseline's standard deviation. Both are in the
   // measure's unit.
@@ -83,7 +86,7 @@ struct RegionComparison {
   // Tests of the clusters: (got_worse - got_better) / pairs; and how much worse they got, not for an event.
   Estimate worse_share = {}, worse_by = {};
   // The smaller p of difference and mean, adjusted for all tests of the sweep; skewed ones do not count. NaN:
-  // fewer than 6 clusters have no test.
+  // there is no test.
   double adjusted_p = std::numeric_limits<double>::quiet_NaN();
   // The result of the paired tests, see PairedVerdict.
   Judgement judgement = Judgement::undecided;
@@ -146,6 +149,10 @@ struct SweepComparison {
   std::optional<FirstDifference> first;
   std::vector<Region> regions;
   std::vector<RegionComparison> by_region;  // region after region, each with all measures
+  std::int64_t tests = 0;                   // number of tests that are adjusted together
+  // The fewest clusters of a region with which an adjusted p can be below alpha. 0: some region has as many,
+  // or there is no test.
+  std::int64_t needed_clusters = 0;
   ExactVerdict exact = ExactVerdict::not_comparable;
   PairedVerdict paired = PairedVerdict::not_comparable;
 

@@ -33,7 +33,8 @@ struct Estimate {
 inline constexpr std::int64_t kLeastPairs = 6;
 // The note of an estimate whose is_skewed is true.
 inline constexpr const char* kSkewedNote = "skewed: few large differences decide";
-// The method of an estimate from runs without random numbers. Its value is exact, and it has no interval.
+// The method of an estimate from runs without random numbers. Its value is exact, and it has an interval only
+// if outcomes are unknown or if it lies between two values of an axis.
 inline constexpr const char* kExactMethod = "exact";
 
 }  // namespace remote_touch

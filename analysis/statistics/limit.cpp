@@ -26,11 +26,32 @@ RunsAtValue rising(RunsAtValue value, bool rises) {
 enum class End { low, high };
 
 // True if the probability of the event is clearly below (End::low) or above (End::high) the level.
-bool is_clear(const EventCounts& c, double level, End end) {
+bool is_clear(const EventCounts& c, double level, End end, double tail = kLimitTail) {
   const auto n = static_cast<double>(c.runs());
   if (end == End::low)
-    return probability_of_at_most(static_cast<double>(c.events + c.unknown), n, level) <= kLimitTail;
-  return probability_of_at_least(static_cast<double>(c.events), n, level) <= kLimitTail;
+    return probability_of_at_most(static_cast<double>(c.events + c.unknown), n, level) <= tail;
+  return probability_of_at_least(static_cast<double>(c.events), n, level) <= tail;
+}
+
+// The same for the one run of a fixed value.
+bool is_certain(const EventCounts& c, End end) {
+  return (end == End::low ? c.events : c.without) + c.unknown == 0;
+}
+
+// True if the curve clearly crosses the level both ways: at some value it is clearly on one side, at a later
+// one on the other, and back. All values are asked, so each has its share of the tail.
+bool rises_and_falls(const std::vector<RunsAtValue>& values, double level) {
+  const double tail = kLimitTail / static_cast<double>(values.size());
+  bool was_low = false, was_high = false, rises = false, falls = false;
+  for (const RunsAtValue& v : values) {
+    const auto is = [&](End end) {
+      return v.is_fixed ? is_certain(v.counts, end) : is_clear(v.counts, level, end, tail);
+    };
+    const bool is_low = is(End::low), is_high = is(End::high);
+    rises |= is_high && was_low, falls |= is_low && was_high;
+    was_low |= is_low, was_high |= is_high;
+  }
+  return rises && falls;
 }
 
 // A walk over values in the order from one end.
@@ -58,8 +79,7 @@ class Walk {
  private:
   bool is_clear_at(std::size_t i) const {
     EventCounts counts = values_[i].counts;
-    if (values_[i].is_fixed)
-      return (end_ == End::low ? counts.events + counts.unknown : counts.without + counts.unknown) == 0;
+    if (values_[i].is_fixed) return is_certain(counts, end_);
     for (std::size_t next = i + 1; borrows_ && next < values_.size() && counts.runs() < needed_; ++next)
       counts.add(values_[next].counts);
     return counts.runs() >= needed_ && is_clear(counts, level_, end_);
@@ -104,7 +124,8 @@ void set_crossing(const std::vector<RunsAtValue>& values, double level, Limit& l
 }  // namespace
 
 std::int64_t runs_for_level(double level) {
-  return static_cast<std::int64_t>(std::ceil(std::log(kLimitTail) / std::log1p(-level) - 1e-12));
+  const double runs = std::ceil(std::log(kLimitTail) / std::log1p(-level) - 1e-12);
+  return static_cast<std::int64_t>(std::min(runs, 1e18));  // far beyond the runs of any sweep
 }
 
 RunsAtValue RunsAtValue::of_one_run_if_fixed() const {
@@ -131,11 +152,21 @@ Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& r
   const Walk up(used, level, End::low, rule.values_are_independent);
   std::reverse(used.begin(), used.end());
   const Walk down(used, level, End::high, rule.values_are_independent);
-  e.low = up.last_clear(), e.high = down.last_clear(), e.method = "binomial walks";
+  e.low = up.last_clear(), e.high = down.last_clear();
+  const bool are_fixed =
+      std::all_of(used.begin(), used.end(), [](const RunsAtValue& value) { return value.is_fixed; });
+  e.method = are_fixed ? kExactMethod : "binomial walks";
   if (std::isnan(e.low)) e.add_note("low: " + reason_of(up, rule, "first"));
   if (std::isnan(e.high)) e.add_note("high: " + reason_of(down, rule, "last"));
   if (!std::isnan(e.low)) e.value = e.value < e.low ? e.low : e.value;
   if (!std::isnan(e.high)) e.value = e.value > e.high ? e.high : e.value;
+  if (rises_and_falls(used, level)) {
+    e.add_note("the curve rises and falls");
+    if (std::isnan(e.low + e.high)) {
+      e.value = e.low = e.high = std::numeric_limits<double>::quiet_NaN();
+      limit.place = LimitPlace::rises_and_falls;
+    }
+  }
   return limit;
 }
 

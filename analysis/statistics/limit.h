@@ -35,7 +35,7 @@ struct RunsAtValue {
 // clearly above a level if there are as many runs as for 1 - level. pre: 0 < level < 1.
 std::int64_t runs_for_level(double level);
 
-enum class LimitPlace : std::int32_t { inside, below_the_first, above_the_last, no_runs };
+enum class LimitPlace : std::int32_t { inside, below_the_first, above_the_last, no_runs, rises_and_falls };
 
 struct Limit {
   // value: the limit; NaN if the curve of the known runs does not cross the level. low, high: values of the
@@ -52,7 +52,8 @@ struct Limit {
 // clear ends each walk, so there is no correction for several values, and values may share random numbers. A
 // value must be clear with the less favourable assignment of its unknown outcomes. A value with too few runs
 // takes those of the following values, inwards, if these are independent. A falling curve is a rising curve
-// of the event's absence. values: by increasing x; those without runs are skipped.
+// of the event's absence. A curve that clearly crosses the level both ways has a note, and no limit unless
+// both walks end. values: by increasing x; those without runs are skipped.
 Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& rule);
 
 // The outcome of an event in a run; missing: there is no such run, or it is not finished.

@@ -116,8 +116,9 @@ Estimate estimated_difference(const std::vector<double>& differences) {
   std::vector<double> d;
   double sum = 0, magnitudes = 0;
   for (const double value : differences)
-    if (!std::isnan(value)) d.push_back(value), sum += value, magnitudes += std::abs(value);
-  const Estimate of_mean = estimated_mean(differences);
+    if (std::isfinite(value)) d.push_back(value), sum += value, magnitudes += std::abs(value);
+  Estimate of_mean = estimated_mean(d);
+  of_mean.unknown = static_cast<std::int64_t>(differences.size() - d.size());
   if (of_mean.clusters < kLeastPairs) return of_mean;
   Estimate e;
   e.clusters = of_mean.clusters, e.unknown = of_mean.unknown, e.value = of_mean.value;
@@ -196,6 +197,18 @@ Estimate difference_by(const std::vector<std::vector<OutcomePair>>& clusters, As
   return are_runs ? difference_of_counts(counts) : estimated_difference(means);
 }
 
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+struct Interval {
+  double low, high;
+};
+
+// Equal pairs have no interval. If they are enough for a test, their difference counts as exact.
+Interval interval_in_hull(const Estimate& e) {
+  const bool is_exact = std::isnan(e.low) && !std::isnan(e.p);
+  return is_exact ? Interval{e.value, e.value} : Interval{e.low, e.high};
+}
+
 }  // namespace
 
 Estimate estimated_event_difference(const std::vector<std::vector<OutcomePair>>& clusters) {
@@ -211,15 +224,15 @@ Estimate estimated_event_difference(const std::vector<std::vector<OutcomePair>>&
   const Estimate most = difference_by(clusters, Assignment::largest, are_runs);
   Estimate e = most;
   e.value = known.value, e.unknown = unknown;
-  // An assignment without scatter has no interval; its value then bounds the hull.
-  e.low =
-      std::min(std::isnan(least.low) ? least.value : least.low, std::isnan(most.low) ? most.value : most.low);
-  e.high = std::max(std::isnan(least.high) ? least.value : least.high,
-                    std::isnan(most.high) ? most.value : most.high);
+  const Interval from = interval_in_hull(least), to = interval_in_hull(most);
+  const bool is_known = !std::isnan(from.low + to.low);
+  e.low = is_known ? std::min(from.low, to.low) : kNone;
+  e.high = is_known ? std::max(from.high, to.high) : kNone;
   e.p = least.value * most.value < 0 ? (std::isnan(most.p) ? most.p : 1) : std::max(least.p, most.p);
   if (e.p > kSignificance) e.low = std::min(e.low, 0.0), e.high = std::max(e.high, 0.0);
   e.is_skewed = e.p <= kSignificance && (least.is_skewed || most.is_skewed);
-  e.note.clear();
+  if (std::isnan(e.p)) e.add_note(least.note);
+  if (!std::isnan(e.p)) e.note.clear();
   if (e.is_skewed) e.add_note(kSkewedNote);
   return e;
 }
@@ -242,9 +255,9 @@ std::int64_t tests_among(const std::vector<double>& p) {
   return std::count_if(p.begin(), p.end(), [](double value) { return !std::isnan(value); });
 }
 
-std::int64_t pairs_for_family(std::int64_t tests) {
+std::int64_t pairs_for_family(std::int64_t tests, double alpha) {
   std::int64_t pairs = kLeastPairs;
-  while (static_cast<double>(tests) * std::exp2(1 - static_cast<double>(pairs)) > kSignificance) ++pairs;
+  while (static_cast<double>(tests) * std::exp2(1 - static_cast<double>(pairs)) > alpha) ++pairs;
   return pairs;
 }
 

@@ -19,7 +19,7 @@ double root_mean_square(const std::vector<double>& values);
 // uses only +, -, * and /, so every machine computes the same bits. pre: plus, minus >= 0.
 double sign_test(std::int64_t plus, std::int64_t minus);
 
-// Mean of paired differences of clusters, with a test that it is 0. NaNs are skipped and count as unknown.
+// Mean of paired differences of clusters, with a test that it is 0. Those that are not finite are unknown.
 // - Fewer than 6 differences: the interval of estimated_mean(), and no p.
 // - 6 to 16: the exact test by sign flips (R. Fisher, The Design of Experiments, 1935), which assumes that a
 //   difference is as likely as its opposite; the ends of the interval are means of subsets of the differences
@@ -49,8 +49,8 @@ Estimate estimated_event_difference(const std::vector<std::vector<OutcomePair>>&
 std::vector<double> holm_adjusted(const std::vector<double>& p);
 // Returns the number of tests among them: of the p values that are not NaN.
 std::int64_t tests_among(const std::vector<double>& p);
-// The fewest pairs whose exact test can reach an adjusted p of 0.05 in a family of this many tests: with n
+// The fewest pairs whose exact test can reach an adjusted p of alpha in a family of this many tests: with n
 // pairs, the least p is 2^(1 - n).
-std::int64_t pairs_for_family(std::int64_t tests);
+std::int64_t pairs_for_family(std::int64_t tests, double alpha = 0.05);
 
 }  // namespace remote_touch

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
+#include <limits>
 
 #include "analysis/statistics/mean.h"
 #include "analysis/statistics/student.h"
@@ -56,6 +57,12 @@ std::pair<double, double> exact_interval(double events, double runs) {
           events >= runs ? 1 : boost::math::ibetac_inv(events + 1, runs - events, kTail)};
 }
 
+EventCounts sum_of(const std::vector<EventCounts>& counts) {
+  EventCounts sum;
+  for (const EventCounts& c : counts) sum.add(c);
+  return sum;
+}
+
 Estimate estimated_fraction(const EventCounts& runs) {
   Estimate e;
   e.clusters = runs.runs(), e.unknown = runs.unknown;
@@ -68,10 +75,19 @@ Estimate estimated_fraction(const EventCounts& runs) {
   return e;
 }
 
+Estimate exact_fraction(const EventCounts& runs) {
+  Estimate e = estimated_fraction(runs);
+  e.low = e.high = std::numeric_limits<double>::quiet_NaN(), e.method = kExactMethod;
+  if (runs.unknown == 0) return e;
+  const auto n = static_cast<double>(runs.runs());
+  e.low = static_cast<double>(runs.events) / n, e.high = static_cast<double>(runs.events + runs.unknown) / n;
+  return e;
+}
+
 Estimate estimated_fraction(const std::vector<EventCounts>& clusters) {
-  EventCounts sum;
-  bool are_runs = true;
-  for (const EventCounts& c : clusters) sum.add(c), are_runs &= c.runs() <= 1;
+  const EventCounts sum = sum_of(clusters);
+  const bool are_runs =
+      std::all_of(clusters.begin(), clusters.end(), [](const EventCounts& c) { return c.runs() <= 1; });
   if (are_runs) return estimated_fraction(sum);
   Estimate e;
   const auto [least, runs] = fractions_of(clusters, Unknown::without);
@@ -90,7 +106,8 @@ Estimate estimated_quantile(std::vector<double> values, double q) {
   if (values.empty()) return e;
   std::sort(values.begin(), values.end());
   const auto n = static_cast<double>(values.size());
-  e.value = values[static_cast<std::size_t>(std::max(1.0, std::ceil(q * n))) - 1];
+  const double rank = std::ceil(q * n - 1e-9);  // 0.07 times 100 is above 7 by a rounding
+  e.value = values[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
   double l = 0, u = n + 1;  // ranks from 1; X(0) and X(n + 1) do not exist
   while (l < n && probability_of_at_most(l, n, q) <= kTail) ++l;
   while (u > 1 && probability_of_at_least(u - 1, n, q) <= kTail) --u;

@@ -32,6 +32,8 @@ struct EventCounts {
   }
 };
 
+EventCounts sum_of(const std::vector<EventCounts>& counts);
+
 // Fraction of the known runs in which the event happened. `low` is the low end if no unknown run had the
 // event, and `high` the high end if all had it (C. Manski, Partial Identification of Probability
 // Distributions, 2003). Each element has the runs of one cluster, which share random numbers; clusters are
@@ -41,6 +43,9 @@ struct EventCounts {
 Estimate estimated_fraction(const std::vector<EventCounts>& clusters);
 // The same for independent runs.
 Estimate estimated_fraction(const EventCounts& runs);
+// Fraction of runs that draw no random number: it is exact. There is an interval only if outcomes are
+// unknown.
+Estimate exact_fraction(const EventCounts& runs);
 
 // Quantile of independent values, 0 < q < 1: the value x_k of the sorted x_1 .. x_n, k = max(1, ceil(q n)),
 // between two of them whose ranks follow from the binomial distribution, whatever the distribution of the

@@ -32,18 +32,29 @@ std::vector<Moments> strata_with_scatter(const std::vector<StratumMoments>& stra
   return all;
 }
 
+// Returns the power of 2 below the largest deviation; 1 if nothing scatters. Its square and cube neither
+// overflow nor vanish beside those of the deviations, and dividing by it rounds nothing.
+double scale_of(const std::vector<Moments>& strata) {
+  double most = 0;
+  for (const Moments& m : strata) most = std::max(most, std::sqrt(m.variance));
+  return most > 0 && std::isfinite(most) ? std::exp2(std::ilogb(most)) : 1;
+}
+
 // The mean of strata, its scatter, and what follows from them.
 struct PooledMoments {
-  double count = 0, sum = 0, scatter = 0, squares = 0, cubes = 0;
+  double count = 0, sum = 0;
+  double scale, scatter = 0, squares = 0, cubes = 0;  // of deviations in units of `scale`
 
-  explicit PooledMoments(const std::vector<Moments>& strata) {
+  explicit PooledMoments(const std::vector<Moments>& strata) : scale(scale_of(strata)) {
     for (const Moments& m : strata) {
       count += m.count, sum += m.count * m.mean;
       if (m.count < 2) continue;
-      const double part = m.count * m.variance;
-      scatter += part, squares += part * part / (m.count - 1), cubes += m.count * m.third;
+      const double part = m.count * (m.variance / scale / scale);
+      scatter += part, squares += part * part / (m.count - 1);
+      cubes += m.count * (m.third / scale / scale / scale);
     }
   }
+  double standard_error() const { return scale * std::sqrt(scatter) / count; }
   double degrees() const {
     // A whole number may be missed by a rounding.
     return std::floor(std::clamp(scatter * scatter / squares * (1 + 1e-12), 1.0, kMostDegrees));
@@ -81,9 +92,10 @@ Estimate estimated_mean(const std::vector<StratumMoments>& strata, bool has_thir
   e.value = all.sum / all.count;
   if (are_fixed) e.method = kExactMethod;
   if (are_fixed) return e;
-  if (!(all.scatter > 0)) e.add_note(all.count > 1 ? "no scatter" : "one run");
-  if (!(all.scatter > 0)) return e;
-  const double se = std::sqrt(all.scatter) / all.count, d = all.degrees(), t = student_quantile(0.05, d);
+  const bool has_scatter = all.scatter > 0 && std::isfinite(all.scatter);
+  if (!has_scatter) e.add_note(all.count > 1 ? "no scatter" : "one run");
+  if (!has_scatter) return e;
+  const double se = all.standard_error(), d = all.degrees(), t = student_quantile(0.05, d);
   e.low = e.value - t * se, e.high = e.value + t * se, e.method = "Student's t";
   if (all.count < kHallNumbers) e.add_note("assumes a normal distribution");
   if (all.count < kHallNumbers || d < kHallDegrees) return e;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "analysis/statistics/student.h"
@@ -23,7 +24,8 @@ enum class Place : std::int32_t {
   above_the_runs,
   no_direction,
   none_of_the_runs,
-  all_of_the_runs
+  all_of_the_runs,
+  rises_and_falls
 };
 const std::vector<std::string> kPlaceNames = {"inside",
                                               "below the first value",
@@ -34,7 +36,8 @@ const std::vector<std::string> kPlaceNames = {"inside",
                                               "above the values with runs",
                                               "no direction",
                                               "none of the runs",
-                                              "all of the runs"};
+                                              "all of the runs",
+                                              "rises and falls"};
 
 // The runs of one group of cells, in increasing order of the axis.
 struct AxisRuns {
@@ -150,6 +153,7 @@ Row row_of(const AxisRuns& runs, const std::optional<bool>& rises, double level)
   const Limit limit = estimated_limit(runs.values, {level, *rises, runs.are_independent});
   Row row{limit.estimate, static_cast<Place>(limit.place)};
   if (limit.place == LimitPlace::no_runs) row.place = Place::no_runs;
+  if (limit.place == LimitPlace::rises_and_falls) row.place = Place::rises_and_falls;
   if (limit.place == LimitPlace::below_the_first && !runs.has_first) row.place = Place::below_the_runs;
   if (limit.place == LimitPlace::above_the_last && !runs.has_last) row.place = Place::above_the_runs;
   return row;
@@ -177,6 +181,24 @@ CellCounts counts_of_runs(const SweepResult& result, const LimitQuestion& questi
   return {[&](std::size_t cell) { return event_counts(result, measure, cell, question.threshold); }};
 }
 
+// Returns the number of runs of these cells that share no random numbers.
+std::int64_t clusters_in(const CellCounts& cells, const CellStreams& streams,
+                         const std::vector<std::size_t>& group) {
+  if (cells.clusters) return cells.clusters(group);
+  const bool by_replicate = streams.share_replicates(group);
+  std::map<std::pair<bool, std::size_t>, std::int64_t> most;
+  for (const std::size_t cell : group) {
+    const std::int64_t runs = cells.events(cell).runs();
+    const bool is_fixed = streams.is_fixed(cell);
+    const std::size_t key = is_fixed ? cell : by_replicate ? streams.seed[cell] : streams.noise_cell[cell];
+    std::int64_t& own = most[{is_fixed, key}];
+    own = std::max(own, is_fixed ? std::min<std::int64_t>(runs, 1) : runs);
+  }
+  std::int64_t sum = 0;
+  for (const auto& [key, runs] : most) sum += runs;
+  return sum;
+}
+
 // Returns the direction in which the event becomes more probable.
 std::optional<bool> direction_of(const std::vector<AxisRuns>& rows, bool are_independent) {
   for (const bool rising : {true, false})
@@ -200,6 +222,10 @@ bool groups_are_independent(const std::vector<CellGroup>& groups, const CellStre
 EventLimits event_limits(const SweepResult& result, const LimitQuestion& question,
                          const CellStreams& streams) {
   CellCounts cells = counts_of_runs(result, question);
+  cells.clusters = [&](const std::vector<std::size_t>& group) {
+    const bool by_replicate = streams.share_replicates(group);
+    return static_cast<std::int64_t>(clusters_of(result, streams, group, by_replicate).size());
+  };
   if (!result.notes.empty())
     cells.noted = [&](std::size_t cell) { return noted_runs(result, {{{}, {cell}}}).front(); };
   return event_limits(result, cells, question, streams);
@@ -219,8 +245,11 @@ EventLimits event_limits(const SweepResult& result, const CellCounts& cells, con
   for (std::size_t i = 0; i < groups.size(); ++i) {
     Row row = row_of(all[i], rises, question.level);
     note_unknown_values(all[i], row.estimate);
-    if (const std::string equal = equal_runs_note(result, streams, groups[i].cells); !equal.empty())
+    row.estimate.clusters = clusters_in(cells, streams, groups[i].cells);
+    const auto runs_in = [&](std::size_t cell) { return cells.events(cell).runs(); };
+    if (const std::string equal = equal_runs_note(streams, groups[i].cells, runs_in); !equal.empty())
       row.estimate.add_note(equal);
+    note_shared(row.estimate, all[i].sum().runs(), row.estimate.clusters, "runs");
     estimates.push_back(std::move(row.estimate)), places.push_back(static_cast<std::int32_t>(row.place));
     if (!cells.noted) continue;
     noted.push_back(0);
@@ -233,10 +262,11 @@ EventLimits event_limits(const SweepResult& result, const CellCounts& cells, con
                 {axis.units,
                  "value of the axis at which the event has the given probability; NaN: not between values "
                  "with runs",
-                 "number of finished runs"},
+                 kRunsMeaning},
                 noted);
-  table.columns.push_back({"place", "1", "where the limit is, relative to the values of the axis",
-                           std::move(places), 1, kPlaceNames});
+  table.columns.push_back({name_beside(table, "place"), "1",
+                           "where the limit is, relative to the values of the axis", std::move(places), 1,
+                           kPlaceNames});
   return {std::move(table), rises};
 }
 
@@ -249,12 +279,19 @@ Table limit_comparisons(const SweepResult& result, const LimitQuestion& question
   std::erase_if(groups, [](const CellGroup& group) { return group.indices.back() == 0; });
   const auto& x = std::get<std::vector<double>>(result.axes[question.along].values);
   const std::vector<double>& measure = result.measure(question.measure);
-  const auto curve_of = [&](const CellGroup& group, bool is_first) {
+  const auto first_of = [&](const CellGroup& group) {
+    std::vector<std::size_t> cells;
+    for (const std::size_t cell : group.cells) {
+      std::vector<std::size_t> indices = result.axis_indices(cell);
+      indices[between] = 0;
+      cells.push_back(result.cell_at(indices));
+    }
+    return cells;
+  };
+  const auto curve_of = [&](const std::vector<std::size_t>& cells) {
     std::vector<OutcomesAtValue> curve;
     for (const std::size_t i : by_value(x)) {
-      std::vector<std::size_t> indices = result.axis_indices(group.cells[i]);
-      if (is_first) indices[between] = 0;
-      const std::size_t cell = result.cell_at(indices);
+      const std::size_t cell = cells[i];
       OutcomesAtValue& value = curve.emplace_back(OutcomesAtValue{x[i], {}, streams.is_fixed(cell)});
       for (int replicate = 0; replicate < result.replicates; ++replicate) {
         const std::size_t run = result.run(cell, replicate);
@@ -268,9 +305,10 @@ Table limit_comparisons(const SweepResult& result, const LimitQuestion& question
     Estimate& e = estimates.emplace_back();
     if (!question.rises) e.add_note("no direction");
     if (!question.rises) continue;
-    e = estimated_limit_comparison(curve_of(group, true), curve_of(group, false),
-                                   {question.level, *question.rises, streams.are_independent(group.cells)},
-                                   comparison);
+    const std::vector<std::size_t> first = first_of(group);
+    const bool are_independent = streams.are_independent(first) && streams.are_independent(group.cells);
+    e = estimated_limit_comparison(curve_of(first), curve_of(group.cells),
+                                   {question.level, *question.rises, are_independent}, comparison);
     if (result.round.empty()) continue;
     e.low = e.high = e.p = std::numeric_limits<double>::quiet_NaN();
     e.method.clear(), e.add_note("the sweep was refined: no interval");

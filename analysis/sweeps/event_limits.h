@@ -37,7 +37,8 @@ struct EventLimits {
 // favourable assignment of unknown outcomes. Rows that share random numbers count as if they were one. Fixed
 // cells show a slope without a test. Without a direction there is no limit; `place` then says that all or
 // none of the runs of the row had the event, or else that there is no direction. A row that clearly changes
-// the other way has no limit, and `place` says so. Values without a finished run are left out.
+// the other way has no limit, and neither has one that rises and falls (estimated_limit()); `place` says so.
+// Values without a finished run are left out.
 EventLimits event_limits(const SweepResult& result, const LimitQuestion& question,
                          const CellStreams& streams);
 
@@ -45,6 +46,8 @@ EventLimits event_limits(const SweepResult& result, const LimitQuestion& questio
 struct CellCounts {
   std::function<EventCounts(std::size_t cell)> events;       // counts the finished runs
   std::function<std::int64_t(std::size_t cell)> noted = {};  // finished runs with a note; empty: not known
+  // The number of clusters of some cells; empty: the most runs of any of the cells that share random numbers.
+  std::function<std::int64_t(const std::vector<std::size_t>& cells)> clusters = {};
 };
 // The same with these counts. Only the axes of the outline are used.
 EventLimits event_limits(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question,

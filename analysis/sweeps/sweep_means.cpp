@@ -65,7 +65,7 @@ Estimate exact_estimate(const ValueClusters& row) {
 Estimate fraction_estimate(const ValueClusters& row) {
   std::vector<EventCounts> counts;
   for (const std::vector<double>& values : row.values) counts.push_back(counts_of(values));
-  return estimated_fraction(counts);
+  return row.are_fixed ? exact_fraction(sum_of(counts)) : estimated_fraction(counts);
 }
 
 Estimate mean_estimate(const ValueClusters& row) {
@@ -104,12 +104,13 @@ Estimate pair_estimate(const ValueClusters& row, bool is_event, PairOf&& pair_of
   return e;
 }
 
-void note_clusters(Estimate& e, const ValueClusters& row, const std::string& equal_runs, const char* what) {
+void note_clusters(Estimate& e, const ValueClusters& row, const SweepResult& result,
+                   const CellStreams& streams, const CellGroup& group, const char* what) {
+  const std::string equal_runs = equal_runs_note(streams, group.cells, [&](std::size_t cell) {
+    return event_counts(result, std::get<std::vector<double>>(result.measures[0].values), cell).runs();
+  });
   if (!equal_runs.empty()) e.add_note(equal_runs);
-  const auto clusters = static_cast<std::int64_t>(row.clusters.size());
-  if (clusters < row.runs)
-    e.add_note(std::to_string(row.runs) + " " + what + " share random numbers and count as " +
-               std::to_string(clusters));
+  note_shared(e, row.runs, static_cast<std::int64_t>(row.clusters.size()), what);
 }
 
 const Column& measure_column(const SweepResult& result, const std::string& measure) {
@@ -124,12 +125,6 @@ std::size_t moved(const SweepResult& result, std::size_t cell, std::size_t axis,
   return result.cell_at(indices);
 }
 
-std::string name_beside(const Table& table, const std::string& name) {
-  const bool is_taken = std::any_of(table.columns.begin(), table.columns.end(),
-                                    [&](const Column& column) { return column.name == name; });
-  return is_taken ? name + "_of_answer" : name;
-}
-
 Column* with_meaning(Table& table, const char* meaning) {
   for (Column& column : table.columns)
     if (column.long_name == meaning) return &column;
@@ -138,13 +133,25 @@ Column* with_meaning(Table& table, const char* meaning) {
 
 }  // namespace
 
-void note_unknown(Estimate& e, std::int64_t runs, bool is_event) {
+std::string name_beside(const Table& table, const std::string& name) {
+  const bool is_taken = std::any_of(table.columns.begin(), table.columns.end(),
+                                    [&](const Column& column) { return column.name == name; });
+  return is_taken ? name + "_of_answer" : name;
+}
+
+void note_unknown(Estimate& e, std::int64_t runs, bool is_event, const std::string& what) {
   if (e.unknown == 0) return;
+  const std::string all = " of " + std::to_string(runs) + " " + what;
   if (!is_event)
-    e.add_note("of " + std::to_string(runs - e.unknown) + " of " + std::to_string(runs) +
-               " runs that have a value");
+    e.add_note("of " + std::to_string(runs - e.unknown) + all + " that have a value");
   else if (20 * e.unknown > runs)
-    e.add_note(std::to_string(e.unknown) + " of " + std::to_string(runs) + " runs unknown");
+    e.add_note(std::to_string(e.unknown) + all + " unknown");
+}
+
+void note_shared(Estimate& e, std::int64_t runs, std::int64_t clusters, const char* what) {
+  if (clusters < runs)
+    e.add_note(std::to_string(runs) + " " + what + " share random numbers and count as " +
+               std::to_string(clusters));
 }
 
 std::vector<std::int64_t> noted_runs(const SweepResult& result, const std::vector<CellGroup>& groups) {
@@ -181,8 +188,10 @@ void add_estimates(Table& table, const std::vector<Estimate>& estimates, const E
     table.columns.push_back({name_beside(table, name), unit, meaning, std::move(values)});
   };
   add("value", texts.unit, texts.value, numbers_of(&Estimate::value));
-  add("low", texts.unit, "lower end of its 95 % interval; NaN: open", numbers_of(&Estimate::low));
-  add("high", texts.unit, "upper end of its 95 % interval; NaN: open", numbers_of(&Estimate::high));
+  add("low", texts.unit, "lower end of its 95 % interval; NaN: open, or no interval",
+      numbers_of(&Estimate::low));
+  add("high", texts.unit, "upper end of its 95 % interval; NaN: open, or no interval",
+      numbers_of(&Estimate::high));
   add("runs", "1", texts.runs, counts_of_rows(&Estimate::clusters));
   add("unknown", "1", "number of runs whose value is unknown", counts_of_rows(&Estimate::unknown));
   if (!noted.empty()) add("noted_runs", "1", "number of finished runs with a note", counts_in_column(noted));
@@ -215,13 +224,16 @@ std::string adjust_together(std::vector<Table>& tables) {
       for (const Column& counts : table.columns)
         if (const auto* pairs = std::get_if<std::vector<std::int32_t>>(&counts.values);
             pairs && counts.name.starts_with("runs"))
-          for (const std::int32_t n : *pairs) most = std::max<std::int64_t>(most, n);
+          for (std::size_t row = 0; row < values.size(); ++row)
+            if (!std::isnan(values[row])) most = std::max<std::int64_t>(most, (*pairs)[row]);
     }
-  std::string text = "adjusted_p: after Holm, over all " + std::to_string(tests) + " tests of this answer. ";
+  std::string text = "adjusted_p: after Holm, over " +
+                     (tests == 1 ? std::string("the only test") : "all " + std::to_string(tests) + " tests") +
+                     " of this answer. ";
   const std::int64_t needed = pairs_for_family(tests);
   if (most < needed)
-    text += "That many tests need at least " + std::to_string(needed) +
-            " pairs in a row, or none can have an adjusted p of 0.05. ";
+    text += "With so many tests an adjusted p of at most 0.05 needs a row of at least " +
+            std::to_string(needed) + " pairs. ";
   return text;
 }
 
@@ -236,17 +248,16 @@ Table sweep_means(const SweepResult& result, const std::string& measure, const s
     const ValueClusters row(clusters_of(result, streams, group.cells, by_replicate), by_replicate,
                             [&](std::size_t run) { return values[run]; });
     Estimate e = row.clusters.empty() ? Estimate{}
-                 : row.are_fixed      ? exact_estimate(row)
                  : is_event(column)   ? fraction_estimate(row)
+                 : row.are_fixed      ? exact_estimate(row)
                                       : mean_estimate(row);
-    note_clusters(e, row, equal_runs_note(result, streams, group.cells), "runs");
+    note_clusters(e, row, result, streams, group, "runs");
     note_unknown(e, row.runs, is_event(column));
     estimates.push_back(std::move(e));
   }
   Table table{"mean_" + measure, "mean of " + measure, axes_of(result, by, groups)};
   add_estimates(table, estimates,
-                {column.units, (is_event(column) ? "fraction: " : "mean: ") + column.long_name,
-                 "number of independent runs; those that share random numbers count as one"},
+                {column.units, (is_event(column) ? "fraction: " : "mean: ") + column.long_name, kRunsMeaning},
                 noted_runs(result, groups));
   return table;
 }
@@ -275,13 +286,15 @@ Table sweep_differences(const SweepResult& result, const std::string& measure, s
       std::erase_if(cluster.runs,
                     [&](std::size_t run) { return result.state[partner(run)] != RunState::done; });
     std::erase_if(clusters, [](const RunCluster& cluster) { return cluster.runs.empty(); });
-    const ValueClusters row(std::move(clusters), by_replicate,
-                            [&](std::size_t run) { return values[run] - values[partner(run)]; });
+    const ValueClusters row(std::move(clusters), by_replicate, [&](std::size_t run) {
+      const double difference = values[run] - values[partner(run)];
+      return std::isfinite(difference) ? difference : kNone;
+    });
     Estimate e = pair_estimate(row, is_event(column), [&](std::size_t run) {
       return OutcomePair{values[partner(run)], values[run]};
     });
-    note_clusters(e, row, equal_runs_note(result, of_pairs, group.cells), "pairs");
-    note_unknown(e, row.runs, is_event(column));
+    note_clusters(e, row, result, of_pairs, group, "pairs");
+    note_unknown(e, row.runs, is_event(column), "pairs");
     estimates.push_back(std::move(e));
   }
   Table table{"difference_" + measure,

@@ -30,6 +30,8 @@ Table sweep_means(const SweepResult& result, const std::string& measure, const s
 Table sweep_differences(const SweepResult& result, const std::string& measure, std::size_t between,
                         const std::vector<std::size_t>& by, const CellStreams& streams);
 
+inline constexpr const char* kRunsMeaning =
+    "number of independent runs; those that share random numbers count as one";
 // The meaning of the columns of a table of estimates.
 struct EstimateTexts {
   std::string unit;
@@ -42,6 +44,8 @@ struct EstimateTexts {
 // adjusted_p: after Holm, over the rows of the table.
 void add_estimates(Table& table, const std::vector<Estimate>& estimates, const EstimateTexts& texts,
                    const std::vector<std::int64_t>& noted);
+// Returns the name of a further column of an answer: `name`, or NAME_of_answer if an axis has it.
+std::string name_beside(const Table& table, const std::string& name);
 // The number of finished runs with a note in each group; empty if the result has no notes.
 std::vector<std::int64_t> noted_runs(const SweepResult& result, const std::vector<CellGroup>& groups);
 
@@ -51,6 +55,8 @@ std::string adjust_together(std::vector<Table>& tables);
 
 // Adds a note on unknown runs to an estimate: for an event if they are more than 5 % of `runs`, for a mean
 // always, because it leaves them out.
-void note_unknown(Estimate& estimate, std::int64_t runs, bool is_event);
+void note_unknown(Estimate& estimate, std::int64_t runs, bool is_event, const std::string& what = "runs");
+// Adds a note if the clusters are fewer than the runs. what: "runs" or "pairs".
+void note_shared(Estimate& estimate, std::int64_t runs, std::int64_t clusters, const char* what);
 
 }  // namespace remote_touch

@@ -36,9 +36,7 @@ Estimate fraction_of(const SweepTally& tally, std::size_t measure, const CellGro
     all.add(RunsAtValue{0, own, streams.is_fixed(cell)}.of_one_run_if_fixed().counts);
     are_fixed &= streams.is_fixed(cell) || own.runs() == 0;
   }
-  Estimate e = estimated_fraction(all);
-  if (are_fixed && all.runs() > 0) e.low = e.high = Estimate{}.low, e.method = kExactMethod;
-  return e;
+  return are_fixed && all.runs() > 0 ? exact_fraction(all) : estimated_fraction(all);
 }
 
 Estimate mean_of(const SweepTally& tally, std::size_t measure, const CellGroup& group,
@@ -49,25 +47,16 @@ Estimate mean_of(const SweepTally& tally, std::size_t measure, const CellGroup& 
     if (const CellTally* const own = tally_of(tally, cell)) {
       const MeasureTally& values = own->measures[measure];
       const bool is_fixed = streams.is_fixed(cell);
+      const std::int64_t without_value = values.unknown + values.infinite;
       are_fixed &= is_fixed;
       strata.push_back({{static_cast<double>(values.values), values.values > 0 ? values.mean() : 0,
                          values.values > 1 ? values.variance() : 0, 0},
                         is_fixed,
-                        is_fixed ? std::min<std::int64_t>(values.unknown, 1) : values.unknown});
+                        is_fixed ? std::min<std::int64_t>(without_value, 1) : without_value});
     }
   Estimate e = estimated_mean(strata, false);
   if (are_fixed && !strata.empty()) e.clusters += e.unknown, e.method = kExactMethod;
   return e;
-}
-
-// The note on the fixed cells of a row, as equal_runs_note().
-std::string equal_runs(const SweepTally& tally, const CellGroup& group, const CellStreams& streams) {
-  std::int64_t runs = 0, fixed = 0;
-  for (const std::size_t cell : group.cells)
-    if (const CellTally* const own = tally_of(tally, cell); own && streams.is_fixed(cell) && own->done > 1)
-      runs += own->done, ++fixed;
-  if (fixed == 0) return {};
-  return std::to_string(runs) + " equal runs count as " + (fixed == 1 ? "one" : std::to_string(fixed));
 }
 
 }  // namespace
@@ -77,11 +66,23 @@ EventCounts event_counts(const SweepTally& tally, std::size_t measure, std::uint
   return own ? counts_in(*own, measure) : EventCounts{};
 }
 
+std::int64_t noted_runs(const SweepTally& tally, std::uint64_t cell) {
+  std::int64_t most = 0;
+  if (const CellTally* const own = tally_of(tally, cell))
+    for (const NoteTally& note : own->notes) most = std::max(most, note.runs);
+  return most;
+}
+
 Table tally_means(const SweepTally& tally, const SweepResult& outline, std::size_t measure,
                   const std::vector<std::size_t>& by, const CellStreams& streams) {
   const Column& column = tally.measures[measure];
   const std::vector<CellGroup> groups = cell_groups(outline, by);
+  const auto done = [&](std::size_t cell) {
+    const CellTally* const own = tally_of(tally, cell);
+    return own ? own->done : 0;
+  };
   std::vector<Estimate> estimates;
+  std::vector<std::int64_t> noted;
   for (const CellGroup& group : groups) {
     if (!streams.are_independent(group.cells))
       throw InputError("by",
@@ -89,21 +90,21 @@ Table tally_means(const SweepTally& tally, const SweepResult& outline, std::size
                        "all axes, or a sweep with \"keep\": \"runs\"");
     Estimate e = is_event(column) ? fraction_of(tally, measure, group, streams)
                                   : mean_of(tally, measure, group, streams);
-    std::int64_t runs = 0;
-    for (const std::size_t cell : group.cells)
-      if (const CellTally* const own = tally_of(tally, cell)) {
-        const std::int64_t of_cell = own->measures[measure].values + own->measures[measure].unknown;
-        runs += streams.is_fixed(cell) ? std::min<std::int64_t>(of_cell, 1) : of_cell;
-      }
-    if (const std::string equal = equal_runs(tally, group, streams); !equal.empty()) e.add_note(equal);
+    std::int64_t runs = 0, with_note = 0;
+    for (const std::size_t cell : group.cells) {
+      runs += streams.is_fixed(cell) ? std::min<std::int64_t>(done(cell), 1) : done(cell);
+      with_note += noted_runs(tally, cell);
+    }
+    if (!tally.note_kinds.empty()) noted.push_back(with_note);
+    if (const std::string equal = equal_runs_note(streams, group.cells, done); !equal.empty())
+      e.add_note(equal);
     note_unknown(e, runs, is_event(column));
     estimates.push_back(std::move(e));
   }
   Table table{"mean_" + column.name, "mean of " + column.name, axes_of(outline, by, groups)};
   add_estimates(table, estimates,
-                {column.units, (is_event(column) ? "fraction: " : "mean: ") + column.long_name,
-                 "number of independent runs"},
-                {});
+                {column.units, (is_event(column) ? "fraction: " : "mean: ") + column.long_name, kRunsMeaning},
+                noted);
   return table;
 }
 

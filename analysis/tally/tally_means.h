@@ -14,6 +14,10 @@ namespace remote_touch {
 // event (is_event()).
 EventCounts event_counts(const SweepTally& tally, std::size_t measure, std::uint64_t cell);
 
+// Returns the number of finished runs of a cell with a note. If there are several kinds of notes, it is that
+// of the most frequent kind: a tally does not know how many runs have two kinds.
+std::int64_t noted_runs(const SweepTally& tally, std::uint64_t cell);
+
 // Returns a table as sweep_means() does, but without a correction for skewness: a tally has no third moments.
 // outline: of the tally. Throws InputError, about the options `by`, if a row would pool cells that share
 // random numbers, because a tally does not know which of its runs do.

@@ -114,6 +114,7 @@ void add_limits(Figure& figure, const Asked& asked, const SweepQuestion& questio
   number_of_column(result.measures, event, "limit");
   if (!(question.level > 0 && question.level < 1))
     throw InputError("level " + std::to_string(question.level), "expected a probability between 0 and 1");
+  if (!std::isfinite(question.threshold)) throw InputError("above", "expected a finite number");
   LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level,
                       direction_in(question)};
   const auto [table, rises] = asked.limits(limit);
@@ -147,21 +148,31 @@ void add_means(Figure& figure, const Asked& asked, const std::vector<std::string
     figure.caption += "The sweep was refined: a mean over several cells counts only those that have runs. ";
 }
 
+// Returns what the random numbers of the two runs of a pair have in common, in all pairs.
+const char* noise_of_pairs(const Asked& asked, std::size_t between) {
+  const CellStreams& streams = asked.streams;
+  bool are_fixed = true, is_common = true, are_independent = true;
+  for (std::size_t cell = 0; cell < asked.result.cell_count(); ++cell) {
+    std::vector<std::size_t> indices = asked.result.axis_indices(cell);
+    if (indices[between] == 0) continue;
+    indices[between] = 0;
+    const std::size_t first = asked.result.cell_at(indices);
+    are_fixed &= streams.is_fixed(cell) && streams.is_fixed(first);
+    is_common &= streams.noise_cell[cell] == streams.noise_cell[first];
+    are_independent &= streams.are_independent({first, cell});
+  }
+  if (are_fixed) return ", which draw no random number. ";
+  if (is_common) return " and the same noise. ";
+  return are_independent ? ", whose noise is independent. " : ", some of which share random numbers. ";
+}
+
 void add_differences(Figure& figure, const Asked& asked, const SweepQuestion& question, Axes by) {
   const SweepResult& result = asked.result;
   const std::size_t between = axis_between(result, question.between);
   std::erase(by, between);
   const Column& axis = result.axes[between];
-  std::vector<std::size_t> first_cells(2, 0), indices(result.axes.size(), 0);
-  indices[between] = 1, first_cells[1] = result.cell_at(indices);
-  const std::vector<std::size_t>& noise = asked.streams.noise_cell;
-  const bool common = noise[first_cells[0]] == noise[first_cells[1]];
-  const bool independent = asked.streams.are_independent(first_cells);
   figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) +
-                    ", in pairs of runs with the same replicate" +
-                    (common        ? " and the same noise. "
-                     : independent ? ", whose noise is independent. "
-                                   : ", which share some of their random numbers. ");
+                    ", in pairs of runs with the same replicate" + noise_of_pairs(asked, between);
   for (const std::string& measure : question.differences) {
     number_of_column(result.measures, measure, "difference");
     const Table table = asked.differences(measure, between, by);
@@ -292,8 +303,9 @@ Figure sweep_answer(const SweepTally& tally, const std::string& config, const Sw
   const CellStreams streams = streams_of(outline, config);
   const auto limits = [&](const LimitQuestion& limit) {
     const std::size_t measure = number_of_event(tally, limit);
-    return event_limits(outline, {[&](std::size_t cell) { return event_counts(tally, measure, cell); }},
-                        limit, streams);
+    CellCounts counts{[&](std::size_t cell) { return event_counts(tally, measure, cell); }};
+    if (!tally.note_kinds.empty()) counts.noted = [&](std::size_t cell) { return noted_runs(tally, cell); };
+    return event_limits(outline, counts, limit, streams);
   };
   const auto means = [&](const std::string& measure, const Axes& by) {
     return tally_means(tally, outline, number_of_column(tally.measures, measure, "mean"), by, streams);

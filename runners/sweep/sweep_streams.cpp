@@ -36,6 +36,14 @@ std::vector<std::size_t> axes_with(const std::vector<SweepAxis>& axes, IsAsked&&
   return numbers;
 }
 
+// Returns the seed of the runs of a cell; `seed` where no axis sets one.
+std::uint64_t seed_of(std::uint64_t seed, const std::vector<SweepAxis>& axes, const Indices& indices) {
+  for (std::size_t i = 0; i < axes.size(); ++i)
+    for (const auto& [path, value] : axes[i].settings[indices[i]])
+      if (path == "seed") seed = value.get<std::uint64_t>();
+  return seed;
+}
+
 CellStreams known_streams(const SweepResult& result, const std::string& config) {
   const std::string label = "the configuration of the sweep";
   const Json json = parse_json(config, label);
@@ -49,8 +57,10 @@ CellStreams known_streams(const SweepResult& result, const std::string& config) 
   const std::vector<std::size_t> of_draws = axes_with(axes, may_change_streams);
   const std::vector<std::size_t> of_seed =
       axes_with(axes, [](const std::string& path) { return path == "seed"; });
+  const std::uint64_t common_seed = Experiment::from_json(experiment).settings().key.seed;
   std::map<Indices, RandomStreams> known;
-  std::map<Indices, std::size_t> seeds;
+  std::map<std::uint64_t, std::size_t> seeds;
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_cell;  // of each seed and noise cell
   CellStreams streams;
   const std::size_t cells = result.cell_count();
   streams.draws.reserve(cells), streams.noise_cell.reserve(cells), streams.seed.reserve(cells);
@@ -64,10 +74,14 @@ CellStreams known_streams(const SweepResult& result, const std::string& config) 
       draws->second = random_streams(Experiment::from_json(own));
     }
     streams.draws.push_back(draws->second);
-    streams.seed.push_back(seeds.try_emplace(chosen(indices, of_seed), seeds.size()).first->second);
+    const std::uint64_t seed = seed_of(common_seed, axes, indices);
+    streams.seed.push_back(seeds.try_emplace(seed, seeds.size()).first->second);
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (axes[i].common_noise) indices[i] = 0;
-    streams.noise_cell.push_back(result.cell_at(indices));
+    std::size_t noise_cell = result.cell_at(indices);
+    if (!of_seed.empty())
+      noise_cell = first_cell.try_emplace({streams.seed.back(), noise_cell}, cell).first->second;
+    streams.noise_cell.push_back(noise_cell);
   }
   return streams;
 }

@@ -14,8 +14,8 @@ Json optional_json(const std::optional<Number>& value) {
   return value ? Json(*value) : Json();
 }
 
-Json interval(const std::pair<double, double>& ends) {
-  return {ends.first, ends.second};
+Json interval(const Estimate& of) {
+  return {of.low, of.high};
 }
 
 Json column_json(const ColumnComparison& column) {
@@ -105,14 +105,14 @@ Json region_json(const SweepComparison& sweep, const RegionComparison& region) {
           {"down", region.down},
           {"got_better", region.got_better},
           {"got_worse", region.got_worse},
-          {"difference", interval({region.difference.low, region.difference.high})},
+          {"difference", interval(region.difference)},
           {"baseline_events", region.baseline_events},
           {"candidate_events", region.candidate_events},
           {"baseline_fraction", interval(region.baseline_fraction)},
           {"candidate_fraction", interval(region.candidate_fraction)},
           {"unpaired", region.unpaired},
           {"mean_difference", region.mean.value},
-          {"mean_interval", interval({region.mean.low, region.mean.high})},
+          {"mean_interval", interval(region.mean)},
           {"baseline_spread", region.baseline_spread},
           {"mean_p", region.mean.p},
           {"p", region.difference.p},
@@ -124,7 +124,7 @@ Json sweep_json(const SweepComparison& sweep, bool paired) {
   Json json = {{"problems", sweep.problems}, {"notes", sweep.notes}, {"runs", sweep.done_in_both}};
   json["done_in_baseline_only"] = sweep.baseline_only.size();
   json["done_in_candidate_only"] = sweep.candidate_only.size();
-  json["newly_failed"] = sweep.newly_failed;
+  json["newly_failed"] = sweep.newly_failed, json["tests"] = sweep.tests;
   for (std::size_t i = 0; i < sweep.measures.size(); ++i)
     json["measures"].push_back(measure_json(sweep.measures[i], judgement_of(sweep, i, paired)));
   if (sweep.first)

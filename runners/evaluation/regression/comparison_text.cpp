@@ -160,10 +160,34 @@ bool is_reported(const SweepComparison& sweep, std::size_t region, std::size_t m
   return region == 0 || sweep.measures[measure].event || is_change(sweep.at(region, measure).judgement);
 }
 
-// Returns the smaller p of the tests of a region, as it is and adjusted.
-std::string p_text(const RegionComparison& region) {
-  if (std::isnan(region.adjusted_p)) return "no p";
-  return text("p %.3g, adjusted %.3g", std::fmin(region.difference.p, region.mean.p), region.adjusted_p);
+// Returns the smaller p of the tests of a region, as it is and adjusted, with its test. Skewed tests do not
+// count.
+std::string p_text(const RegionComparison& region, bool is_event) {
+  const Estimate* least = nullptr;
+  for (const Estimate* const test : {&region.difference, &region.mean})
+    if (!std::isnan(test->p) && !test->is_skewed && (!least || test->p < least->p)) least = test;
+  if (!least) return region.difference.is_skewed || region.mean.is_skewed ? kSkewedNote : "no p";
+  const std::string name = least->method == "Tango, sign test" ? "sign test" : least->method;
+  const char* const of = is_event ? "" : least == &region.mean ? " of the mean" : " of the shares";
+  return text("p %.3g, adjusted %.3g (%s%s)", least->p, region.adjusted_p, name.c_str(), of);
+}
+
+// "0.500 (0.400 to 0.600)", "0.500 (exact)"
+std::string with_interval(const char* format, const Estimate& e) {
+  if (std::isnan(e.value)) return "-";
+  const std::string value = text(format, e.value);
+  if (e.method == kExactMethod) return value + " (exact)";
+  if (std::isnan(e.low + e.high)) return value;
+  return value + " (" + text(format, e.low) + " to " + text(format, e.high) + ")";
+}
+
+std::string runs_text(const RegionComparison& region) {
+  const auto runs = static_cast<long long>(region.runs), clusters = static_cast<long long>(region.clusters);
+  std::string all =
+      clusters == runs ? text("%6lld runs", runs) : text("%6lld clusters of %lld runs", clusters, runs);
+  if (region.pairs < region.runs)
+    all += text(", %lld unknown", static_cast<long long>(region.runs - region.pairs));
+  return all;
 }
 
 // Prints shares with their intervals, the flips both ways, and the result of the paired test.
@@ -171,34 +195,30 @@ void print_regions(const SweepComparison& sweep, std::FILE* out) {
   for (std::size_t m = 0; m < sweep.measures.size(); ++m) {
     if (sweep.measures[m].outside == 0) continue;
     const bool event = sweep.measures[m].event;
-    std::fprintf(
-        out,
-        "  %s by region: %s, more / less in the candidate, interval of the difference of shares, p of %s, and "
-        "adjusted for all tests (Holm)\n",
-        sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference",
-        event ? "McNemar's test (of clusters' means, if runs share random numbers)"
-              : "the sign test or of the mean");
+    std::fprintf(out,
+                 "  %s by region: %s, more / less in the candidate, interval of the difference of shares, p, "
+                 "and adjusted for all %lld tests (Holm), with the test; a cluster has the runs that share "
+                 "random numbers\n",
+                 sweep.measures[m].name.c_str(), event ? "share of runs before and now" : "mean difference",
+                 static_cast<long long>(sweep.tests));
     for (std::size_t r = 0; r < sweep.regions.size(); ++r) {
       if (!is_reported(sweep, r, m)) continue;
       const RegionComparison& region = sweep.at(r, m);
-      const std::string values =
-          event ? text("%.3f (%.3f to %.3f)  %.3f (%.3f to %.3f)",
-                       region.pairs > 0 ? region.baseline_events / static_cast<double>(region.pairs) : 0.0,
-                       region.baseline_fraction.first, region.baseline_fraction.second,
-                       region.pairs > 0 ? region.candidate_events / static_cast<double>(region.pairs) : 0.0,
-                       region.candidate_fraction.first, region.candidate_fraction.second)
-                : text("%.4g (%.4g to %.4g)", region.mean.value, region.mean.low, region.mean.high);
-      const std::string unknown =
-          region.pairs < region.runs
-              ? text(", %lld unknown", static_cast<long long>(region.runs - region.pairs))
-              : std::string();
-      std::fprintf(out, "    %6lld runs%s  %s  %lld / %lld  %+.4f to %+.4f  %s  %s  %s\n",
-                   static_cast<long long>(region.runs), unknown.c_str(), values.c_str(),
-                   static_cast<long long>(region.up), static_cast<long long>(region.down),
-                   region.difference.low, region.difference.high, p_text(region).c_str(),
-                   word_for(region.judgement), sweep.regions[r].label.c_str());
+      const std::string values = event ? with_interval("%.3f", region.baseline_fraction) + "  " +
+                                             with_interval("%.3f", region.candidate_fraction)
+                                       : with_interval("%.4g", region.mean);
+      const Estimate& d = region.difference;
+      const std::string interval =
+          std::isnan(d.low + d.high) ? "no interval" : text("%+.4f to %+.4f", d.low, d.high);
+      std::fprintf(out, "    %s  %s  %lld / %lld  %s  %s  %s  %s\n", runs_text(region).c_str(),
+                   values.c_str(), static_cast<long long>(region.up), static_cast<long long>(region.down),
+                   interval.c_str(), p_text(region, event).c_str(), word_for(region.judgement),
+                   sweep.regions[r].label.c_str());
     }
   }
+  if (sweep.needed_clusters > 0)
+    std::fprintf(out, "  %lld tests show no direction in a region of fewer than %lld independent runs\n",
+                 static_cast<long long>(sweep.tests), static_cast<long long>(sweep.needed_clusters));
 }
 
 void print_sweep(const SweepComparison& sweep, bool paired, std::FILE* out) {

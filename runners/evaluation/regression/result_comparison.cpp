@@ -152,7 +152,7 @@ void judge_sweep(ResultComparison& result, const PairedRule& rule) {
   if (result.paired ? sweep.paired == PairedVerdict::equal : sweep.exact == ExactVerdict::equal)
     return conclude(result, Outcome::same, text);
   if (result.paired && sweep.paired == PairedVerdict::within_margin)
-    return conclude(result, Outcome::same, text + "; all changes are within " + margins);
+    return conclude(result, Outcome::same, text + "; over all runs, all changes are within " + margins);
   if (result.paired && sweep.paired == PairedVerdict::undecided)
     return conclude(result, Outcome::not_comparable,
                     text + "; too few runs to be sure of " + margins + measures);

@@ -6,6 +6,7 @@
 
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "scenarios/camera/depth_sensor.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
@@ -18,7 +19,7 @@ using Names = std::vector<std::string>;
 const Names kOfRun = {"frame_jitter_s", "frame_drop_probability"};
 const Names kOfScene = {"noise_sigma_m", "noise_per_m", "colour_noise", "dropout_probability",
                         "turbidity_per_m"};
-const Names kOfSensor = {"name", "sensor", "noise_px", "lateral_noise_px", "axial_noise"};
+const Names kOfSensor = {"name", "sensor", "noise_px", "disparity_step_px", "lateral_noise_px"};
 const Names kOfFaults = {"repeat_probability",  "ray_noise_m",   "flying_probability",
                          "outlier_probability", "hole_fraction", "dropout_probability",
                          "late_probability"};
@@ -37,12 +38,18 @@ bool is_any_above_0(const Json& section, const Names& parameters) {
   return false;
 }
 
-// A triangulating sensor takes its own noise where a setting is below 0.
+// True if a triangulating sensor may draw. The rounding of active stereo may be all of its noise; structured
+// light has more where it meets a surface at an angle.
 bool triangulation_draws(const Json& scene) {
   const bool is_structured = scene["sensor"] == "structured-light";
-  const double edges = scene.value("lateral_noise_px", -1.0);
-  return scene.value("noise_px", -1.0) != 0 || edges > 0 || (edges < 0 && is_structured) ||
-         (is_structured && scene.value("axial_noise", "") == "nguyen-2012");
+  DepthSensorSettings settings;
+  settings.sensor = is_structured ? DepthSensorKind::structured_light : DepthSensorKind::active_stereo;
+  settings.noise_px = scene.value("noise_px", -1.0);
+  settings.disparity_step_px = scene.value("disparity_step_px", -1.0);
+  settings.lateral_noise_px = scene.value("lateral_noise_px", -1.0);
+  const Triangulation t = triangulation(settings);
+  const double rounding = is_structured ? 0 : t.step_px * t.step_px / 12;
+  return t.lateral_noise_px > 0 || t.noise_px * t.noise_px > rounding;
 }
 
 bool scene_draws(const Json& scene) {

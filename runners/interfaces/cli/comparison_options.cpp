@@ -84,7 +84,7 @@ void add_compare(Subcommands& commands) {
   command
       ->add_option(
           "--alpha", compare->alpha,
-          "significance level: probability of reporting better, worse or changed when nothing has changed")
+          "significance level: the greatest probability of a false better, worse or changed, over all tests")
       ->check(between(0, 1))
       ->capture_default_str();
   command->add_option("--json", compare->json, "also write the complete report to this JSON file");

@@ -25,6 +25,9 @@ TEST(Judged, JudgementFollowsTheDirectionOfTheMeasure) {
   EXPECT_EQ(judge_value(0.005, -0.001, Better::not_negative, {}), Judgement::worse);
   EXPECT_EQ(judge_value(1, 2, Better::smaller, {1, 0}), Judgement::equal);
   EXPECT_EQ(judge_value(1, kInfinity, Better::smaller, {}), Judgement::worse);
+  EXPECT_EQ(judge_value(1, 1 + 1e-12, Better::smaller, {}), Judgement::changed) << "may be rounding";
+  EXPECT_EQ(judge_value(1, 1 + 1e-8, Better::smaller, {}), Judgement::worse);
+  EXPECT_EQ(judge_value(0, 1e-12, Better::smaller, {}), Judgement::worse);
 }
 
 TEST(Judged, NanIsNeitherBetterNorWorse) {

@@ -275,8 +275,11 @@ TEST(RegionComparison, CountsEventsByHand) {
   EXPECT_EQ(first.tested, 50);
   EXPECT_EQ(first.difference.value, 4.0 / 49);
   // The run whose outcome is unknown in both sweeps may be an event in either.
-  EXPECT_EQ(first.baseline_fraction, std::pair(exact_interval(20, 50).first, exact_interval(21, 50).second));
-  EXPECT_EQ(first.candidate_fraction, std::pair(exact_interval(24, 50).first, exact_interval(25, 50).second));
+  const Estimate &was = first.baseline_fraction, &is = first.candidate_fraction;
+  EXPECT_EQ(std::pair(was.low, was.high),
+            std::pair(exact_interval(20, 50).first, exact_interval(21, 50).second));
+  EXPECT_EQ(std::pair(is.low, is.high),
+            std::pair(exact_interval(24, 50).first, exact_interval(25, 50).second));
   EXPECT_NEAR(first.difference.p, 0.548828125, 1e-15);  // 7 up and 4 down: 2 (1 + 11 + 55 + 165 + 330) / 2048
   const OutcomePair both{1, 1}, neither{0, 0}, up{0, 1}, down{1, 0}, unknown{kNaN, kNaN};
   std::vector<std::vector<OutcomePair>> pairs(17, {both});
@@ -340,6 +343,36 @@ TEST(SharedRandomNumbers, RunsOfAReplicateAreOneCluster) {
   EXPECT_EQ(judged({true, false}, true), Judgement::better);
   EXPECT_EQ(judged({true, true}, true), Judgement::undecided);
   EXPECT_EQ(judged({true, true}, false), Judgement::better);  // of one experiment: the program has changed
+}
+
+// Fractions are those of clusters; without random numbers they are exact.
+TEST(SharedRandomNumbers, FractionsCountClusters) {
+  SweepResult a = sweep({numbers("x", 8, 1)}, 5), b = a;
+  for (const std::size_t run : {0, 5, 10, 15, 20, 1}) event(a)[run] = 1;  // five of replicate 0, one of 1
+  const SweepComparison shared = compare(a, b, {}, {}, {}, {streams_of(8, {true, true})});
+  const Estimate direct = estimated_fraction({{5, 3}, {1, 7}, {0, 8}, {0, 8}, {0, 8}});
+  EXPECT_EQ(shared.at(0, 0).runs, 40);
+  EXPECT_EQ(shared.at(0, 0).clusters, 5);
+  EXPECT_EQ(shared.at(0, 0).baseline_fraction.high, direct.high);
+  const SweepComparison fixed = compare(a, b, {}, {}, {}, {streams_of(8, {})});
+  EXPECT_EQ(fixed.at(0, 0).clusters, 8);
+  EXPECT_EQ(fixed.at(0, 0).baseline_fraction.value, 5.0 / 8);
+  EXPECT_EQ(fixed.at(0, 0).baseline_fraction.method, kExactMethod);
+  EXPECT_TRUE(std::isnan(fixed.at(0, 0).baseline_fraction.low));
+}
+
+// Regions whose pairs are equal have nothing to test, so they do not make the adjusted p of others larger.
+TEST(RegionComparison, EqualPairsAreNoTest) {
+  SweepResult a = sweep({numbers("x", 2, 1), numbers("y", 2, 1)}, 8), b = a;
+  for (std::size_t run = 0; run < 8; ++run) depth(b)[run] = 1 + static_cast<double>(run);
+  const SweepComparison c = compare(a, b);
+  EXPECT_EQ(c.regions.size(), 5u);
+  EXPECT_EQ(c.tests, 4);  // of the shares and of the mean, over the whole and in one part
+  EXPECT_TRUE(std::isnan(c.at(2, 1).difference.p) && std::isnan(c.at(2, 1).adjusted_p));
+  EXPECT_EQ(c.at(1, 1).mean.p, 1.0 / 128);
+  EXPECT_DOUBLE_EQ(c.at(1, 1).adjusted_p, 4.0 / 128);
+  EXPECT_EQ(c.needed_clusters, 0);  // 4 tests need 10 pairs, and the whole has 32
+  EXPECT_EQ(compare(a, b, {}, {0.02, 0.1, 1e-10}).needed_clusters, 37);  // 4 / 2^36 < 1e-10
 }
 
 // The candidate has no contact in any run.

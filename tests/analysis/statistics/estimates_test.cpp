@@ -44,6 +44,12 @@ TEST(EstimatedFraction, OfClustersEqualsTheExamples) {
   expect_interval(estimated_fraction(std::vector<EventCounts>(8, {0, 3})), 0, 0, 0.369);
 }
 
+// Equal clusters do not scatter, whatever the rounding of their mean.
+TEST(EstimatedFraction, OfEqualClustersCountsClusters) {
+  expect_interval(estimated_fraction(std::vector<EventCounts>(5, {1, 4})), 0.2, 0.00505, 0.716);
+  expect_interval(estimated_fraction(std::vector<EventCounts>(6, {1, 4})), 0.2, 0.0087, 0.671);
+}
+
 // An event and its absence, in any order of the clusters; each unknown run widens both ends.
 TEST(EstimatedFraction, IsSymmetric) {
   std::mt19937 random(1);
@@ -97,6 +103,23 @@ TEST(EstimatedMean, IsExactForFixedStrata) {
   EXPECT_EQ(estimated_mean(std::vector<double>{3}).note, "one run");
 }
 
+TEST(EstimatedMean, OfEqualNumbersHasNoScatter) {
+  for (std::size_t n = 2; n <= 20; ++n)
+    for (int i = 1; i <= 200; ++i) {
+      const Estimate e = estimated_mean(std::vector<double>(n, 0.1234567 * i));
+      EXPECT_TRUE(std::isnan(e.low) && e.note == "no scatter") << n << " times " << 0.1234567 * i;
+    }
+}
+
+TEST(EstimatedMean, HasTheScaleOfItsNumbers) {
+  const Estimate one = estimated_mean({1, 2, 3, 1, 2, 5, 1});
+  for (const double scale : {1e-90, 1e80}) {
+    const Estimate e = estimated_mean({scale, 2 * scale, 3 * scale, scale, 2 * scale, 5 * scale, scale});
+    EXPECT_NEAR(e.low / scale, one.low, 1e-9);
+    EXPECT_NEAR(e.high / scale, one.high, 1e-9);
+  }
+}
+
 const std::vector<double> kSkewed = {-.4233, -.4994, -.4994, -.4994, -.4233, -.4994,
                                      -.4614, .504,   -.4625, -.4994, -.4245, -.4614};
 
@@ -129,6 +152,13 @@ TEST(EstimatedDifference, OfEqualPairsHasNoInterval) {
     EXPECT_EQ(same.p, std::exp2(1 - static_cast<double>(n)));
     EXPECT_TRUE(std::isnan(none.low) && std::isnan(same.low) && std::isnan(same.high));
   }
+}
+
+TEST(EstimatedDifference, AnInfiniteOneIsUnknown) {
+  const Estimate e = estimated_difference({1, 1, std::numeric_limits<double>::infinity(), 2, 2, 3, 3, 4});
+  EXPECT_EQ(e.value, 16.0 / 7);
+  EXPECT_EQ(e.unknown, 1);
+  expect_near(e.p, 0.0156);
 }
 
 // p is the fraction of the choices of signs whose sum is at least as large in magnitude.
@@ -252,6 +282,21 @@ TEST(EstimatedEventDifference, CoversEveryAssignmentOfUnknownOutcomes) {
   }
 }
 
+// What is not known never makes an interval that the known outcomes do not have.
+TEST(EstimatedEventDifference, UnknownOutcomesAddNoCertainty) {
+  std::vector<std::vector<OutcomePair>> one(1, std::vector<OutcomePair>(100, {0, 0}));
+  EXPECT_TRUE(std::isnan(estimated_event_difference(one).low));
+  one[0][0] = {kNan, kNan};
+  const Estimate e = estimated_event_difference(one);
+  EXPECT_TRUE(std::isnan(e.low) && std::isnan(e.high) && std::isnan(e.p));
+  EXPECT_EQ(e.note, "one run");
+  std::vector<std::vector<OutcomePair>> eight(8, {{0, 1}, {0, 1}});
+  for (auto& cluster : eight) cluster[0].first = kNan;
+  const Estimate all = estimated_event_difference(eight);
+  EXPECT_EQ(all.low, 0.5);  // a test of eight equal clusters
+  EXPECT_EQ(all.high, 1);
+}
+
 std::vector<RunsAtValue> values_of(const std::vector<double>& x, const std::vector<std::int64_t>& events,
                                    std::int64_t runs, const std::vector<std::int64_t>& unknown = {}) {
   std::vector<RunsAtValue> all;
@@ -263,7 +308,8 @@ std::vector<RunsAtValue> values_of(const std::vector<double>& x, const std::vect
 }
 
 void expect_limit(const Estimate& e, double value, double low, double high) {
-  expect_near(e.value, value);
+  EXPECT_EQ(std::isnan(e.value), std::isnan(value));
+  if (!std::isnan(value)) expect_near(e.value, value);
   EXPECT_TRUE(std::isnan(low) ? std::isnan(e.low) : e.low == low) << e.low;
   EXPECT_TRUE(std::isnan(high) ? std::isnan(e.high) : e.high == high) << e.high;
 }
@@ -285,6 +331,22 @@ TEST(EstimatedLimit, EqualsTheExamples) {
   EXPECT_EQ(runs_for_level(0.5), 6);
   EXPECT_EQ(runs_for_level(0.1), 36);
   EXPECT_EQ(runs_for_level(0.05), 72);
+  EXPECT_GT(runs_for_level(1e-20), 1000000);
+}
+
+// There is no one limit. If both ends of the axis are clear, the interval holds all crossings.
+TEST(EstimatedLimit, OfACurveThatRisesAndFalls) {
+  const auto bump = values_of({0, 3, 9, 12, 16, 40, 60, 80}, {0, 0, 40, 40, 40, 0, 1, 0}, 40);
+  for (const bool rises : {true, false}) {
+    const Limit limit = estimated_limit(bump, {0.5, rises});
+    expect_limit(limit.estimate, kNan, kNan, kNan);
+    EXPECT_EQ(limit.place, LimitPlace::rises_and_falls);
+    EXPECT_NE(limit.estimate.note.find("the curve rises and falls"), std::string::npos);
+  }
+  const Limit back = estimated_limit(values_of({1, 2, 3, 4}, {0, 40, 0, 40}, 40), {0.5});
+  expect_limit(back.estimate, back.estimate.value, 1, 4);
+  EXPECT_EQ(back.estimate.note, "the curve rises and falls");
+  EXPECT_EQ(estimated_limit(values_of({1, 2, 3, 4}, {0, 26, 14, 40}, 40), {0.5}).estimate.note, "");
 }
 
 TEST(EstimatedLimit, BorrowsOnlyIndependentRuns) {

@@ -31,6 +31,18 @@ TEST(ExactInterval, CoversAtEveryProbability) {
   EXPECT_GE(least, 0.95);
 }
 
+// Runs that draw nothing: nothing is uncertain but the unknown outcomes.
+TEST(ExactFraction, HasAnIntervalOnlyIfOutcomesAreUnknown) {
+  const Estimate known = exact_fraction({3, 1, 0});
+  EXPECT_EQ(known.value, 0.75);
+  EXPECT_TRUE(std::isnan(known.low) && std::isnan(known.high));
+  EXPECT_EQ(known.method, kExactMethod);
+  const Estimate unknown = exact_fraction({3, 1, 4});
+  EXPECT_EQ(unknown.value, 0.75);
+  EXPECT_EQ(unknown.low, 3.0 / 8);
+  EXPECT_EQ(unknown.high, 7.0 / 8);
+}
+
 TEST(EstimatedQuantile, CoversAsOftenAsItSays) {
   std::mt19937 random(2);
   for (const double q : {0.5, 0.95}) {
@@ -50,6 +62,9 @@ TEST(EstimatedQuantile, CoversAsOftenAsItSays) {
   const Estimate six = estimated_quantile({3, 1, 2, 5, 4, 6}, 0.5);
   EXPECT_EQ(six.low, 1);
   EXPECT_EQ(six.high, 6);
+  std::vector<double> hundred;
+  for (int i = 1; i <= 100; ++i) hundred.push_back(i);
+  EXPECT_EQ(estimated_quantile(hundred, 0.07).value, 7) << "0.07 times 100 is above 7 by a rounding";
 }
 
 }  // namespace

@@ -144,6 +144,24 @@ TEST(EventLimits, OfFixedCellsAreCertain) {
   EXPECT_EQ(counts(limits.table, "runs"), std::vector<std::int32_t>{5});
 }
 
+// Runs that share random numbers along the axis count as one, also if only counts are known.
+TEST(EventLimits, CountClusters) {
+  const SweepResult result = sweep_of({1, 2, 4}, {{0, 25, 75}, {20, 60, 100}});
+  CellStreams common = independent_streams(result.cell_count()), registered = common;
+  common.noise_cell = {0, 0, 0, 3, 3, 3};
+  for (RandomStreams& draws : registered.draws) draws.of_replicate = true;
+  const LimitQuestion question{"event", 0.5, 1, 0.5};
+  const std::vector<double>& values = result.measure("event");
+  const CellCounts of_cells{[&](std::size_t cell) { return event_counts(result, values, cell); }};
+  for (const CellStreams& streams : {common, registered})
+    for (const Table& table : {event_limits(result, question, streams).table,
+                               event_limits(result, of_cells, question, streams).table}) {
+      EXPECT_EQ(counts(table, "runs"), (std::vector<std::int32_t>{kRuns, kRuns}));
+      EXPECT_EQ(std::get<std::vector<std::string>>(table.columns[table.columns.size() - 2].values)[0],
+                "300 runs share random numbers and count as 100");
+    }
+}
+
 // The shares 0.4 and 0.2 are pooled to 0.3, because the event can only become more probable.
 TEST(EventLimits, IgnoreAStepBack) {
   const Table table = limits_of(sweep_of({1, 2, 3, 4}, {{0, 40, 20, 70}}));
@@ -207,6 +225,33 @@ TEST(EventLimits, AnEventIsAMeasureAboveTheThreshold) {
   for (double& value : std::get<std::vector<double>>(result.measures[0].values)) value = 3 + 2 * value;
   EXPECT_DOUBLE_EQ(numbers(limits_of(result, 0.5, 4), "value")[0], 1.5);
   EXPECT_EQ(place(limits_of(result, 0.5, 6), 0), "none of the runs");
+}
+
+TEST(EventLimits, OfACurveThatRisesAndFallsAreNone) {
+  const Table table = limits_of(sweep_of({1, 2, 3, 4, 5}, {{0, 100, 100, 100, 0}, {0, 0, 50, 100, 100}}));
+  EXPECT_EQ(place(table, 0), "rises and falls");
+  EXPECT_TRUE(std::isnan(numbers(table, "value")[0]));
+  EXPECT_EQ(place(table, 1), "inside");
+}
+
+// Values with 5 runs borrow from their neighbours only if both curves have independent runs. The second
+// curve draws nothing.
+TEST(EventLimits, AreComparedWithTheRunsOfBothCurves) {
+  SweepResult result = sweep_of({1, 2, 3, 4, 5, 6}, {{0, 0, 0, 100, 100, 100}, {0, 0, 0, 100, 100, 100}});
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    const std::size_t replicate = static_cast<std::size_t>(result.replicate_of(run));
+    const std::size_t cell = result.cell_of(run);
+    if (replicate >= 8 || (cell < 6 && (replicate + cell) % 8 < 3)) result.state[run] = RunState::pending;
+  }
+  const LimitQuestion question{"event", 0.5, 1, 0.5, true};
+  CellStreams streams = independent_streams(result.cell_count());
+  for (std::size_t cell = 6; cell < 12; ++cell) streams.draws[cell] = {};
+  const auto low = [&] {
+    return numbers(limit_comparisons(result, question, 0, streams, LimitComparison::difference), "low")[0];
+  };
+  EXPECT_FALSE(std::isnan(low()));
+  for (std::size_t cell = 0; cell < 6; ++cell) streams.noise_cell[cell] = 0;
+  EXPECT_TRUE(std::isnan(low()));
 }
 
 TEST(EventLimits, HaveTheValuesOfTheOtherAxes) {

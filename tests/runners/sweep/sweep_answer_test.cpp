@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -124,6 +125,8 @@ TEST(SweepAnswers, RefuseWhatTheSweepDoesNotHave) {
   EXPECT_EQ(why(question), "along method: expected an axis of at least two numbers");
   question.along = "x", question.level = 1;
   EXPECT_HAS(why(question), "expected a probability between 0 and 1");
+  question.level = 0.5, question.threshold = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(why(question), "above: expected a finite number");
   SweepQuestion differences;
   differences.differences = {"max_force"}, differences.between = "z";
   EXPECT_EQ(why(differences), "between z: expected one of r_c, method, x");
@@ -147,6 +150,14 @@ TEST(SweepAnswers, RefuseOptionsWithoutEffect) {
   EXPECT_EQ(why(by), "by: without effect: expected also a mean or a difference");
 }
 
+// The column `runs` of the first table.
+std::vector<std::int32_t> runs_of(const std::string& config, const SweepQuestion& question) {
+  const Table table = sweep_answer(sweep(), config, question).tables.front();
+  for (const Column& column : table.columns)
+    if (column.name == "runs") return std::get<std::vector<std::int32_t>>(column.values);
+  return {-1};
+}
+
 // Runs that share random numbers by the configuration count as one: those of common noise, those of one
 // replicate if there is a registration error, equal runs, and, if the configuration says nothing, all that
 // might.
@@ -155,12 +166,7 @@ TEST(SweepAnswers, CountIndependentRunsByTheConfiguration) {
   const std::string registered = slave + R"(, "registration": {"offset_m": 0.01})";
   SweepQuestion question;
   question.means = {"max_force"}, question.by = {"method"};
-  const auto runs = [&](const std::string& config) {
-    const Table table = sweep_answer(sweep(), config, question).tables.front();
-    for (const Column& column : table.columns)
-      if (column.name == "runs") return std::get<std::vector<std::int32_t>>(column.values).front();
-    return -1;
-  };
+  const auto runs = [&](const std::string& config) { return runs_of(config, question).front(); };
   EXPECT_EQ(runs(config_over_x("")), 6 * kRuns);
   EXPECT_EQ(runs(config_over_x("", R"(, "common_noise": true)")), 2 * kRuns);
   EXPECT_EQ(runs(config_over_x(registered)), kRuns);
@@ -170,6 +176,47 @@ TEST(SweepAnswers, CountIndependentRunsByTheConfiguration) {
   EXPECT_EQ(runs(silent), 6);  // one for each cell
   EXPECT_EQ(runs("{}"), kRuns);
   EXPECT_HAS(sweep_answer(sweep(), "{}", question).caption, "does not tell which runs share random numbers");
+}
+
+std::string replaced(std::string text, const std::string& part, const std::string& by) {
+  return text.replace(text.find(part), part.size(), by);
+}
+
+// A seed is its value, wherever it is set: the noise of two seeds is independent, that of one is shared.
+TEST(SweepAnswers, CountSeedsByTheirValue) {
+  SweepQuestion question;
+  question.means = {"max_force"};
+  const auto runs = [&](const std::string& config, const char* by) {
+    question.by = {by};
+    return runs_of(config, question).front();
+  };
+  const std::string registered = config_over_x(R"(, "slave": {"natural_frequency_hz": 10},
+    "feedback": {"force": "none"}, "registration": {"offset_m": 0.01})");
+  const auto cases = [&](const std::string& values) {
+    return replaced(registered, R"("parameter": "scenario.spacing_m", "values": [0.005, 0.01])",
+                    R"("name": "case", "parameters": ["seed", "scenario.spacing_m"],
+                       "labels": [1, 2], "values": )" +
+                        values);
+  };
+  EXPECT_EQ(runs(cases("[[5, 0.005], [5, 0.01]]"), "method"), kRuns);
+  EXPECT_EQ(runs(cases("[[5, 0.005], [6, 0.01]]"), "method"), 2 * kRuns);
+  const std::string seeds = replaced(kConfig, R"({"name": "old"})", R"({"name": "old", "set": {"seed": 7}})");
+  EXPECT_EQ(runs(kConfig, "r_c"), 3 * kRuns);
+  EXPECT_EQ(runs(seeds, "r_c"), 6 * kRuns);
+  question.differences = {"max_force"}, question.between = "method";
+  EXPECT_HAS(sweep_answer(sweep(), kConfig, question).caption, "the same noise");
+  EXPECT_HAS(sweep_answer(sweep(), seeds, question).caption, "whose noise is independent");
+}
+
+// The rounding of the disparity may be all of a sensor's noise: then its runs are equal.
+TEST(SweepAnswers, ASensorThatOnlyRoundsDrawsNothing) {
+  const std::string scene = replaced(kConfig, R"({"name": "flat-grid", "noise_sigma_m": 0.001})", R"({
+    "name": "mesh-scene", "mesh": "block", "mesh_size_m": 0.2, "sensor": "active-stereo"})");
+  const std::string sensor = replaced(scene, R"("scenario.spacing_m", "values": [0.005, 0.01])",
+                                      R"("scenario.disparity_step_px", "values": [0.5, 0.01])");
+  SweepQuestion question;
+  question.means = {"max_force"}, question.by = {"r_c"};
+  EXPECT_EQ(runs_of(sensor, question), (std::vector<std::int32_t>{6, 3 * kRuns}));
 }
 
 // What the runs of a pair share is said of all pairs, not of those of the first cell, which may draw nothing.
@@ -240,7 +287,7 @@ TEST(SweepAnswers, AnAxisMayHaveTheNameOfAColumn) {
   SweepQuestion question;
   question.limit = "popped_through", question.means = question.differences = {"max_force"};
   question.along = "x";
-  for (const char* taken : {"value", "low", "runs", "method", "p", "note"}) {
+  for (const char* taken : {"value", "low", "runs", "method", "p", "note", "place"}) {
     SweepResult result = sweep();
     result.axes[1].name = taken;
     for (const Table& table : sweep_answer(result, kConfig, question).tables) {

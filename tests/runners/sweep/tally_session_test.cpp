@@ -44,7 +44,7 @@ TEST_F(TallySessions, HaveTheSumsOfTheRuns) {
 TEST_F(TallySessions, HaveTheSameBytesInAnyWay) {
   const std::string whole = bytes_of(made("whole.h5", quick()));
   omp_set_num_threads(1);
-  made("again.h5", quick(), {}, 20);
+  made("again.h5", quick(), {}, 1);  // after the first batch: on a fast machine the second has all the rest
   EXPECT_LT(tally_in(file("again.h5")).held.count(), 60u) << "it was interrupted";
   omp_set_num_threads(4);
   EXPECT_TRUE(bytes_of(made("again.h5", quick())) == whole);
