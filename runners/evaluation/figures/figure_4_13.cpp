@@ -29,7 +29,7 @@ Table with_second_implementation(Table regions) {
 }
 
 // Returns, for each noise strength, the acceleration at which half of the lifts pop through, with its
-// interval (limit.h); the end of the map if that is beyond it.
+// interval (limit.h); the end of the map if that is beyond it; NaN where the curve rises and falls.
 Table contour(const std::string& name, const SweepResult& result) {
   const std::vector<double>& popped = result.measure("popped_through");
   TableRows rows;
@@ -40,7 +40,9 @@ Table contour(const std::string& name, const SweepResult& result) {
       values.push_back({axis_value(result, 1, cell) / kContactRadius_m, event_counts(result, popped, cell)});
     }
     const Limit limit = estimated_limit(values, {});
-    const double end = limit.place == LimitPlace::below_the_first ? values.front().x : values.back().x;
+    const double end = limit.place == LimitPlace::below_the_first  ? values.front().x
+                       : limit.place == LimitPlace::above_the_last ? values.back().x
+                                                                   : kNoValue;
     const Estimate& e = limit.estimate;
     rows.push_back({axis_value(result, 0, result.cell_at({noise, 0})) / kContactRadius_m,
                     limit.place == LimitPlace::inside ? e.value : end, e.low, e.high});
