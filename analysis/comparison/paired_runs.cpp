@@ -40,7 +40,7 @@ Judgement direction_of_change(const RegionComparison& c, double alpha) {
   return is_better ? Judgement::better : Judgement::changed;
 }
 
-// How a pair of finite values changed: 1, 0 or -1, and by how much. All are 0 within the tolerance. unknown:
+// The change of a pair of finite values: 1, 0 or -1, and its size. All are 0 within the tolerance. unknown:
 // the outcomes of an event of which at least one is not known.
 struct PairChange {
   int shift = 0, worse = 0;
@@ -98,7 +98,7 @@ struct ClusterChanges {
 // The pairs that draw no random numbers.
 struct FixedPairs {
   std::int64_t known = 0, unknown = 0;
-  double sum = 0;              // of the known changes
+  double sum = 0;              // sum of the known changes
   double least = 0, most = 0;  // sums of the least and the greatest possible changes of the unknown
 
   void add(const PairChange& change, double known_change) {
@@ -167,7 +167,7 @@ RegionComparison paired_tests(const Pairs& pairs, const std::vector<RunCluster>&
   RegionComparison result;
   ClusterChanges tested;
   std::vector<double> baseline;
-  std::vector<EventCounts> events_before, events_now;  // of each cluster
+  std::vector<EventCounts> events_before, events_now;  // one for each cluster
   FixedPairs fixed_shifts, fixed_differences;
   bool is_anything_to_test = false;
   for (const RunCluster& cluster : clusters) {

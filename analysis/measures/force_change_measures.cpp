@@ -84,7 +84,7 @@ Settling settling_of(const Trace& trace) {
 double force_overshoot(const Trace& trace) {
   const Settling run = settling_of(trace);
   if (std::isnan(run.final_N)) return kNoValue;
-  constexpr double kRounding = 1e-12;  // of the mean
+  constexpr double kRounding = 1e-12;  // the mean is rounded
   const double overshoot = max_of(run.magnitude_N) / run.final_N - 1;
   return overshoot > kRounding ? overshoot : 0;
 }

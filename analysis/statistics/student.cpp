@@ -43,7 +43,7 @@ double scale_of(const std::vector<Moments>& strata) {
 // The mean of strata, its scatter, and what follows from them.
 struct PooledMoments {
   double count = 0, sum = 0;
-  double scale, scatter = 0, squares = 0, cubes = 0;  // of deviations in units of `scale`
+  double scale, scatter = 0, squares = 0, cubes = 0;  // sums over the deviations in units of `scale`
 
   explicit PooledMoments(const std::vector<Moments>& strata) : scale(scale_of(strata)) {
     for (const Moments& m : strata) {

@@ -35,15 +35,15 @@ std::vector<std::string> note_lines(const SweepTally& tally);
 void refuse_notes(const SweepResult& result);
 void refuse_notes(const SweepTally& tally);
 
-// Adds the note "outcome unknown" if the distance to the true surface is known in some tick with a frame but a
-// measure of the outcome is NaN.
+// Adds the note "outcome unknown" if the distance to the true surface is known in some tick with a frame but
+// a measure of the outcome is NaN.
 void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes);
 
 // The notes on runs that are not stored as one sweep, such as those of a figure. Any thread may add some.
 class NoteCounts {
  public:
-  void add(const std::vector<Note>& notes);  // of one run
-  void add(const SweepResult& result);       // of its finished runs; pre: run_sweep() has made it
+  void add(const std::vector<Note>& notes);  // the notes of one run
+  void add(const SweepResult& result);       // the notes of its finished runs; pre: run_sweep() has made it
   // Returns a line for each kind: "12 of 210 runs: no contact: no point was touched and no force was felt".
   std::vector<std::string> lines() const;
 
@@ -51,7 +51,7 @@ class NoteCounts {
   void add_run(std::uint64_t bits);
   mutable std::mutex mutex_;
   std::size_t runs_ = 0;
-  std::map<std::size_t, std::size_t> of_kind_;  // by the number of the kind
+  std::map<std::size_t, std::size_t> of_kind_;  // key: number of the kind
 };
 
 }  // namespace remote_touch

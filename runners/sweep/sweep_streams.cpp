@@ -60,7 +60,7 @@ CellStreams known_streams(const SweepResult& result, const std::string& config) 
   const std::uint64_t common_seed = Experiment::from_json(experiment).settings().key.seed;
   std::map<Indices, RandomStreams> known;
   std::map<std::uint64_t, std::size_t> seeds;
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_cell;  // of each seed and noise cell
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_cell;  // key: seed and noise cell
   CellStreams streams;
   const std::size_t cells = result.cell_count();
   streams.draws.reserve(cells), streams.noise_cell.reserve(cells), streams.seed.reserve(cells);

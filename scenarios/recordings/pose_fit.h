@@ -32,7 +32,7 @@ class PoseFit {
   // Returns a note for each object that is nowhere near the measured points, is in the image in none of the
   // frames, or would be much nearer with another meaning of its poses.
   std::vector<Note> truth_notes(const RecordedTruth& truth) const;
-  // What explains the place of an object: "; with the inverse poses cube is 0.2 mm from what the camera
+  // A cause of the place of an object: "; with the inverse poses cube is 0.2 mm from what the camera
   // measured". Empty: no other meaning of its poses or of the depths does.
   struct Cause {
     std::string text;
@@ -57,8 +57,8 @@ class PoseFit {
     std::vector<double> depth_m;
   };
   Anchor anchor_;
-  Gaps gaps_;                       // between frames
-  std::vector<double> still_gaps_;  // between frames, if the camera were at rest
+  Gaps gaps_;                       // gaps between frames
+  std::vector<double> still_gaps_;  // the same, if the camera were at rest
   std::vector<ObjectFit> objects_;
 };
 

@@ -64,7 +64,7 @@ class OpenHaptics : public GatedDevice {
 
 OpenHaptics::OpenHaptics(const std::string& address, const std::string& subject, Clock& clock)
     : GatedDevice(clock) {
-  take_errors();  // those that an earlier device has left
+  take_errors();  // an earlier device may have left some
   const bool is_default = address.empty() || address == "Default Device";
   device_ = hd_.init_device(is_default ? nullptr : address.c_str());
   const HdLibrary::Error error = take_errors();
@@ -112,7 +112,7 @@ void OpenHaptics::learn_traits() {
 // Returns the newest error. The library keeps a stack of errors. It is emptied, so that an older error is not
 // taken for that of a later call.
 HdLibrary::Error OpenHaptics::take_errors() const noexcept {
-  constexpr int kMost = 100;  // for a library that never runs out of errors
+  constexpr int kMost = 100;  // a library may never run out of errors
   const HdLibrary::Error newest = hd_.get_error();
   for (int i = 0; newest.code != 0 && i < kMost && hd_.get_error().code != 0;) ++i;
   return newest;

@@ -342,7 +342,8 @@ TEST(SharedRandomNumbers, RunsOfAReplicateAreOneCluster) {
   };
   EXPECT_EQ(judged({true, false}, true), Judgement::better);
   EXPECT_EQ(judged({true, true}, true), Judgement::undecided);
-  EXPECT_EQ(judged({true, true}, false), Judgement::better);  // of one experiment: the program has changed
+  EXPECT_EQ(judged({true, true}, false),
+            Judgement::better);  // the experiment is one: the program has changed
 }
 
 // Fractions are those of clusters; without random numbers they are exact.
@@ -367,7 +368,7 @@ TEST(RegionComparison, EqualPairsAreNoTest) {
   for (std::size_t run = 0; run < 8; ++run) depth(b)[run] = 1 + static_cast<double>(run);
   const SweepComparison c = compare(a, b);
   EXPECT_EQ(c.regions.size(), 5u);
-  EXPECT_EQ(c.tests, 4);  // of the shares and of the mean, over the whole and in one part
+  EXPECT_EQ(c.tests, 4);  // shares and mean, over the whole and in one part
   EXPECT_TRUE(std::isnan(c.at(2, 1).difference.p) && std::isnan(c.at(2, 1).adjusted_p));
   EXPECT_EQ(c.at(1, 1).mean.p, 1.0 / 128);
   EXPECT_DOUBLE_EQ(c.at(1, 1).adjusted_p, 4.0 / 128);

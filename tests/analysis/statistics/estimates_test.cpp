@@ -282,7 +282,7 @@ TEST(EstimatedEventDifference, CoversEveryAssignmentOfUnknownOutcomes) {
   }
 }
 
-// What is not known never makes an interval that the known outcomes do not have.
+// Unknown outcomes never make an interval that the known outcomes do not have.
 TEST(EstimatedEventDifference, UnknownOutcomesAddNoCertainty) {
   std::vector<std::vector<OutcomePair>> one(1, std::vector<OutcomePair>(100, {0, 0}));
   EXPECT_TRUE(std::isnan(estimated_event_difference(one).low));

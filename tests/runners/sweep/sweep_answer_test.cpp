@@ -219,7 +219,7 @@ TEST(SweepAnswers, ASensorThatOnlyRoundsDrawsNothing) {
   EXPECT_EQ(runs_of(sensor, question), (std::vector<std::int32_t>{6, 3 * kRuns}));
 }
 
-// What the runs of a pair share is said of all pairs, not of those of the first cell, which may draw nothing.
+// A statement on what the runs of a pair share holds for all pairs: the first cell may draw nothing.
 TEST(SweepAnswers, TellWhatPairsShare) {
   SweepQuestion question;
   question.differences = {"max_force"}, question.between = "x";

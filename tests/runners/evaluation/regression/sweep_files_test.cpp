@@ -160,7 +160,7 @@ TEST_F(CompareSweepFiles, PairedTestsIgnoreAFlipAndReportAShift) {
   });
   EXPECT_EQ(compare("a.h5", "a.h5", paired()).outcome, Outcome::same);
   ComparisonRules wide = paired();
-  wide.rule.margin = 0.04;  // of 160 runs with random numbers and four others
+  wide.rule.margin = 0.04;  // 160 runs have random numbers, four others do not
   const ResultComparison flipped = compare("a.h5", "flip.h5", wide);
   EXPECT_EQ(flipped.outcome, Outcome::same);
   EXPECT_HAS(flipped.verdict, "all changes are within the margins (0.04 of the runs for events");

@@ -264,8 +264,8 @@ TEST(Architecture, LostWavesLeaveNoErrorOfThePosition) {
   }
 }
 
-// A hand that is held still sends back what comes. Once it misses ticks, as it may live: the waves that follow
-// pay for it.
+// A hand that is held still sends back what comes. Once it misses ticks, as it may live: the waves that
+// follow pay for it.
 TEST(Architecture, WavesOfMissedTicksHaveNoEnergyOfTheirOwn) {
   const Plant p = plant_with(Feedback::wave);
   const Ends ends = make_ends(p.remote.feedback, p.remote.slave, p.hand.mass_kg, kTick_s);
