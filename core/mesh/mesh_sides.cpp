@@ -175,7 +175,7 @@ using Triangles = std::vector<std::array<int, 3>>;
 
 // Returns the sign of the volume of a closed part; 0 if rounding hides it, as of a sheet with two sides.
 int volume_sign(const std::vector<Vec3>& vertices, const Triangles& part) {
-  const Vec3 o = vertices[part.front()[0]];
+  const Vec3& o = vertices[part.front()[0]];
   double volume = 0, rounding = 0;
   for (const auto& [i, j, k] : part) {
     const Vec3 a = vertices[i] - o, b = vertices[j] - o, c = vertices[k] - o;
