@@ -12,7 +12,8 @@ def checksums(file, state):
     runs = dataset(file, "/sweep/run")[()] if "/sweep/run" in file else np.arange(state.size)
     words = [runs, state, *(dataset(file, f"/sweep/{name}")[()].view(np.uint64) for name in text(file.attrs, "measures").split(","))]
     if "/sweep/notes" in file:
-        words.append(dataset(file, "/sweep/notes")[()].view(np.uint32))
+        notes = dataset(file, "/sweep/notes")[()]  # 32 bits for each run, or 64
+        words.append(notes.view(f"u{notes.dtype.itemsize}"))
     sums = np.full(state.size, 2166136261, dtype=np.uint32)
     for word in words:
         for byte in np.ravel(word).astype("<u8").view(np.uint8).reshape(-1, 8).T:
