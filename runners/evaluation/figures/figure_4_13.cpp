@@ -5,7 +5,6 @@
 
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/limit.h"
-#include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 #include "runners/experiment/settings/second_implementation.h"
 
@@ -110,14 +109,14 @@ Figure figure_4_13(FigureContext& context) {
   claim_agrees(map_claims,
                "lifts of the whole map (5396, 1000 steps per frame) pop through as often as in the second "
                "implementation: fraction that do not",
-               mean(numbers(map, "survived")), second_fraction("/map/whole"), 1);
+               share_of_known(numbers(map, "survived")), second_fraction("/map/whole"), 1);
   map_claims.at_most(
       "lifts in each of 25 regions of the map pop through as often as in the second implementation: "
       "largest difference, in standard errors",
       max_apart(regions), kByChanceOf25, "1");
   map_claims.between(
       "without the velocity estimate most lifts of the whole map pop through: fraction that do not",
-      mean(numbers(without, "survived")), 0.03, 0.09, "fraction");
+      share_of_known(numbers(without, "survived")), 0.03, 0.09, "fraction");
   return figure;
 }
 
@@ -143,11 +142,11 @@ Figure figure_4_13_replicated(FigureContext& context) {
   claim_agrees(map_claims,
                "lifts of the map (20 at each node) pop through as often as in the second implementation: "
                "fraction that do not",
-               mean(numbers(map, "survived")), second_fraction("/map/coarse"), kLiftsANode);
+               share_of_known(numbers(map, "survived")), second_fraction("/map/coarse"), kLiftsANode);
   map_claims.between(
       "without the velocity estimate most lifts of the map (20 at each node) pop through: fraction that "
       "do not",
-      mean(numbers(without, "survived")), 0.03, 0.09, "fraction");
+      share_of_known(numbers(without, "survived")), 0.03, 0.09, "fraction");
   map_claims.at_most(
       "half of the lifts pop through at the same acceleration as in the second implementation: largest "
       "difference at six noise strengths, in standard errors",

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/measures/measures.h"
+#include "analysis/measures/no_value.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "analysis/statistics/proportion.h"
@@ -31,6 +32,14 @@ std::vector<double> known_pop_throughs(FigureContext& context, const std::vector
 
 double survived_share(FigureContext& context, const std::vector<Experiment>& lifts) {
   return 1 - mean(context.measure(lifts, popped_through));
+}
+
+double share_of_known(const std::vector<double>& survived) {
+  constexpr double kMostUnknown = 0.01;
+  std::vector<double> known = survived;
+  std::erase_if(known, [](double share) { return std::isnan(share); });
+  const auto all = static_cast<double>(survived.size()), left = static_cast<double>(known.size());
+  return all - left <= kMostUnknown * all ? mean(known) : kNoValue;
 }
 
 Table noise_table(const std::string& name, const std::string& title) {
@@ -68,13 +77,13 @@ Table region_table(const std::string& name, const Table& map) {
   TableRows rows;
   for (int row = 0; row < 5; ++row)
     for (int column = 0; column < 5; ++column) {
-      double sum = 0, count = 0;
+      std::vector<double> inside;
       for (std::size_t i = 0; i < x.size(); ++i) {
         const bool in_column = x[i] + kEdge >= kNoise[column] && x[i] + kEdge < kNoise[column + 1];
         const bool in_row = y[i] + kEdge >= kAcceleration[row] && y[i] + kEdge < kAcceleration[row + 1];
-        if (in_column && in_row) sum += survived[i], ++count;
+        if (in_column && in_row) inside.push_back(survived[i]);
       }
-      rows.push_back({kNoise[column], kAcceleration[row], sum / count});
+      rows.push_back({kNoise[column], kAcceleration[row], share_of_known(inside)});
     }
   return table_of(name, "success by region",
                   {{"noise_from", "r_c", "lower edge of the region"},

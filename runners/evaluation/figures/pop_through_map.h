@@ -25,6 +25,10 @@ std::vector<double> known_pop_throughs(FigureContext& context, const std::vector
 // Returns the share of the lifts that did not pop through.
 double survived_share(FigureContext& context, const std::vector<Experiment>& lifts);
 
+// Returns the mean over the cells of a map whose outcome is known: with strong noise a proxy may end beside
+// the surface. NaN if more than 1 % are unknown.
+double share_of_known(const std::vector<double>& survived);
+
 inline const ColumnName kNoiseColumn{"noise", "r_c", "standard deviation of the noise"},
     kAccelerationColumn{"acceleration", "r_c/s^2", "acceleration of the lift"};
 // Returns a table with one row for each cell: noise (r_c), acceleration (r_c/s^2), survived (fraction), its
