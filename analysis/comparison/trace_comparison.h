@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/comparison/column_comparison.h"
-#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/compared_columns.h"
+#include "analysis/figures/figure.h"
 
 namespace remote_touch {
 
@@ -56,5 +56,13 @@ TraceComparison compare_by_name(const ColumnSource& baseline, const ColumnSource
 // follows from the others. At most two columns are in memory at a time.
 TraceComparison compare_traces(const ColumnSource& baseline, const ColumnSource& candidate,
                                const Tolerances& tolerances, const std::vector<std::string>& configuration);
+
+// Figure of the deviation between two traces over time.
+
+// One panel for each column that differs, at most 8, in the trace's order. A panel has the decimal logarithm
+// of the largest deviation in each of up to 2000 intervals of time (NaN if nothing differs), and a dot at the
+// first row outside the tolerance. The caption has the first divergent tick.
+Figure deviation_figure(const ColumnSource& baseline, const ColumnSource& candidate,
+                        const TraceComparison& comparison);
 
 }  // namespace remote_touch

@@ -2,7 +2,7 @@
 # runners/interfaces/program/README.md says what they are for.
 
 set(public_headers
-  analysis/comparison/column_source.h analysis/figures/result_file.h analysis/measures/measures.h
+  analysis/comparison/compared_columns.h analysis/figures/result_file.h analysis/measures/measures.h
   analysis/storage/hdf5_file.h analysis/trace/trace.h core/beyond/tracked_surface/tracked_sheet_renderer.h
   core/dissertation/proxy/proxy_renderer.h core/dissertation/virtual_fixtures/fixture_rule.h core/geometry/camera.h
   core/geometry/point_cloud.h core/geometry/rotation.h core/geometry/vector.h core/kernels/isa.h core/numeric/noise.h

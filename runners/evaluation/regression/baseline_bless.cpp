@@ -9,8 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "analysis/comparison/column_comparison.h"
-#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/file_lock.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/comparison/column_source.h"
-#include "analysis/comparison/judgement.h"
+#include "analysis/comparison/compared_columns.h"
+#include "analysis/comparison/sweep_comparison.h"
 #include "analysis/storage/hdf5_file.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/comparison/sweep_comparison.h"
-#include "analysis/comparison/tick_hashes.h"
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/storage/hdf5_reader.h"
 

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "analysis/comparison/column_comparison.h"
-#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/hash64.h"
 #include "core/kernels/isa.h"

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "analysis/comparison/column_source.h"
-#include "analysis/comparison/deviation_figure.h"
+#include "analysis/comparison/compared_columns.h"
+#include "analysis/comparison/trace_comparison.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"

@@ -1,7 +1,6 @@
 #include <cstdio>
 
-#include "analysis/comparison/column_source.h"
-#include "analysis/comparison/tick_hashes.h"
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"

@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "analysis/comparison/column_source.h"
-#include "analysis/comparison/tick_hashes.h"
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/scorecard/scorecard.h"
 #include "analysis/storage/atomic_file.h"

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"

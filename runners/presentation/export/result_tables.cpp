@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"

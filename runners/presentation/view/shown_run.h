@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
 #include "core/geometry/bounding_box.h"
 #include "core/kernels/kernels.h"

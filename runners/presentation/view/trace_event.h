@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/comparison/column_source.h"
+#include "analysis/comparison/compared_columns.h"
 
 namespace remote_touch {
 

@@ -1,10 +1,78 @@
-#include "analysis/comparison/column_comparison.h"
+#include "analysis/comparison/compared_columns.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/storage/schema.h"
+#include "analysis/trace/hash64.h"
+#include "analysis/trace/renamed_columns.h"
 
 namespace remote_touch {
+
+bool ColumnSource::has(const std::string& name) const {
+  const std::vector<std::string> names = column_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+StoredTrace::StoredTrace(Hdf5Reader hdf5) : StoredColumns(std::move(hdf5), "/trace/") {
+  hdf5_.require_kind("trace", "a trace of remote-touch run or replay");
+  column_names_ = split_names(attribute(hdf5_.attributes(), "columns"));
+}
+
+std::vector<std::uint64_t> StoredTrace::running_hash() const {
+  return hdf5_.values<std::uint64_t>(group_ + kRunningHash);
+}
+
+StoredFigure::StoredFigure(Hdf5Reader hdf5) : StoredColumns(std::move(hdf5), "/tables/") {
+  hdf5_.require_kind("figure", "a figure of remote-touch figure");
+  for (const std::string& path : hdf5_.datasets())
+    if (path.starts_with(group_)) stored_names_.push_back(path.substr(group_.size()));
+  const bool is_earlier = is_earlier_schema(attribute(hdf5_.attributes(), "schema"));
+  for (const std::string& name : stored_names_)
+    column_names_.push_back(is_earlier ? present_column(name) : name);
+}
+
+// Returns the name as it is if the file has no such column; reading it then fails.
+std::string StoredFigure::stored_name(const std::string& name) const {
+  const auto found = std::find(column_names_.begin(), column_names_.end(), name);
+  return found == column_names_.end()
+             ? name
+             : stored_names_[static_cast<std::size_t>(found - column_names_.begin())];
+}
+
+Column StoredFigure::column(const std::string& name) const {
+  Column whole = StoredColumns::column(stored_name(name));
+  whole.name = name.substr(name.rfind('/') + 1);
+  return whole;
+}
+
+Column StoredFigure::rows(const std::string& name, std::size_t first, std::size_t count) const {
+  Column some = StoredColumns::rows(stored_name(name), first, count);
+  some.name = name.substr(name.rfind('/') + 1);
+  return some;
+}
+
+const Column& ColumnsInMemory::find(const std::string& name) const {
+  for (const Column& column : all_)
+    if (column.name == name) return column;
+  throw std::out_of_range("no column " + name);
+}
+
+Column ColumnsInMemory::rows(const std::string& name, std::size_t first, std::size_t count) const {
+  Column some = find(name);
+  const auto width = static_cast<std::ptrdiff_t>(some.width);
+  std::visit(
+      [&](auto& values) {
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first) * width;
+        values = std::decay_t<decltype(values)>(begin, begin + static_cast<std::ptrdiff_t>(count) * width);
+      },
+      some.values);
+  return some;
+}
 
 namespace {
 
@@ -128,6 +196,64 @@ std::vector<double> deviations(const Column& baseline, const Column& candidate) 
   std::vector<double> all;
   for_rows(baseline, candidate, [&](std::size_t, double deviation) { all.push_back(deviation); });
   return all;
+}
+
+TickHashes hashes_of_trace(const StoredTrace& trace, int every) {
+  const std::vector<std::uint64_t> all = trace.running_hash();
+  TickHashes some;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i % static_cast<std::size_t>(every) != 0 && i + 1 != all.size()) continue;
+    some.tick.push_back(static_cast<std::int32_t>(i));
+    some.hash.push_back(all[i]);
+  }
+  return some;
+}
+
+void write_hashes(const std::filesystem::path& file, const TickHashes& hashes,
+                  const TextAttributes& provenance) {
+  Hdf5Writer hdf5;
+  hdf5.attribute("/", "schema", schema_name("hashes"));
+  hdf5.attributes("/", provenance);
+  hdf5.group("/hashes");
+  hdf5.columns("/hashes",
+               {{"tick", "1", "number of the haptic tick", hashes.tick},
+                {"tick_hash", "1", "64-bit hash of all columns up to this tick", hashes.hash}},
+               "tick");
+  hdf5.save(file);
+}
+
+StoredHashes read_hashes(const Hdf5Reader& hdf5) {
+  hdf5.require_kind("hashes", "the result of remote-touch hashes");
+  StoredHashes stored{
+      {hdf5.values<std::int32_t>("/hashes/tick"), hdf5.values<std::uint64_t>("/hashes/tick_hash")},
+      hdf5.attributes()};
+  const std::vector<std::int32_t>& tick = stored.hashes.tick;
+  if (tick.size() != stored.hashes.hash.size()) hdf5.damaged("its ticks and hashes differ in number");
+  for (std::size_t i = 0; i < tick.size(); ++i)
+    if (tick[i] < 0 || (i > 0 && tick[i] <= tick[i - 1])) hdf5.damaged("its ticks are out of order");
+  return stored;
+}
+
+HashComparison compare_hashes(const TickHashes& baseline, const TickHashes& candidate) {
+  HashComparison result;
+  result.same_length =
+      !baseline.tick.empty() && !candidate.tick.empty() && baseline.tick.back() == candidate.tick.back();
+  for (std::size_t i = 0, j = 0; i < baseline.tick.size() && j < candidate.tick.size();) {
+    if (baseline.tick[i] < candidate.tick[j]) {
+      ++i;
+    } else if (baseline.tick[i] > candidate.tick[j]) {
+      ++j;
+    } else {
+      ++result.compared;
+      const int tick = baseline.tick[i];
+      const bool same = baseline.hash[i++] == candidate.hash[j++];
+      if (same)
+        result.same = tick;
+      else if (!result.different)
+        result.different = tick;
+    }
+  }
+  return result;
 }
 
 }  // namespace remote_touch
