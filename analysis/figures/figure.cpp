@@ -4,7 +4,6 @@
 #include <sstream>
 
 namespace remote_touch {
-
 namespace {
 
 std::string text(double value) {
