@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/better.h"
+#include "analysis/measures/measures.h"
 #include "analysis/statistics/paired_test.h"
 #include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_regions.h"

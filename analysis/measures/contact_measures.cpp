@@ -1,14 +1,15 @@
 #include "analysis/measures/contact_measures.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "analysis/measures/contact_force.h"
 #include "analysis/measures/no_value.h"
+#include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
-#include "analysis/trace/trace.h"
+#include "core/numeric/order_statistic.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Height of the rendered surface above the true one.
@@ -80,6 +81,148 @@ double last_force_time_s(const Trace& trace) {
   for (std::size_t i = trace.length(); i > 0; --i)
     if (has_contact_force(trace, i - 1)) return trace.time_s[i - 1];
   return kNoValue;
+}
+
+namespace {
+
+// Tolerance for rounded times: without it a settling of 100 ticks could last 101 ticks.
+constexpr double kSameTime_s = 5e-7;
+
+// Calls act(i) for every settled tick.
+template <class Act>
+void for_each_settled(const Trace& trace, Act&& act) {
+  double below_since_s = kNoValue;
+  for (std::size_t i = 0; i < trace.contact.size(); ++i) {
+    if (trace.frame_index[i] < 0 || !(trace.contact[i].hip_distance_m < 0)) {  // or NaN: not known
+      below_since_s = kNoValue;
+      continue;
+    }
+    if (std::isnan(below_since_s)) below_since_s = trace.time_s[i];
+    if (trace.time_s[i] - below_since_s >= kSettling_s - kSameTime_s) act(i);
+  }
+}
+
+// The maximum of value(height) over the settled ticks with a known truth.
+template <class Value>
+double max_of_heights(const Trace& trace, Value&& value) {
+  double max = kNoValue;
+  for_each_settled(trace, [&](std::size_t i) {
+    const double height = trace.contact[i].height_m;
+    if (!std::isnan(height)) max = std::isnan(max) ? value(height) : max_or_nan(max, value(height));
+  });
+  return max;
+}
+
+// Mean of value(contact) over the settled ticks in which it is not NaN; NaN if there is none.
+template <class Value>
+double settled_mean(const Trace& trace, Value&& value) {
+  double sum = 0, count = 0;
+  for_each_settled(trace, [&](std::size_t i) {
+    const double here = value(trace.contact[i]);
+    if (!std::isnan(here)) sum += here, ++count;
+  });
+  return count == 0 ? kNoValue : sum / count;
+}
+
+// Fraction of the settled ticks whose index satisfies the condition; NaN if no tick settled.
+template <class Condition>
+double settled_fraction(const Trace& trace, Condition&& holds) {
+  double count = 0, all = 0;
+  for_each_settled(trace, [&](std::size_t i) { count += holds(i) ? 1 : 0, ++all; });
+  return all == 0 ? kNoValue : count / all;
+}
+
+}  // namespace
+
+double max_contact_error_m(const Trace& trace) {
+  return max_of_heights(trace, [](double height) { return std::abs(height); });
+}
+
+double max_sink_m(const Trace& trace) {
+  return max_of_heights(trace, [](double height) { return std::max(0.0, -height); });  // no NaN
+}
+
+double max_float_m(const Trace& trace) {
+  return max_of_heights(trace, [](double height) { return std::max(0.0, height); });  // no NaN
+}
+
+double rms_contact_error_m(const Trace& trace) {
+  return std::sqrt(
+      settled_mean(trace, [](const Trace::TrueContact& at) { return at.height_m * at.height_m; }));
+}
+
+double rms_renderer_error_m(const Trace& trace) {
+  return std::sqrt(settled_mean(trace, [](const Trace::TrueContact& at) {
+    return std::isnan(at.height_m) ? kNoValue : at.measured_height_m * at.measured_height_m;
+  }));
+}
+
+double rms_camera_error_m(const Trace& trace) {
+  return std::sqrt(settled_mean(trace, [](const Trace::TrueContact& at) {
+    const double error_m = at.height_m - at.measured_height_m;
+    return error_m * error_m;
+  }));
+}
+
+double mean_camera_error_m(const Trace& trace) {
+  return settled_mean(trace, [](const Trace::TrueContact& at) { return at.height_m - at.measured_height_m; });
+}
+
+double contact_force_fraction(const Trace& trace) {
+  return settled_fraction(trace, [&](std::size_t i) { return has_contact_force(trace, i); });
+}
+
+double contact_known_fraction(const Trace& trace) {
+  return settled_fraction(trace, [&](std::size_t i) { return !std::isnan(trace.contact[i].height_m); });
+}
+
+namespace {
+
+// The force of a tick along the true normal, and its magnitude along the surface.
+struct Parts {
+  double along_normal_N = 0, lateral_N = 0;
+};
+
+std::vector<Parts> parts_in_contact(const Trace& trace) {
+  std::vector<Parts> list;
+  for (std::size_t i = 0; i < trace.true_normal.size(); ++i) {
+    const Vec3& normal = trace.true_normal[i];
+    const Vec3 force_N =
+        trace.has_guidance() ? Vec3(trace.force_N[i] - trace.guidance_force_N[i]) : trace.force_N[i];
+    const bool touches = trace.state[i] != static_cast<std::int32_t>(ContactState::free);
+    if (!touches || !normal.allFinite() || !force_N.allFinite() || force_N.isZero(0)) continue;
+    const double along_normal_N = force_N.dot(normal);
+    list.push_back({along_normal_N, (force_N - along_normal_N * normal).norm()});
+  }
+  return list;
+}
+
+// The ratios of the ticks in which the force pushes out of the surface.
+std::vector<double> lateral_ratios(const Trace& trace) {
+  std::vector<double> ratios;
+  for (const Parts& parts : parts_in_contact(trace)) {
+    const double ratio = parts.lateral_N / parts.along_normal_N;
+    if (parts.along_normal_N > 0 && std::isfinite(ratio)) ratios.push_back(ratio);
+  }
+  return ratios;
+}
+
+}  // namespace
+
+double mean_lateral_force(const Trace& trace) {
+  return mean(lateral_ratios(trace));
+}
+
+double lateral_force_95(const Trace& trace) {
+  std::vector<double> ratios = lateral_ratios(trace);
+  return ratios.empty() ? kNoValue : quantile_in_place(ratios, 0.95);
+}
+
+double mean_force_angle_rad(const Trace& trace) {
+  std::vector<double> angles_rad;
+  for (const Parts& parts : parts_in_contact(trace))
+    angles_rad.push_back(std::atan2(parts.lateral_N, parts.along_normal_N));
+  return mean(angles_rad);
 }
 
 }  // namespace remote_touch

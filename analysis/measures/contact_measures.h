@@ -1,10 +1,48 @@
-// Measures of a run with contact, as scalars of a trace: the height of the rendered surface over the true
-// one, and when the force ends. An unknown force is none.
+// Measures of a run with contact, as scalars of a trace: whether there is a force, how far the rendered
+// surface is from the true one, and how much the force tilts.
 #pragma once
+
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 
-struct Trace;
+// The force of contact on the hand in a tick, and whether there is one.
+
+// Returns the force on the hand without the part of guidance, which may pull in any direction, N, world
+// frame.
+inline Vec3 contact_force_N(const Trace& trace, std::size_t i) {
+  return trace.has_guidance() ? Vec3(trace.force_N[i] - trace.guidance_force_N[i]) : trace.force_N[i];
+}
+
+inline Vec3 contact_torque_Nm(const Trace& trace, std::size_t i) {
+  return trace.has_guidance() ? Vec3(trace.torque_Nm[i] - trace.guidance_torque_Nm[i]) : trace.torque_Nm[i];
+}
+
+// True if the vector is a force: neither zero nor unknown. An unknown force (NaN) is no force, so that it
+// never counts as contact; non_finite_fraction() counts it.
+inline bool is_force(const Vec3& force_N) {
+  return force_N.allFinite() && !force_N.isZero(0);
+}
+inline bool has_contact_force(const Trace& trace, std::size_t i) {
+  return is_force(contact_force_N(trace, i));
+}
+
+// The contact point of a ball: the point on the sphere of radius r_c around the proxy that faces the surface,
+// according to the renderer's normal. rendered_contact.h defines the contact point of every renderer, by the
+// true normal.
+
+// P - r_c n, world frame.
+inline Vec3 contact_point(const Trace& trace, std::size_t i, double contact_radius_m) {
+  return trace.proxy_position_m[i] - contact_radius_m * trace.normal[i];
+}
+
+// True if the surface holds the proxy back: the HIP is more than 1.01 r_c away from the proxy.
+inline bool pressing(const Trace& trace, std::size_t i, double contact_radius_m) {
+  return (trace.hip_position_m[i] - trace.proxy_position_m[i]).norm() > 1.01 * contact_radius_m;
+}
+
+// Measures of a run with contact, as scalars of a trace: the height of the rendered surface over the true
+// one, and when the force ends. An unknown force is none.
 
 // Height of the rendered surface above the true one, m: the distance from the centre of the proxy to the true
 // surface minus the distance to the nearest point. Mean and standard deviation over the ticks that end in
@@ -24,5 +62,55 @@ double end_distance_m(const Trace& trace);
 double force_fraction(const Trace& trace);
 // Time of the last tick with a force, s. NaN if no tick has a force.
 double last_force_time_s(const Trace& trace);
+
+// Distance of the rendered surface from the true one, by one rule for every renderer: the height of the
+// contact point above the true surface, Trace::contact (rendered_contact.h defines the contact point). Both
+// sides count, and so does every tick, not only the last.
+//
+// Only settled ticks are judged: those in which the renderer has had a frame and the HIP has been below the
+// true surface for kSettling_s without a break, so that every renderer must hold it back. If the hand follows
+// a prescribed path, they are the same for every renderer. The measures of a distance skip settled ticks in
+// which the truth at the contact point is not known.
+//
+// Every measure is NaN if no tick is settled or if Trace::contact is empty. A measure of a distance is also
+// NaN if no settled tick has a known truth.
+
+inline constexpr double kSettling_s = 0.1;
+
+// Maximum distance of the contact point from the true surface, m, on either side of it (max_contact_error_m),
+// below it (max_sink_m, 0 if it never was below) and above it (max_float_m, 0 if it never was above).
+double max_contact_error_m(const Trace& trace);
+double max_sink_m(const Trace& trace);
+double max_float_m(const Trace& trace);
+// Root mean square of the height of the contact point, m.
+double rms_contact_error_m(const Trace& trace);
+// The two parts of that height if the run has a measured surface beside the true one. The error of the
+// renderer is the height of the contact point above the measured surface. The error of the camera is the
+// height of the measured surface above the true one, at the contact point. Root mean squares, and the mean of
+// the camera's error, m, over the settled ticks in which both surfaces are known.
+double rms_renderer_error_m(const Trace& trace);
+double rms_camera_error_m(const Trace& trace);
+double mean_camera_error_m(const Trace& trace);
+// Fraction of the settled ticks with a force of contact, which excludes guidance; NaN if no tick settled.
+double contact_force_fraction(const Trace& trace);
+// Fraction of the settled ticks in which the truth is known; NaN if no tick settled.
+double contact_known_fraction(const Trace& trace);
+
+// Measures of the direction of the force on the hand: how large its part along the true surface is. There is
+// no friction, so without noise the force acts along the normal. Noise tilts the normals that a renderer
+// estimates, so the hand feels a force along the surface.
+//
+// The measures use the ticks in contact (touching or entrenched, with a force) in which n =
+// Trace::true_normal is known. An unknown force is none. F is the force without the part of guidance. A
+// measure is NaN if there is no such tick.
+
+// |F - (F.n) n| / (F.n), the tangent of the angle between F and n: its mean, and its 95th percentile (95 % of
+// the ticks are below it). Only ticks whose force points out of the surface (F.n > 0) count. A force into the
+// surface has no such ratio; mean_force_angle_rad() includes it.
+double mean_lateral_force(const Trace& trace);
+double lateral_force_95(const Trace& trace);
+// Mean angle between F and n, rad, 0 to pi. The force of a tick with an angle above pi / 2 pulls into the
+// surface.
+double mean_force_angle_rad(const Trace& trace);
 
 }  // namespace remote_touch

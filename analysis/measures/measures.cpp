@@ -4,26 +4,47 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/contact_force.h"
 #include "analysis/measures/contact_measures.h"
-#include "analysis/measures/contact_point.h"
-#include "analysis/measures/event_times.h"
-#include "analysis/measures/force_change_measures.h"
-#include "analysis/measures/lateral_force_measures.h"
+#include "analysis/measures/force_fidelity.h"
+#include "analysis/measures/force_measures.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/measures/passivity_measures.h"
-#include "analysis/measures/perceived_force_measures.h"
-#include "analysis/measures/perceived_measures.h"
-#include "analysis/measures/replay_measures.h"
-#include "analysis/measures/settled_contact_measures.h"
-#include "analysis/measures/slave_measures.h"
-#include "analysis/measures/stiffness_measures.h"
-#include "analysis/measures/surface_side.h"
-#include "analysis/measures/tool_measures.h"
+#include "analysis/measures/run_events.h"
+#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 
 namespace remote_touch {
+
+Better direction_of(const Directions& directions, const std::string& measure) {
+  const auto found = directions.find(measure);
+  return found == directions.end() ? Better::neither : found->second;
+}
+
+bool is_outcome(const std::string& measure) {
+  return measure == "popped_through" || measure == "tool_popped_through" || measure == "non_finite_fraction";
+}
+
+const char* text_of(Better better) {
+  constexpr const char* kTexts[] = {"has no direction", "smaller is better", "larger is better",
+                                    "nearer to zero is better",
+                                    "larger is better up to 0; all values from 0 on are equally good"};
+  return kTexts[static_cast<int>(better)];
+}
+
+double badness(double value, Better better) {
+  switch (better) {
+    case Better::larger:
+      return -value;
+    case Better::near_zero:
+      return std::abs(value);
+    case Better::not_negative:
+      return value >= 0 ? 0 : -value;  // NaN stays NaN
+    case Better::neither:
+    case Better::smaller:
+      break;
+  }
+  return value;
+}
 
 namespace {
 

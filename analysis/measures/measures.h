@@ -2,20 +2,38 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
-
-#include "analysis/measures/better.h"
 
 namespace remote_touch {
 
 struct Trace;
 
+// The direction in which a measure gets better.
+
+// not_negative: values of 0 and more are equally good. A smaller gap is no worse, as long as there is a gap.
+enum class Better { neither, smaller, larger, near_zero, not_negative };
+
+// The keys are the names of measures. A measure without an entry has no direction.
+using Directions = std::map<std::string, Better>;
+Better direction_of(const Directions& directions, const std::string& measure);
+
+// True for popped_through and other measures of the outcome of a run. If two runs differ in one of them, no
+// other measure decides which is better: a run that lost the surface has no force that could be noisy.
+bool is_outcome(const std::string& measure);
+
+// "smaller is better", "has no direction", ...
+const char* text_of(Better better);
+
+// Returns a value that is smaller if the measure is better. A measure without a direction keeps its value.
+double badness(double value, Better better);
+
 // 1 when the proxy's centre (with a tool its centre of mass) passed through the surface and ended behind it,
 // else 0. The surface is that of judged_distance_m(). The centre is behind it if its distance is less than
 // -Trace::held_depth_m, which is 0 for a ball. The result is 0 also if it was behind when the first frame
 // came and stayed there. NaN if the distance is not known at the end, or was not known while the centre moved
-// to the back: beside an object it may have gone round the border. See surface_side.h.
+// to the back: beside an object it may have gone round the border. See run_events.h.
 double popped_through(const Trace& trace);
 // Maximum distance of the proxy's centre behind the true surface, m, over the ticks with a frame and a known
 // truth. 0 if it never was behind the surface; NaN if there is no such tick.

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/better.h"
+#include "analysis/measures/measures.h"
 #include "analysis/statistics/estimate.h"
 #include "analysis/statistics/proportion.h"
 

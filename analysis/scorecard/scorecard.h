@@ -40,7 +40,7 @@ struct Successes {
   std::optional<Proportion> noise_free;  // absent in a scene with its own noise
 };
 
-// The runs of a scene in which a measure is below its published threshold, see perception_thresholds.h. Only
+// The runs of a scene in which a measure is below its published threshold, see force_measures.h. Only
 // successful runs in which the measure is a number count.
 struct SceneThreshold {
   std::string measure;

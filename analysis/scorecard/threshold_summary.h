@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/perception_thresholds.h"
+#include "analysis/measures/force_measures.h"
 #include "analysis/scorecard/scorecard.h"
 
 namespace remote_touch {

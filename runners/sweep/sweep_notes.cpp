@@ -4,8 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/measures/first_tick.h"
-#include "analysis/measures/surface_side.h"
+#include "analysis/measures/run_events.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/note_kinds.h"

@@ -1,7 +1,7 @@
 // Fig 4.11: the HIP moves above, below and above a flat grid.
 #include <cmath>
 
-#include "analysis/measures/contact_point.h"
+#include "analysis/measures/contact_measures.h"
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/contact_point.h"
+#include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/figures/fixture_run.h"

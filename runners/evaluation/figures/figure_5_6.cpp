@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/contact_point.h"
+#include "analysis/measures/contact_measures.h"
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analysis/measures/force_change_measures.h"
+#include "analysis/measures/force_measures.h"
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/extremes.h"
 #include "core/geometry/rotation.h"

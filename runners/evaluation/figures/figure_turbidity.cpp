@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "analysis/measures/segmentation.h"
+#include "analysis/measures/image_measures.h"
 #include "analysis/statistics/extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

@@ -11,7 +11,7 @@
 #include <span>
 #include <typeinfo>
 
-#include "analysis/measures/settled_contact_measures.h"
+#include "analysis/measures/contact_measures.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/embedded_data.h"

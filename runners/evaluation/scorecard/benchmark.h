@@ -52,7 +52,7 @@ struct BenchmarkScene {
 };
 
 // The symmetric rule of a scene in which the surface has to be held, {"rule": "held"}: one for balls, points
-// and springs, see settled_contact_measures.h.
+// and springs, see contact_measures.h.
 std::vector<Bound> held_bounds(double tolerance_m);
 std::string held_meaning(double tolerance_m);
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/surface_side.h"
+#include "analysis/measures/run_events.h"
 #include "core/kernels/kernels.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/rendered_contact.h"

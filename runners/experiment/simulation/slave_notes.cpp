@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "analysis/measures/passivity_measures.h"
-#include "analysis/measures/slave_measures.h"
+#include "analysis/measures/force_fidelity.h"
+#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/measures/surface_side.h"
+#include "analysis/measures/run_events.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch {

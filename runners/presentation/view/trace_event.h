@@ -15,7 +15,7 @@ struct TraceEvent {
 };
 
 // Returns the events in the order of their ticks:
-//   pop-through    the proxy's centre passes through the true surface to its back, see surface_side.h
+//   pop-through    the proxy's centre passes through the true surface to its back, see run_events.h
 //   first contact  the first tick with a contact
 //   slave contact  the first tick with a force of the scene on the slave
 //   hardest hit    the first tick with the largest force of the scene on the slave

@@ -1,12 +1,12 @@
 // Simulated depth sensors against recordings of real ones: both see the same scenes, and both are measured by
-// depth_statistics.h.
+// image_measures.h.
 #pragma once
 
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "analysis/measures/depth_statistics.h"
+#include "analysis/measures/image_measures.h"
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/figures/sensors/simulated_sensor.h"
 #include "scenarios/interface/scenario.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/measures/depth_statistics.h"
+#include "analysis/measures/image_measures.h"
 #include "core/geometry/camera.h"
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"

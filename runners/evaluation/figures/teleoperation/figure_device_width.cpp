@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/measures/passivity_measures.h"
+#include "analysis/measures/force_fidelity.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "runners/evaluation/figures/teleoperation/noisy_wall.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/measures/slave_measures.h"
+#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/theory/slave_following.h"
 #include "runners/evaluation/figures/teleoperation/slave_tasks.h"

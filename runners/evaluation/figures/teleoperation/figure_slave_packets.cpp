@@ -2,7 +2,7 @@
 // contour.
 #include <cmath>
 
-#include "analysis/measures/slave_measures.h"
+#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/statistics/mean.h"
 #include "analysis/theory/delayed_position_force.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/passivity_measures.h"
-#include "analysis/measures/slave_measures.h"
+#include "analysis/measures/force_fidelity.h"
+#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/statistics/extremes.h"
 #include "analysis/theory/slave_following.h"
 #include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"

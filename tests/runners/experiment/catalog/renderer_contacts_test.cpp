@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "analysis/measures/settled_contact_measures.h"
+#include "analysis/measures/contact_measures.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"

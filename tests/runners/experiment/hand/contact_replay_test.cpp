@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "analysis/measures/replay_measures.h"
+#include "analysis/measures/force_fidelity.h"
 #include "analysis/trace/trace.h"
 #include "core/geometry/rotation.h"
 #include "scenarios/synthetic/flat_grid.h"

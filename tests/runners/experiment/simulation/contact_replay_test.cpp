@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/perceived_measures.h"
-#include "analysis/measures/replay_measures.h"
+#include "analysis/measures/force_fidelity.h"
+#include "analysis/measures/force_measures.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/test_files.h"
 

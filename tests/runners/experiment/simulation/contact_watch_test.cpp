@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/event_times.h"
 #include "analysis/measures/measures.h"
+#include "analysis/measures/run_events.h"
 #include "analysis/theory/first_touch.h"
 #include "core/search/neighbour_search.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
@@ -109,7 +109,7 @@ TEST(ContactWatch, ReportsWideSpacingWithoutAContact) {
 }
 
 // A renderer that holds its proxy up to 1 mm behind the surface loses it only beyond that, see
-// surface_side.h.
+// run_events.h.
 TEST(ContactWatch, AProxyIsLostBeyondItsHeldDepth) {
   PointCloud corners;
   for (const double x : {-0.006, 0.006})

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/lateral_force_measures.h"
+#include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -6,7 +6,6 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
-#include "analysis/measures/settled_contact_measures.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 

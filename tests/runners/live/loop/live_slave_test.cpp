@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/slave_measures.h"
+#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/storage/digest.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "analysis/measures/contact_point.h"
+#include "analysis/measures/contact_measures.h"
 #include "runners/evaluation/figures/truth/compared_settings.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/evaluation/figures/truth/true_wall.h"

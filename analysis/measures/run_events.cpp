@@ -1,9 +1,8 @@
-#include "analysis/measures/surface_side.h"
+#include "analysis/measures/run_events.h"
 
 #include <cmath>
 
-#include "analysis/measures/no_value.h"
-#include "analysis/trace/trace.h"
+#include "analysis/measures/force_measures.h"
 
 namespace remote_touch {
 
@@ -40,6 +39,26 @@ SideOfRun side_of_run(const Trace& trace, const std::vector<double>& distance_m)
 
 const std::vector<double>& judged_distance_m(const Trace& trace) {
   return trace.has_measured_surface() ? trace.measured_distance_m : trace.signed_distance_m;
+}
+
+double first_contact_tick(const Trace& trace) {
+  return first_tick(trace, [&](std::size_t i) { return trace.contact_count[i] > 0; });
+}
+
+double first_contact_time_s(const Trace& trace) {
+  return time_of(trace, first_contact_tick(trace));
+}
+
+double first_pop_through_tick(const Trace& trace) {
+  return side_of_run(trace, judged_distance_m(trace)).first_pop_through_tick;
+}
+
+double first_pop_through_time_s(const Trace& trace) {
+  return time_of(trace, first_pop_through_tick(trace));
+}
+
+double max_force_jump_time_s(const Trace& trace) {
+  return time_of(trace, max_force_jump_tick(trace));
 }
 
 }  // namespace remote_touch

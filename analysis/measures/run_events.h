@@ -1,3 +1,30 @@
+// Events of a run: on which side of the true surface the proxy is, pop-through, and when something happens
+// first.
+#pragma once
+
+#include <vector>
+
+#include "analysis/measures/no_value.h"
+#include "analysis/trace/trace.h"
+
+namespace remote_touch {
+
+// The first tick of a run in which an event happens, and its time.
+
+// Returns the first tick i for which happens(i) is true; NaN if there is none. happens() is called for each
+// tick up to it.
+template <class Happens>
+double first_tick(const Trace& trace, Happens&& happens) {
+  for (std::size_t i = 0; i < trace.length(); ++i)
+    if (happens(i)) return static_cast<double>(i);
+  return kNoValue;
+}
+
+// Returns the time of a tick, s; NaN for NaN.
+inline double time_of(const Trace& trace, double tick) {
+  return tick >= 0 ? trace.time_s[static_cast<std::size_t>(tick)] : kNoValue;
+}
+
 // The side of the true surface on which a proxy is, tick after tick, and how it got there: the definition of
 // pop-through.
 //
@@ -9,13 +36,6 @@
 // A proxy that begins behind the surface has not passed through it. If d was unknown in between, the proxy
 // may have gone round a border of the surface, through a hole in the measurement, or through the surface:
 // then it is not known how it came to the back.
-#pragma once
-
-#include <vector>
-
-namespace remote_touch {
-
-struct Trace;
 
 class SurfaceSide {
  public:
@@ -51,5 +71,18 @@ SideOfRun side_of_run(const Trace& trace, const std::vector<double>& distance_m)
 // surface that the camera measured. What lies between the two is the error of the camera, which no renderer
 // can know.
 const std::vector<double>& judged_distance_m(const Trace& trace);
+
+// Time, s, and tick of events in a run; NaN if the event did not happen.
+
+// The first tick in which the proxy or tool touches a point or a region (contact_count).
+double first_contact_tick(const Trace& trace);
+double first_contact_time_s(const Trace& trace);
+// The first tick in which the proxy's centre (with a tool its centre of mass) passes to the back of the
+// surface by which the run is judged, see SurfaceSide. It may come back later; popped_through() considers
+// only the last tick.
+double first_pop_through_tick(const Trace& trace);
+double first_pop_through_time_s(const Trace& trace);
+// The time of max_force_jump_tick(), see force_measures.h.
+double max_force_jump_time_s(const Trace& trace);
 
 }  // namespace remote_touch
