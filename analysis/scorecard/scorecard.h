@@ -2,6 +2,7 @@
 // methods are significantly best or worst.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,10 +10,28 @@
 
 #include "analysis/figures/figure.h"
 #include "analysis/scorecard/ranking.h"
-#include "analysis/scorecard/success_rule.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
+
+// Success of a run: bounds on its measures, all of which must hold.
+
+struct Bound {
+  std::string measure;
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+
+  bool holds(double value) const { return value >= min && value <= max; }  // never for NaN
+};
+
+// Returns for each run whether all bounds hold; false for runs that failed. Throws std::out_of_range for a
+// measure that the sweep does not have. pre: no run is pending.
+std::vector<bool> successes(const SweepResult& result, const std::vector<Bound>& bounds);
+
+// Returns the run that is a typical failure of a cell: the median of its unsuccessful runs, ordered by the
+// first bound that they break and then by the value of its measure, with runs that ended in an error last. -1
+// if no run is unsuccessful.
+long typical_failure(const SweepResult& result, const std::vector<Bound>& bounds, std::size_t cell);
 
 // A fraction of runs with its interval, see estimated_fraction(); runs that are one and the same (SharedRuns)
 // count once. Without runs the fraction is NaN and the interval is [0, 1].
@@ -88,8 +107,8 @@ void correct(Scorecard& card);
 inline constexpr const char* kScorecardFigure = "scorecard";  // name of scorecard_figure()
 
 // Returns the figure of the result file. Its tables are success, measures and standings, with a row for each
-// scene, method, and level or measure; overview and behind, see overview.h; thresholds, see
-// threshold_summary.h; and the curves of every scene's panel.
+// scene, method, and level or measure; overview and behind, see card_summaries.h; thresholds, see
+// card_summaries.h; and the curves of every scene's panel.
 Figure scorecard_figure(const Scorecard& scorecard);
 
 }  // namespace remote_touch

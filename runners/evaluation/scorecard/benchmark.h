@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/scorecard/ranking.h"
-#include "analysis/scorecard/success_rule.h"
+#include "analysis/scorecard/scorecard.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analysis/scorecard/threshold_summary.h"
+#include "analysis/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/json_number.h"
 #include "runners/evaluation/scorecard/summary.h"
 

@@ -9,8 +9,7 @@
 #include <stdexcept>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/scorecard/overview.h"
-#include "analysis/scorecard/threshold_summary.h"
+#include "analysis/scorecard/card_summaries.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/schema.h"
 #include "analysis/trace/renamed_columns.h"

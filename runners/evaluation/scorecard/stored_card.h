@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/scorecard/card_numbers.h"
+#include "analysis/scorecard/card_summaries.h"
 #include "analysis/storage/hdf5_file.h"
 #include "runners/evaluation/scorecard/benchmark_plan.h"
 

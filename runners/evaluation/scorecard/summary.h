@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/scorecard/overview.h"
+#include "analysis/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/report.h"
 
 namespace remote_touch {

@@ -6,8 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/scorecard/overview.h"
-#include "analysis/scorecard/threshold_summary.h"
+#include "analysis/scorecard/card_summaries.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "scenarios/text_files/json_text.h"

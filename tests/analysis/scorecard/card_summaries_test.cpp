@@ -1,0 +1,283 @@
+#include "analysis/scorecard/card_summaries.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "analysis/statistics/proportion.h"
+#include "tests/analysis/scorecard/example_cards.h"
+
+namespace remote_touch::card_summaries_test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Numbers of a scene with two noise levels and of a scene with its own noise, for one judged measure.
+CardNumbers numbers() {
+  CardNumbers n;
+  n.counts = {{{"flat", "proxy", 0}, {1, 1, 1, 0.2, 1}},
+              {{"flat", "proxy", 0.003}, {9, 10, 0.9, 0.6, 0.98}},
+              {{"organ", "proxy", kNan}, {0, 10, 0, 0, 0.28}}};
+  n.means = {
+      {{"flat", "proxy", 0}, "max_force", "N", {.value = 2, .clusters = 1}},
+      {{"flat", "proxy", 0.003}, "max_force", "N", {.value = 2.5, .low = 2.4, .high = 2.6, .clusters = 9}},
+      {{"organ", "proxy", kNan}, "max_force", "N", {}}};
+  return n;
+}
+
+TEST(CardNumbers, TablesAndBackAreTheSame) {
+  const CardNumbers n = numbers();
+  EXPECT_TRUE(differences(numbers_in(counts_table(n), means_table(n)), n).empty());
+  const CardNumbers back = numbers_in(counts_table(n), means_table(n));
+  ASSERT_EQ(back.counts.size(), 3u);
+  EXPECT_EQ(back.counts[1].successes.low, 0.6);
+  EXPECT_EQ(back.counts[1].cell.noise_m, 0.003);
+  EXPECT_TRUE(std::isnan(back.counts[2].cell.noise_m));
+  EXPECT_EQ(back.means[1].value.clusters, 9);
+  EXPECT_EQ(back.means[1].units, "N");
+}
+
+TEST(CardNumbers, ATableThatIsDamagedIsRefused) {
+  const CardNumbers n = numbers();
+  Table counts = counts_table(n), cut = counts, wrong = counts;
+  cut.columns.pop_back();
+  EXPECT_THROW(numbers_in(cut, means_table(n)), std::out_of_range);
+  wrong.columns[2].values = std::vector<std::string>{"a", "b", "c"};
+  EXPECT_THROW(numbers_in(wrong, means_table(n)), std::out_of_range);
+  wrong.columns[2].values = std::vector<double>{0};
+  EXPECT_THROW(numbers_in(wrong, means_table(n)), std::out_of_range);
+}
+
+// The seeds are equal, so that a difference is no chance: not one success, and not within an interval.
+TEST(CardNumbers, AgreeOnlyIfTheyAreEqual) {
+  CardNumbers now = numbers();
+  now.means[0].value.value = 2.0015;  // up to a thousandth
+  now.means[1].value.value = 2.4977;
+  now.means[2].value.value = 7;  // no stored mean
+  EXPECT_TRUE(differences(numbers(), now).empty());
+  now.means[0].value.value = 2.003;
+  now.means[1].value.value = 2.6;
+  for (std::size_t i = 0; i < 3; ++i) {
+    now.counts[i].successes.events ^= 1;
+    EXPECT_EQ(differences(numbers(), now).size(), 3 + i);
+  }
+}
+
+TEST(CardNumbers, EachNumberThatDiffersHasItsLine) {
+  const std::pair<std::function<void(CardNumbers&)>, const char*> cases[] = {
+      {[](CardNumbers& n) { n.counts[1].successes.events = 8; },
+       "flat, proxy, noise 3 mm: 8 of 10 runs succeed, stored 9 of 10"},
+      {[](CardNumbers& n) { n.counts[0].successes.events = 0; },
+       "flat, proxy, noise 0 mm: 0 of 1 runs succeed, stored 1 of 1"},
+      {[](CardNumbers& n) { n.means[1].value.value = 2.51; },
+       "flat, proxy, noise 3 mm: max_force in N is 2.51, stored 2.5"},
+      {[](CardNumbers& n) { n.means[1].value = {}; },
+       "flat, proxy, noise 3 mm: max_force in N is NaN, stored 2.5"},
+      {[](CardNumbers& n) { n.means[1].units = "mN"; },
+       "flat, proxy, noise 3 mm: max_force is in mN, stored in N"},
+      {[](CardNumbers& n) { n.counts[2].successes.runs = 0; },
+       "organ, proxy, own noise: 0 of 0 runs succeed, stored 0 of 10"}};
+  for (const auto& [change, line] : cases) {
+    CardNumbers now = numbers();
+    change(now);
+    EXPECT_EQ(differences(numbers(), now), std::vector<std::string>{line});
+  }
+}
+
+TEST(CardNumbers, NewNumbersAreDifferencesAndMissingOnesAreNot) {
+  CardNumbers now = numbers();
+  now.counts[1].cell.method = "newcomer", now.means[1].cell.method = "newcomer";
+  const auto list = differences(numbers(), now);
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0], "flat, newcomer, noise 3 mm: its successes are not in the stored card");
+  EXPECT_EQ(list[1], "flat, newcomer, noise 3 mm: max_force is not in the stored card");
+  EXPECT_TRUE(differences(numbers(), {}).empty());
+}
+
+using namespace made_cards;
+
+TEST(Overview, CountsNoiseFreeRunsSeparately) {
+  const Scorecard card = card_of({{sweep_of(false, 20, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)},
+                                  {sweep_of(true, 10, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)}});
+  const Successes& own = card.scenes[0].success[0];
+  ASSERT_TRUE(own.noise_free);
+  EXPECT_EQ(own.noise_free->runs, 1);
+  EXPECT_EQ(own.noise_free->events, 0);
+  EXPECT_EQ(own.noisy.runs, 20);
+  EXPECT_EQ(own.noisy.events, 20);
+  const auto summary = overview(card);
+  EXPECT_EQ(summary[0].success.value, 0.75);
+  EXPECT_EQ(summary[0].noise_free.value, 0.5);
+  EXPECT_EQ(summary[1].noise_free.value, 1);
+  EXPECT_EQ(summary[0].held, 1);
+  EXPECT_EQ(summary[0].old_success.value, 1);  // every run satisfies the previous rule
+  EXPECT_EQ(card.scenes[0].old_success[2].noisy.events, 20);
+}
+
+TEST(Overview, TheMeanOverScenesHasAnInterval) {
+  std::vector<std::vector<SweepResult>> scenes;
+  for (const int held_runs : {20, 18, 20, 4, 20, 16, 20, 0, 20, 20})
+    scenes.push_back({sweep_of(true, held_runs, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)});
+  const auto summary = overview(card_of(scenes));
+  EXPECT_EQ(summary[0].success.clusters, 10);
+  EXPECT_NEAR(summary[0].success.value, 158 / 200.0, 1e-12);
+  EXPECT_LT(summary[0].success.low, 0.55);
+  EXPECT_GT(summary[0].success.high, 0.93);
+  // The same in every scene: as if ten runs decided, 5 of them successes.
+  EXPECT_NEAR(summary[1].success.low, exact_interval(5, 10).first, 1e-12);
+}
+
+TEST(Weaknesses, AreWhatOthersDoBetterByMoreThanChance) {
+  const Scorecard card = card_of({{sweep_of(true, 20, 2), sweep_of(true, 20, 1), sweep_of(true, 0, 1)},
+                                  {sweep_of(true, 0, 1), sweep_of(true, 20, 1), sweep_of(true, 20, 1)},
+                                  {sweep_of(true, 20, 1), sweep_of(true, 0, 1), sweep_of(true, 0, 1)}});
+  const auto list = weaknesses(card, kOwnMethod);
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].scene, "scene 0");
+  EXPECT_EQ(list[0].what, "steps");
+  EXPECT_EQ(list[0].other, "proxy");
+  EXPECT_EQ(list[0].ahead, 1);
+  EXPECT_GT(list[0].own_mean, list[0].other_mean);
+  EXPECT_TRUE(list[0].is_significant);
+  EXPECT_LT(list[0].p, kSignificance);
+  EXPECT_EQ(list[1].scene, "scene 1");
+  EXPECT_EQ(list[1].what, "success");
+  EXPECT_EQ(list[1].ahead, 2);
+  EXPECT_EQ(list[1].own_mean, 0);
+  EXPECT_EQ(list[1].other_mean, 1);
+  EXPECT_TRUE(weaknesses(card, "nobody").empty());
+}
+
+TEST(Weaknesses, NameTheFirstOfSeveralMethodsAhead) {
+  const Scorecard card = card_of({{sweep_of(true, 0, 1), sweep_of(true, 14, 1), sweep_of(true, 20, 1)}});
+  const auto list = weaknesses(card, kOwnMethod);
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].ahead, 2);
+  EXPECT_EQ(list[0].other, "penalty");
+  EXPECT_EQ(list[0].other_mean, 1);
+  EXPECT_EQ(list[0].p, card.scenes[0].ranking.against[2][0].p);
+}
+
+TEST(Weaknesses, ListsInsignificantDifferencesSeparately) {
+  const Scorecard card = card_of({{sweep_of(false, 17, 1), sweep_of(true, 18, 1), sweep_of(true, 20, 1)}});
+  const auto list = weaknesses(card, kOwnMethod);
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].what, "success");
+  EXPECT_EQ(list[0].other, "penalty");
+  EXPECT_EQ(list[0].ahead, 2);
+  EXPECT_FALSE(list[0].is_significant);
+  EXPECT_GT(list[0].p, kSignificance);
+  EXPECT_EQ(list[1].what, "success without noise");
+  EXPECT_EQ(list[1].own_mean, 0);
+  EXPECT_EQ(list[1].other_mean, 1);
+  EXPECT_TRUE(std::isnan(list[1].p));
+  EXPECT_TRUE(
+      weaknesses(card_of({{sweep_of(true, 20, 1), sweep_of(true, 20, 1), sweep_of(true, 0, 1)}}), kOwnMethod)
+          .empty());
+}
+
+}  // namespace
+}  // namespace remote_touch::card_summaries_test
+
+namespace remote_touch::threshold_summary_test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// A sweep of two replicates at each of the noise levels 0 and 5 mm, or of four runs with the scene's own
+// noise.
+SweepResult jumps(const std::vector<double>& held, const std::vector<double>& jump, bool own_noise = false) {
+  SweepResult result;
+  const std::vector<double> levels = own_noise ? std::vector<double>{1} : std::vector<double>{0, 0.005};
+  result.axes = {{"noise_sigma_m", "m", "", levels}};
+  result.replicates = static_cast<int>(held.size() / levels.size());
+  result.measures = {{"held", "1", "", {}}, {"max_relative_jump", "1", "", {}}};
+  result.start(false);
+  result.measures[0].values = held, result.measures[1].values = jump;
+  for (RunState& state : result.state) state = RunState::done;
+  return result;
+}
+
+const std::vector<std::pair<std::string, Better>> kJump = {{"max_relative_jump", Better::neither}};
+
+SceneScore scene_of(const std::vector<SweepResult>& sweeps, bool own_noise = false,
+                    const std::vector<std::pair<std::string, Better>>& measures = kJump) {
+  return score({"scene", "", "", {{"held", 1}}, measures}, sweeps, own_noise);
+}
+
+Scorecard card_of(const std::vector<SceneScore>& scenes) {
+  return {{"one", "two"}, {"", ""}, scenes};
+}
+
+TEST(ThresholdSummary, CountsSuccessfulRunsBelowTheThreshold) {
+  // One jump of method one is at the threshold; method two fails in the two runs with noise.
+  const SceneScore scene =
+      scene_of({jumps({1, 1, 1, 1}, {0.01, 0.2, 0.0699, 0.07}), jumps({1, 1, 0, 0}, {0.3, 0.4, 0, 0})});
+  const auto list = threshold_summary(card_of({scene}));
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_STREQ(list[0].threshold.measure, "max_relative_jump");
+  const ThresholdCounts &one = list[0].methods[0], &two = list[0].methods[1];
+  EXPECT_EQ(one.below, 1);
+  EXPECT_EQ(one.runs, 2);
+  EXPECT_EQ(one.noise_free_below, 1);
+  EXPECT_EQ(one.noise_free_runs, 2);
+  EXPECT_EQ(one.scenes, 1);
+  EXPECT_EQ(two.below, 0);
+  EXPECT_EQ(two.runs, 0);
+  EXPECT_EQ(two.noise_free_below, 0);
+  EXPECT_EQ(two.noise_free_runs, 2);
+  EXPECT_EQ(two.scenes, 0);
+}
+
+TEST(ThresholdSummary, RunsWithoutAValueDoNotCount) {
+  const SceneScore scene =
+      scene_of({jumps({1, 1, 1, 1}, {kNan, 0.2, 0.01, kNan}), jumps({1, 1, 1, 1}, {kNan, kNan, kNan, kNan})});
+  const auto list = threshold_summary(card_of({scene}));
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].methods[0].below, 1);
+  EXPECT_EQ(list[0].methods[0].runs, 1);
+  EXPECT_EQ(list[0].methods[0].noise_free_runs, 1);
+  EXPECT_EQ(list[0].methods[1].runs, 0);
+  EXPECT_EQ(list[0].methods[1].noise_free_runs, 0);
+}
+
+TEST(ThresholdSummary, EqualRunsWithoutNoiseCountOnce) {
+  const SweepResult equal = jumps({1, 1, 1, 1}, {0.01, 0.01, 0.01, 0.02});
+  const auto list = threshold_summary(card_of({scene_of({equal, equal})}));
+  EXPECT_EQ(list.at(0).methods[0].noise_free_runs, 1);
+  EXPECT_EQ(list[0].methods[0].runs, 2);
+}
+
+TEST(ThresholdSummary, AddsAllScenesThatReportTheMeasure) {
+  const SweepResult some = jumps({1, 1, 1, 1}, {0.2, 0.3, 0.01, 0.09});
+  const SceneScore silent = scene_of({some, some}, false, {{"held", Better::neither}});
+  const SweepResult own_noise = jumps({1, 1, 1, 1}, {0.2, 0.3, 0.01, 0.09}, true);
+  const SceneScore own = scene_of({own_noise, own_noise}, true);
+  const auto list = threshold_summary(card_of({scene_of({some, some}), silent, own}));
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].methods[1].scenes, 2);
+  EXPECT_EQ(list[0].methods[1].below, 2);
+  EXPECT_EQ(list[0].methods[1].runs, 2 + 4);
+  EXPECT_EQ(list[0].methods[1].noise_free_runs, 2);
+  EXPECT_TRUE(threshold_summary(card_of({silent})).empty());
+}
+
+TEST(ThresholdsTable, HasARowForEachThresholdAndMethod) {
+  const SweepResult some = jumps({1, 1, 1, 1}, {0.2, 0.3, 0.01, 0.09});
+  const Table table = thresholds_table(card_of({scene_of({some, some})}));
+  EXPECT_EQ(table.name, "thresholds");
+  EXPECT_EQ(values_of<std::vector<std::string>>(table, "method"), (std::vector<std::string>{"one", "two"}));
+  EXPECT_EQ(values_of<std::vector<double>>(table, "threshold"), (std::vector<double>{0.07, 0.07}));
+  EXPECT_EQ(values_of<std::vector<std::int32_t>>(table, "below"), (std::vector<std::int32_t>{1, 1}));
+  EXPECT_EQ(values_of<std::vector<std::int32_t>>(table, "runs"), (std::vector<std::int32_t>{2, 2}));
+  EXPECT_EQ(values_of<std::vector<std::int32_t>>(table, "noise_free_runs"),
+            (std::vector<std::int32_t>{2, 2}));
+  for (const Column& column : thresholds_table(card_of({})).columns) EXPECT_EQ(column.length(), 0u);
+}
+
+}  // namespace
+}  // namespace remote_touch::threshold_summary_test
