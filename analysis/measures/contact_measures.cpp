@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "core/numeric/order_statistic.h"
 
 namespace remote_touch {

@@ -6,8 +6,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
 #include "core/numeric/order_statistic.h"
 
 namespace remote_touch {

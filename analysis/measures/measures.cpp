@@ -10,8 +10,7 @@
 #include "analysis/measures/no_value.h"
 #include "analysis/measures/run_events.h"
 #include "analysis/measures/tool_and_slave_measures.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 
 namespace remote_touch {
 

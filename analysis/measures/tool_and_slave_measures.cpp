@@ -6,7 +6,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/run_events.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "core/geometry/rotation.h"
 
 namespace remote_touch {

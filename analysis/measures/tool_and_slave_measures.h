@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

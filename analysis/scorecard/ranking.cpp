@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/interval_estimates.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/statistics/paired_test.h"
-#include "analysis/statistics/student.h"
 
 namespace remote_touch {
 

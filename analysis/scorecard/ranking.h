@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/estimate.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
 
 namespace remote_touch {
 

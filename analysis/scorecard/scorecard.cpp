@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "analysis/scorecard/card_summaries.h"
+#include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/paired_test.h"
-#include "analysis/statistics/student.h"
 
 namespace remote_touch {
 

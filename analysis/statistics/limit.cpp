@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "analysis/statistics/isotonic_regression.h"
+#include "analysis/statistics/curve_fits.h"
 #include "core/numeric/noise.h"
 
 namespace remote_touch {

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics/estimate.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
 
 namespace remote_touch {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <tuple>
 
-#include "analysis/statistics/mean.h"
-#include "analysis/statistics/student.h"
+#include "analysis/statistics/interval_estimates.h"
+#include "analysis/statistics/means_and_extremes.h"
 
 namespace remote_touch {
 

@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/statistics/estimate.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "analysis/statistics/student.h"
+#include "analysis/statistics/interval_estimates.h"
 #include "analysis/sweeps/cell_groups.h"
 #include "analysis/sweeps/sweep_means.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
 
 namespace remote_touch {
 

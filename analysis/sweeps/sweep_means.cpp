@@ -6,10 +6,9 @@
 #include <limits>
 #include <map>
 
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/interval_estimates.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/statistics/paired_test.h"
-#include "analysis/statistics/proportion.h"
-#include "analysis/statistics/student.h"
 
 namespace remote_touch {
 

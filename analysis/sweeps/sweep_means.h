@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics/estimate.h"
+#include "analysis/statistics/interval_estimates.h"
 #include "analysis/sweeps/cell_groups.h"
 #include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_result.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
 #include "analysis/trace/column.h"
 
 namespace remote_touch {

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
+#include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/limit.h"
-#include "analysis/statistics/proportion.h"
-#include "analysis/statistics/student.h"
 #include "analysis/sweeps/cell_groups.h"
 #include "analysis/sweeps/sweep_means.h"
 #include "core/parameters/input_error.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/statistics/polynomial_fit.h"
+#include "analysis/statistics/curve_fits.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/sweeps/cell_groups.h"
 #include "core/parameters/unit.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

@@ -5,8 +5,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

@@ -4,8 +4,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/experiment/settings/second_implementation.h"

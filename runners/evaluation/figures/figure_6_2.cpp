@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/numeric/noise.h"
 #include "runners/evaluation/figures/figures.h"

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/box_contacts.h"

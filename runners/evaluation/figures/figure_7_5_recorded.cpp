@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/sequence_log.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"

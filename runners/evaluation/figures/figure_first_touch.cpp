@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/theory/first_touch.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 

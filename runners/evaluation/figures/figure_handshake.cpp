@@ -4,9 +4,8 @@
 #include <numbers>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
-#include "analysis/statistics/sinusoid.h"
+#include "analysis/statistics/curve_fits.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

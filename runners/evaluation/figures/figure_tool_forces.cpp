@@ -5,7 +5,7 @@
 #include <functional>
 #include <sstream>
 
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/theory/tool_rest.h"
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/geometry/rotation.h"

@@ -4,9 +4,8 @@
 #include <sstream>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

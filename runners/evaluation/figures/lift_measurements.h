@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "analysis/statistics/polynomial_fit.h"
+#include "analysis/statistics/curve_fits.h"
 #include "analysis/theory/lift_noise.h"
 #include "runners/evaluation/figures/figures.h"
 

@@ -6,9 +6,8 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
-#include "analysis/statistics/proportion.h"
+#include "analysis/statistics/interval_estimates.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/second_implementation.h"
 

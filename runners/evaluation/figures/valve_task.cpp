@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/dissertation/sphere_tree/region_tree.h"
 #include "core/geometry/rotation.h"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/trace/trace.h"
 #include "runners/evaluation/scorecard/json_number.h"

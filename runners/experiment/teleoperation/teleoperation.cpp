@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 
 namespace remote_touch {
 

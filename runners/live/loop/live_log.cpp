@@ -3,7 +3,7 @@
 #include <limits>
 #include <optional>
 
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/experiment/hand/device_motors.h"
 
 namespace remote_touch {

@@ -1,6 +1,6 @@
 #include "runners/live/loop/samples.h"
 
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 
 namespace remote_touch {
 

@@ -8,10 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/limit.h"
 #include "analysis/statistics/paired_test.h"
-#include "analysis/statistics/proportion.h"
-#include "analysis/statistics/student.h"
 
 namespace remote_touch::coverage_test {
 namespace {

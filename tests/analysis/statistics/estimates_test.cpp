@@ -6,10 +6,9 @@
 #include <limits>
 #include <random>
 
+#include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/limit.h"
 #include "analysis/statistics/paired_test.h"
-#include "analysis/statistics/proportion.h"
-#include "analysis/statistics/student.h"
 
 namespace remote_touch::estimates_test {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/paired_test.h"
-#include "analysis/statistics/proportion.h"
 #include "analysis/sweeps/cell_groups.h"
 
 namespace remote_touch::sweep_means_test {

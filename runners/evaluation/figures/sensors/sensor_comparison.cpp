@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "core/numeric/order_statistic.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/hand/image_frames.h"

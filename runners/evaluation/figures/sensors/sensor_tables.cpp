@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/statistics/polynomial_fit.h"
+#include "analysis/statistics/curve_fits.h"
 
 namespace remote_touch {
 

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/tally/tally_means.h"
 #include "runners/evaluation/figures/studies/law_map.h"
 #include "runners/evaluation/figures/studies/stored_study.h"

@@ -4,8 +4,7 @@
 #include <string>
 
 #include "analysis/measures/force_fidelity.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/teleoperation/noisy_wall.h"
 #include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
 #include "runners/evaluation/figures/teleoperation/wall_limit.h"

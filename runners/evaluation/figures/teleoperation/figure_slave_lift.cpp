@@ -5,8 +5,7 @@
 #include <numbers>
 
 #include "analysis/measures/tool_and_slave_measures.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/teleoperation/slave_tasks.h"
 #include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "analysis/measures/tool_and_slave_measures.h"
-#include "analysis/statistics/extremes.h"
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/theory/delayed_position_force.h"
 #include "runners/evaluation/figures/teleoperation/slave_tasks.h"
 #include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"

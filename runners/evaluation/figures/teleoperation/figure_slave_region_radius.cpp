@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "analysis/measures/tool_and_slave_measures.h"
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/theory/slave_following.h"
 #include "runners/evaluation/figures/teleoperation/slave_tasks.h"
 #include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/teleoperation/wall_limit.h"
 
 namespace remote_touch {

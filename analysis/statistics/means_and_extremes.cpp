@@ -1,8 +1,6 @@
-#include "analysis/statistics/mean.h"
+#include "analysis/statistics/means_and_extremes.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace remote_touch {

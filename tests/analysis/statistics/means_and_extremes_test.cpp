@@ -1,11 +1,12 @@
-#include "analysis/statistics/extremes.h"
+#include "analysis/statistics/means_and_extremes.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
-namespace remote_touch::extremes_test {
+namespace remote_touch::means_and_extremes_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -45,4 +46,21 @@ TEST(Extremes, AreNanIfNoValueQualifiesOrOneThatDoesIsNan) {
 }
 
 }  // namespace
-}  // namespace remote_touch::extremes_test
+}  // namespace remote_touch::means_and_extremes_test
+
+namespace remote_touch::mean_of_numbers_test {
+namespace {
+
+TEST(Mean, IsTheSumInItsOrderOverTheCount) {
+  EXPECT_EQ(mean({1, 2, 4.5}), 2.5);
+  EXPECT_EQ(mean({1e16, 1, -1e16}), 0) << "1 is lost beside 1e16";
+  EXPECT_EQ(mean({1e16, -1e16, 1}), 1.0 / 3);
+}
+
+TEST(Mean, IsAPositiveNanForAnEmptyList) {
+  EXPECT_TRUE(std::isnan(mean({})));
+  EXPECT_FALSE(std::signbit(mean({}))) << "the bits that kNoValue has";
+}
+
+}  // namespace
+}  // namespace remote_touch::mean_of_numbers_test

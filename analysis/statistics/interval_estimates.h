@@ -1,0 +1,124 @@
+// Means and fractions of runs, each with its 95 % interval.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/statistics/means_and_extremes.h"
+
+namespace remote_touch {
+
+// A number of an answer with its 95 % interval.
+
+// Every interval is two-sided, at 95 %. Every p is two-sided. NaN: there is no such number. A p and an
+// interval come from the same test: p <= 0.05 exactly if the interval does not hold 0.
+struct Estimate {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double low = std::numeric_limits<double>::quiet_NaN();
+  double high = std::numeric_limits<double>::quiet_NaN();
+  double p = std::numeric_limits<double>::quiet_NaN();  // null hypothesis: the value is 0
+  // The number of independent runs or pairs: runs that share random numbers count as one, a cluster.
+  std::int64_t clusters = 0;
+  std::int64_t unknown = 0;  // number of runs or pairs whose outcome is unknown (NaN)
+  std::string method = {};   // name of the interval; empty: there is none
+  std::string note = {};     // why something is missing, and what the reader must know; "; " between reasons
+  // True if p <= 0.05, but few large differences decide (estimated_difference()): such an estimate shows
+  // neither "better" nor "worse".
+  bool is_skewed = false;
+
+  // Adds a reason to the note, once.
+  void add_note(const std::string& reason) {
+    if (note.find(reason) == std::string::npos) note += (note.empty() ? "" : "; ") + reason;
+  }
+};
+
+// The fewest pairs or clusters with which a test can reach p = 0.05: 2 / 2^6 = 0.03.
+inline constexpr std::int64_t kLeastPairs = 6;
+// The note of an estimate whose is_skewed is true.
+inline constexpr const char* kSkewedNote = "skewed: few large differences decide";
+// The method of an estimate from runs without random numbers. Its value is exact, and it has an interval only
+// if outcomes are unknown or if it lies between two values of an axis.
+inline constexpr const char* kExactMethod = "exact";
+
+// Student's t: intervals of the mean of a few numbers.
+
+// Two-sided p value: the probability of a |t| at least as large, with this number of degrees of freedom. pre:
+// degrees >= 1.
+double student_two_sided(double t, double degrees);
+// Two-sided critical value: |t| is larger than this with the given probability in (0, 1]. pre: degrees >= 1.
+double student_quantile(double probability, double degrees);
+
+// The numbers of a stratum, such as the runs of a cell: strata may have different means.
+struct Stratum {
+  std::vector<double> numbers;  // NaNs are skipped and count as unknown
+  bool is_fixed = false;        // the numbers are equal by construction: they count as one without scatter
+};
+
+// Mean of all numbers. The interval is Student's, from the scatter within the strata, with the degrees of
+// freedom of F. Satterthwaite (Biometrics Bulletin 2 (1946), 110-114), rounded down. From 6 numbers and 5
+// degrees on, it is the hull of that and of the interval corrected for skewness by P. Hall (J. R. Stat. Soc.
+// B 54 (1992), 221-228); with fewer a note says that it assumes a normal distribution. It is NaN, with a
+// note, if nothing scatters. Numbers that are alone in a stratum which is not fixed form one stratum
+// together. If all strata are fixed, the value is exact, and the method is kExactMethod.
+Estimate estimated_mean(const std::vector<Stratum>& strata);
+// The same for one stratum.
+Estimate estimated_mean(const std::vector<double>& numbers);
+
+// The moments of a stratum of which the numbers are not known.
+struct StratumMoments {
+  Moments moments;
+  bool is_fixed = false;
+  std::int64_t unknown = 0;
+};
+// The same; without the correction for skewness unless has_third, which says that Moments::third is set.
+Estimate estimated_mean(const std::vector<StratumMoments>& strata, bool has_third);
+
+// Fractions of runs in which an event happened, quantiles, and their confidence intervals.
+
+// Two-sided 95 % point of the standard normal distribution.
+inline constexpr double kTwoSided95 = 1.959963984540054;
+
+// The two tails of a binomial distribution: the probability of at most, or of at least, `events` events in
+// `runs` runs that each have one with this probability.
+double probability_of_at_most(double events, double runs, double probability);
+double probability_of_at_least(double events, double runs, double probability);
+
+// Exact interval [low, high] of a fraction (C. Clopper, E. Pearson, Biometrika 26 (1934), 404-413); [0, 1]
+// without runs. The numbers need not be whole. pre: 0 <= events <= runs.
+std::pair<double, double> exact_interval(double events, double runs);
+
+// The outcomes of some runs. An outcome is unknown if the measure of the event is NaN.
+struct EventCounts {
+  std::int64_t events = 0, without = 0, unknown = 0;
+
+  std::int64_t known() const { return events + without; }
+  std::int64_t runs() const { return known() + unknown; }
+  void add(const EventCounts& other) {
+    events += other.events, without += other.without, unknown += other.unknown;
+  }
+};
+
+EventCounts sum_of(const std::vector<EventCounts>& counts);
+
+// Fraction of the known runs in which the event happened. `low` is the low end if no unknown run had the
+// event, and `high` the high end if all had it (C. Manski, Partial Identification of Probability
+// Distributions, 2003). Each element has the runs of one cluster, which share random numbers; clusters are
+// independent. If each cluster has one run, the interval is exact_interval(). Otherwise the value is the mean
+// of the clusters' fractions, and the interval that of E. Korn and B. Graubard (Survey Methodology 24 (1998),
+// 193-201): the exact one with the number of independent runs that has the variance of the clusters.
+Estimate estimated_fraction(const std::vector<EventCounts>& clusters);
+// The same for independent runs.
+Estimate estimated_fraction(const EventCounts& runs);
+// Fraction of runs that draw no random number: it is exact. There is an interval only if outcomes are
+// unknown.
+Estimate exact_fraction(const EventCounts& runs);
+
+// Quantile of independent values, 0 < q < 1: the value x_k of the sorted x_1 .. x_n, k = max(1, ceil(q n)),
+// between two of them whose ranks follow from the binomial distribution, whatever the distribution of the
+// values is. An end is NaN if there are too few values for it. NaNs are skipped and count as unknown.
+Estimate estimated_quantile(std::vector<double> values, double q);
+
+}  // namespace remote_touch
