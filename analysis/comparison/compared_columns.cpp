@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/trace/hash64.h"
 #include "analysis/trace/renamed_columns.h"
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "analysis/storage/digest.h"
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

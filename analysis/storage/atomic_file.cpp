@@ -7,15 +7,93 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
+#include <map>
 #include <memory>
-#include <string>
+#include <mutex>
+#include <optional>
 #include <string_view>
 
-#include "analysis/storage/replacement_rule.h"
-#include "core/parameters/input_error.h"
+#include "analysis/storage/block_journal.h"
 
 namespace remote_touch {
+namespace {
+
+// A live session also writes its report from another thread.
+std::mutex mutex_of_rules;
+
+std::map<std::filesystem::path, ReplacementRule>& rules() {
+  static std::map<std::filesystem::path, ReplacementRule> all;
+  return all;
+}
+
+std::filesystem::path key_of(const std::filesystem::path& target) {
+  std::error_code no_folder;
+  return std::filesystem::absolute(target, no_folder).lexically_normal();
+}
+
+std::optional<ReplacementRule> rule_of(const std::filesystem::path& target) {
+  const std::lock_guard lock(mutex_of_rules);
+  const auto found = rules().find(key_of(target));
+  return found == rules().end() ? std::nullopt : std::optional(found->second);
+}
+
+// A device holds no data that could be lost.
+bool holds_something(const std::filesystem::path& file) {
+  std::error_code absent;
+  return std::filesystem::is_regular_file(file, absent) && std::filesystem::file_size(file, absent) > 0;
+}
+
+}  // namespace
+
+bool ReplacementRule::allows(const std::filesystem::path& file) const {
+  if (is_journal(file)) return false;
+  return force || !holds_something(file) || is_ours(file);
+}
+
+void set_replacement_rule(const std::filesystem::path& target, ReplacementRule rule) {
+  const std::lock_guard lock(mutex_of_rules);
+  rules()[key_of(target)] = std::move(rule);
+}
+
+void require_output(const std::filesystem::path& output, const ReplacementRule& rule) {
+  if (is_journal(output))
+    throw KeptFile(output.string(),
+                   "is an unfinished recording and is never overwritten: expected another file");
+  if (!rule.allows(output))
+    throw InputError(output.string(), "exists already and is not " + rule.kind +
+                                          " of this program: expected another file, or " + rule.force_option);
+  require_writable(output);
+  set_replacement_rule(output, rule);
+}
+
+// If the first call fails, for example on a file system without RENAME_NOREPLACE, the rule and the second
+// call decide.
+int rename_by_rule(const std::filesystem::path& temporary, const std::filesystem::path& target) {
+  const std::filesystem::path place = resolved(target);
+  if (const auto rule = rule_of(target)) {
+    if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, place.c_str(), RENAME_NOREPLACE) == 0) return 0;
+    std::error_code unreachable;
+    if (std::filesystem::exists(std::filesystem::symlink_status(place, unreachable)) && !rule->allows(place))
+      return EEXIST;
+  }
+  return ::rename(temporary.c_str(), place.c_str()) == 0 ? 0 : errno;
+}
+
+int rename_or_keep(const std::filesystem::path& temporary, const std::filesystem::path& target) {
+  const int error = rename_by_rule(temporary, target);
+  if (error != EEXIST) return error;
+  // The result gets another name, because the next command with this output would remove the temporary file.
+  const std::string kept = resolved(target).string() + ".kept-" + std::to_string(::getpid());
+  if (::rename(temporary.c_str(), kept.c_str()) != 0) return errno;
+  flush_folder(kept);
+  const auto rule = rule_of(target);
+  throw InputError(target.string(),
+                   "was written by another program while this one computed, and is unchanged: "
+                   "the result is in " +
+                       kept + ", expected another file, or " + rule.value().force_option);
+}
 
 namespace {
 
@@ -194,6 +272,97 @@ void remove_leftovers(const std::filesystem::path& target) {
   const std::unique_ptr<DIR, int (*)(DIR*)> list(::opendir(folder.c_str()), ::closedir);
   while (const dirent* const entry = list ? ::readdir(list.get()) : nullptr)
     if (std::string_view(entry->d_name).starts_with(start)) ::unlink((folder / entry->d_name).c_str());
+}
+
+NewFiles::~NewFiles() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  put_back();
+}
+
+void NewFiles::refuse(const File& file, int error, const std::string& remark) const {
+  refuse_writing(file.target, error, "a writable folder with free space for " + contents_ + remark);
+}
+
+void NewFiles::begin(const std::filesystem::path& target) {
+  close();
+  require_writable(target);
+  remove_leftovers(target);
+  File& file = files_.emplace_back(File{target, resolved(target), temporary_of(target)});
+  std::error_code absent;
+  const auto there = std::filesystem::status(file.place, absent);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) refuse(file, EINVAL);
+  descriptor_ = ::open(file.temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) refuse(file, errno);
+  keep_permissions(descriptor_, file.place);
+}
+
+void NewFiles::append(const std::string& bytes) {
+  std::size_t done = 0;
+  if (const int error = write_all(descriptor_, bytes.data(), bytes.size(), done); error != 0)
+    refuse(files_.back(), error);
+  size_ += bytes.size();
+}
+
+void NewFiles::close() {
+  if (descriptor_ < 0) return;
+  int error = flush(descriptor_);
+  if (::close(descriptor_) != 0 && error == 0) error = errno;
+  descriptor_ = -1;
+  if (error != 0) refuse(files_.back(), error);
+}
+
+// Gives the file that is replaced a second name, so that the target is the old or the new file at every
+// moment.
+void NewFiles::keep_old(File& file) {
+  std::error_code absent, failure;
+  if (!std::filesystem::exists(file.place, absent)) return;
+  const std::filesystem::path old = file.temporary.string() + "-old";
+  if (::link(file.place.c_str(), old.c_str()) != 0 &&
+      !std::filesystem::copy_file(file.place, old, failure)) {  // a file system without links
+    ::unlink(old.c_str());
+    refuse(file, failure.value());
+  }
+  file.old = old;
+}
+
+void NewFiles::finish() {
+  close();
+  if (files_.size() > 1)
+    for (File& file : files_) keep_old(file);
+  for (File& file : files_) {
+    if (const int error = rename_by_rule(file.temporary, file.target); error == EEXIST)
+      throw InputError(file.target.string(),
+                       "was written by another program meanwhile, and is unchanged: expected "
+                       "another file, or --force" +
+                           put_back());
+    else if (error != 0)
+      refuse(file, error, put_back());
+    file.is_new = true;
+  }
+  const std::vector<File> done = std::move(files_);  // they now stay, whatever happens
+  files_.clear();
+  for (const File& file : done)
+    if (!file.old.empty()) ::unlink(file.old.c_str());
+  for (const File& file : done) flush_folder(file.place);
+}
+
+std::string NewFiles::put_back() {
+  std::string remark;
+  for (File& file : files_) {
+    if (!file.is_new) {
+      ::unlink(file.temporary.c_str());
+      if (!file.old.empty()) ::unlink(file.old.c_str());
+    } else if (file.old.empty()) {
+      ::unlink(file.place.c_str());
+    } else if (::rename(file.old.c_str(), file.place.c_str()) != 0) {
+      // The next writer of the file would remove it under its present name.
+      const std::string kept = file.place.string() + ".old-" + std::to_string(::getpid());
+      const bool is_moved = ::rename(file.old.c_str(), kept.c_str()) == 0;
+      remark += "; the old " + file.place.string() + " is now " + (is_moved ? kept : file.old.string());
+    }
+    file.is_new = false, file.old.clear();
+  }
+  return remark;
 }
 
 }  // namespace remote_touch

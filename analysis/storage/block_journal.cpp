@@ -13,9 +13,8 @@
 #include <utility>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_digest.h"
-#include "analysis/storage/file_lock.h"
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/digest.h"
+#include "analysis/storage/other_processes.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_digest.h"
+#include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_handle.h"
 #include "core/parameters/input_error.h"
 

@@ -13,6 +13,40 @@
 
 namespace remote_touch {
 
+// Names of the layouts of this program's files. Each file has its name as a root attribute:
+// "remote-touch-trace/3".
+
+// One number for all layouts. It is raised if a name or the meaning of a value changes in any of them.
+// Version 0.1 had 1, version 0.2 had 2.
+inline constexpr int kSchemaVersion = 3;
+// The oldest layout that is read. Layout 2 has other names of some settings, values and columns, which are
+// translated: stored_configuration() and present_column().
+inline constexpr int kOldestSchema = 2;
+inline constexpr const char* kSchemaPrefix = "remote-touch-";
+
+// kind: "trace", "figure", "sweep", "hashes" or "session".
+inline std::string schema_name(const std::string& kind) {
+  return kSchemaPrefix + kind + "/" + std::to_string(kSchemaVersion);
+}
+
+// True if the schema is that of a kind of file, in this layout or an earlier one that is read.
+inline bool is_schema_of(const std::string& schema, const std::string& kind) {
+  for (int version = kOldestSchema; version <= kSchemaVersion; ++version)
+    if (schema == kSchemaPrefix + kind + "/" + std::to_string(version)) return true;
+  return false;
+}
+
+// True for a layout of this program that is read but no longer written.
+inline bool is_earlier_schema(const std::string& schema) {
+  return schema.starts_with(kSchemaPrefix) &&
+         schema.ends_with(std::string(1, '/') + std::to_string(kOldestSchema));
+}
+
+// Returns the schema of the same kind of file in this layout.
+inline std::string present_schema(const std::string& schema) {
+  return schema.substr(0, schema.rfind('/') + 1) + std::to_string(kSchemaVersion);
+}
+
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
 // The HDF5 library may be at work as long as an object of this class exists. The library crashes in some
 // calls that find no memory, and on some damaged files.
@@ -49,7 +83,7 @@ TextAttributes provenance_of(const TextAttributes& attributes);
 // wherever the file was built. Not for use from several threads at once.
 class Hdf5Writer {
  public:
-  // A finished file is sealed (file_digest.h). A file that will be written in place later cannot be sealed.
+  // A finished file is sealed (digest.h). A file that will be written in place later cannot be sealed.
   enum class Finished { yes, no };
   explicit Hdf5Writer(Finished finished = Finished::yes);
   // Builds a finished file on the disk, because it may be larger than the memory. pre: no other process

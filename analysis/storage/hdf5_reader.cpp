@@ -13,8 +13,8 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/block_journal.h"
-#include "analysis/storage/file_digest.h"
-#include "analysis/storage/schema.h"
+#include "analysis/storage/digest.h"
+#include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

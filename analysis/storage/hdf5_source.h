@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/storage/child_process.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/other_processes.h"
 
 namespace remote_touch {
 
@@ -36,5 +36,23 @@ std::unique_ptr<Hdf5Source> open_hdf5_image(std::string_view bytes);
 // A child process with limits answers each query. Only that process calls the library.
 std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file,
                                                const RunInChild& run = in_own_child);
+
+// Packs the answers of a child process about an HDF5 file into bytes, and unpacks them. For
+// analysis/storage/hdf5_* only.
+
+// Overview of a file, which the child returns in one answer.
+struct Hdf5Summary {
+  TextAttributes attributes;
+  std::vector<std::string> datasets;
+  std::vector<std::int64_t> offsets;  // one for each dataset; -1: not stored in one piece
+};
+
+std::string packed(const Hdf5Summary& summary);
+std::string packed(const Column& column);
+
+// Throw std::runtime_error for bytes that packed() cannot have returned. A result is therefore valid,
+// whatever happened to the child.
+Hdf5Summary unpacked_summary(const std::string& bytes);
+Column unpacked_column(const std::string& bytes);
 
 }  // namespace remote_touch

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "analysis/storage/digest.h"
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "core/parameters/input_error.h"
 

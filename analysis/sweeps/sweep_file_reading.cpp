@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"

@@ -11,7 +11,7 @@ namespace remote_touch {
 
 // The file is written whole at the start, with space for every run, so a full disk is noticed before any work
 // is done, and the file can be read at any time. Every finished run is then written in place at once: a
-// killed program loses no finished run. pre: the caller holds the file's lock (file_lock.h).
+// killed program loses no finished run. pre: the caller holds the file's lock (other_processes.h).
 class SweepInProgress {
  public:
   // already_there: the file exists, is in progress and holds this result. If false, the file is written.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/storage/digest.h"
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/tally/tally_arrays.h"
 #include "core/parameters/input_error.h"
 

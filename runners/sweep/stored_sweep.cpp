@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/recipe.h"

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/other_processes.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/sweep/shard.h"
 #include "runners/sweep/sweep.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/other_processes.h"
 #include "analysis/tally/tally_file.h"
 #include "core/kernels/kernels.h"
 #include "runners/sweep/sweep.h"

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/digest.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/other_processes.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

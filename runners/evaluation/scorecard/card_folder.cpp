@@ -4,8 +4,8 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/evaluation/scorecard/stored_card.h"

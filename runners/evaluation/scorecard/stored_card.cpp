@@ -10,8 +10,8 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/scorecard/card_summaries.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/schema.h"
 #include "analysis/trace/renamed_columns.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"

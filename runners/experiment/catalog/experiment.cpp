@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/storage/block_journal.h"
-#include "analysis/storage/file_digest.h"
+#include "analysis/storage/digest.h"
 #include "runners/experiment/catalog/section_rules.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/sessions/session_scene.h"

@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "analysis/storage/file_digest.h"
+#include "analysis/storage/digest.h"
 #include "analysis/storage/packed_values.h"
 #include "core/geometry/bounding_box.h"
 #include "core/mesh/mesh_corners.h"

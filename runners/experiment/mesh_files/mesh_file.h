@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "analysis/storage/child_process.h"
+#include "analysis/storage/other_processes.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {

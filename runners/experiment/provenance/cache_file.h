@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "analysis/storage/digest.h"
 #include "analysis/storage/packed_values.h"
-#include "analysis/storage/sha256.h"
 
 namespace remote_touch {
 

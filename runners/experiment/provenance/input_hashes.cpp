@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

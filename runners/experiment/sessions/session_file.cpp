@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "analysis/storage/block_journal.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/packed_values.h"
-#include "analysis/storage/schema.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

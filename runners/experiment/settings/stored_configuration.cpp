@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/renamed_names.h"
 #include "scenarios/text_files/json_text.h"

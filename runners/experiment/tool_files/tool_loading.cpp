@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/digest.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/mesh_files/named_mesh.h"

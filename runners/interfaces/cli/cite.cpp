@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/scorecard/scorecard.h"
-#include "analysis/storage/schema.h"
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/digest.h"
+#include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/experiment/provenance/citation.h"

@@ -7,9 +7,8 @@
 #include <set>
 
 #include "analysis/storage/block_journal.h"
-#include "analysis/storage/file_digest.h"
+#include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/storage/schema.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"

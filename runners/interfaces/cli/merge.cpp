@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/other_processes.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/cli/commands.h"

@@ -4,8 +4,7 @@
 #include <functional>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_digest.h"
-#include "analysis/storage/replacement_rule.h"
+#include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/other_processes.h"
 #include "runners/interfaces/cli/commands.h"
 #include "scenarios/recordings/recording_part.h"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <system_error>
 
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/cache_folder.h"
 #include "runners/experiment/provenance/kernel_choice.h"

@@ -1,8 +1,7 @@
 #include "runners/interfaces/python/outputs.h"
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_digest.h"
-#include "analysis/storage/replacement_rule.h"
+#include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/python/long_work.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/other_processes.h"
 #include "scenarios/recordings/recording_part.h"
 
 namespace remote_touch {

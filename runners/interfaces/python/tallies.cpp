@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/python/sweep_arrays.h"
 

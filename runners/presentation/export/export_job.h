@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/new_files.h"
 #include "core/kernels/kernels.h"
 
 namespace remote_touch {

@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "analysis/storage/file_lock.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/other_processes.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/stored_sweep.h"

@@ -7,7 +7,6 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/replacement_rule.h"
 #include "analysis/sweeps/run_spool.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"

@@ -11,7 +11,6 @@
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/storage/schema.h"
 #include "analysis/trace/hash64.h"
 #include "analysis/trace/renamed_columns.h"
 #include "analysis/trace/trace.h"

@@ -1,4 +1,3 @@
-// Files are written whole or not at all.
 #include "analysis/storage/atomic_file.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +6,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/other_processes.h"
 #include "tests/analysis/storage/system_answers.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
@@ -22,7 +22,88 @@
 namespace remote_touch::atomic_file_test {
 namespace {
 
+// A file that appears while a command computes is kept, and so is the result.
+
 namespace fs = std::filesystem;
+
+class ReplacementRuleTest : public testing::Test {
+ protected:
+  // The rule of these tests: files that begin with "ours" may be replaced.
+  void set_rule(const fs::path& target) const {
+    set_replacement_rule(
+        target, {.is_ours = [](const fs::path& file) { return bytes_of(file).starts_with("ours"); }});
+  }
+  std::string write(const fs::path& target, const std::string& text) const {
+    return refusal([&] { write_file_atomically(target, text.data(), text.size()); });
+  }
+  // Returns the name of the only file that is not one of `others`.
+  std::string kept_beside(const std::vector<std::string>& others) const {
+    std::string kept;
+    for (const std::string& name : files_in(folder_.path()))
+      if (std::find(others.begin(), others.end(), name) == others.end()) kept += name;
+    return kept;
+  }
+  const TestFolder folder_{"replacement_rule_test"};
+};
+
+constexpr const char* kNone = "no InputError";
+
+TEST_F(ReplacementRuleTest, AFileThatAppearedAndTheResultAreKept) {
+  const fs::path target = folder_ / "late.h5";
+  set_rule(target);
+  folder_.write("late.h5", "precious notes");
+  const std::string problem = write(target, "ours, new");
+  EXPECT_HAS(problem, "late.h5: was written by another program while this one computed, and is unchanged: ");
+  EXPECT_EQ(bytes_of(target), "precious notes");
+  const std::string kept = kept_beside({"late.h5"});
+  EXPECT_HAS(kept, "late.h5.kept-");
+  EXPECT_HAS(problem, (folder_ / kept).string());
+  EXPECT_EQ(bytes_of(folder_ / kept), "ours, new");
+  remove_leftovers(target);  // the next command does this
+  EXPECT_TRUE(fs::exists(folder_ / kept));
+}
+
+TEST_F(ReplacementRuleTest, ReplacesFilesThatTheRuleAllows) {
+  const fs::path target = folder_ / "x";
+  set_rule(target);
+  EXPECT_EQ(write(target, "ours, 1"), kNone);
+  EXPECT_EQ(write(target, "ours, 2"), kNone);
+  EXPECT_EQ(bytes_of(target), "ours, 2");
+  EXPECT_EQ(files_in(folder_.path()), std::vector<std::string>{"x"});
+}
+
+TEST_F(ReplacementRuleTest, HoldsForEveryWayToWriteTheTarget) {
+  const fs::path target = folder_ / "x", here = fs::relative(target);
+  folder_.write("x", "precious notes");
+  set_rule(here);
+  EXPECT_HAS(write(folder_ / "." / "x", "new"), "was written by another program");
+  const fs::path temporary = temporary_of(target);
+  folder_.write(temporary.filename(), "new");
+  EXPECT_HAS(refusal([&] { move_into_place(temporary, target); }), "was written by another program");
+  EXPECT_EQ(bytes_of(target), "precious notes");
+}
+
+TEST_F(ReplacementRuleTest, FilesThatBelongTogetherAppearAllOrNone) {
+  set_rule(folder_ / "b");
+  const std::string problem = refusal([&] {
+    NewFiles files;
+    files.begin(folder_ / "a"), files.append("new a");
+    files.begin(folder_ / "b"), files.append("new b");
+    folder_.write("b", "precious notes");
+    files.finish();
+  });
+  EXPECT_HAS(problem, "b: was written by another program meanwhile, and is unchanged");
+  EXPECT_EQ(files_in(folder_.path()), std::vector<std::string>{"b"});
+  EXPECT_EQ(bytes_of(folder_ / "b"), "precious notes");
+}
+
+TEST_F(ReplacementRuleTest, ReplacesEveryFileIfThereIsNoRule) {
+  folder_.write("free", "anything");  // the rules of the other tests last as long as the process
+  EXPECT_EQ(write(folder_ / "free", "new"), kNone);
+  EXPECT_EQ(bytes_of(folder_ / "free"), "new");
+}
+
+// Files are written whole or not at all.
 
 void expect_unwritable(const fs::path& file) {
   const std::string message = refusal([&] { write_trace(file, awkward_trace(2000), kProvenance, {}); });
@@ -193,6 +274,122 @@ TEST(WriteWholeFile, PipesAndOtherDevicesAreRefusedAtOnce) {
     EXPECT_EQ(refusal([&] { const FileLock lock(target); }), problem);
   }
   EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"link", "pipe"}));
+}
+
+using Names = std::vector<std::string>;
+
+TEST(NewFiles, AppearTogether) {
+  const TestFolder folder("new_files");
+  folder.write("b", "old");
+  NewFiles files;
+  files.begin(folder / "a");
+  files.append("one");
+  files.append(" two");
+  files.begin(folder / "b");
+  files.append("new");
+  EXPECT_EQ(files.count(), 2u);
+  EXPECT_EQ(files.size(), 10u);
+  EXPECT_EQ(bytes_of(folder / "b"), "old");
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  files.finish();
+  EXPECT_EQ(bytes_of(folder / "a"), "one two");
+  EXPECT_EQ(bytes_of(folder / "b"), "new");
+  EXPECT_EQ(files_in(folder.path()), (Names{"a", "b"}));
+}
+
+TEST(NewFiles, KeepThePermissionsOfTheFilesThatTheyReplace) {
+  const TestFolder folder("new_files");
+  fs::permissions(folder.write("a", "old"), static_cast<fs::perms>(0600));
+  NewFiles files;
+  files.begin(folder / "a");
+  files.append("new");
+  files.finish();
+  EXPECT_EQ(bytes_of(folder / "a"), "new");
+  EXPECT_EQ(fs::status(folder / "a").permissions(), static_cast<fs::perms>(0600));
+}
+
+TEST(NewFiles, LeaveNothingIfTheyAreNotFinished) {
+  const TestFolder folder("new_files");
+  folder.write("b", "old");
+  {
+    NewFiles files;
+    for (const char* name : {"a", "b"}) {
+      files.begin(folder / name);
+      files.append("new");
+    }
+  }
+  EXPECT_EQ(files_in(folder.path()), Names{"b"});
+  EXPECT_EQ(bytes_of(folder / "b"), "old");
+}
+
+using Contents = std::vector<std::pair<fs::path, std::string>>;  // by target
+
+void write_together(const Contents& contents) {
+  NewFiles files;
+  for (const auto& [target, content] : contents) files.begin(target), files.append(content);
+  files.finish();
+}
+
+TEST(NewFiles, ReplaceAllOrNone) {
+  const TestFolder folder("new_files");
+  fs::create_directory(folder / "there");
+  fs::create_symlink("there/b", folder / "b");
+  folder.write("a", "old a"), folder.write("there/b", "old b");
+  const Contents files = {{folder / "a", "new a"}, {folder / "new", ""}, {folder / "b", "new b"}};
+  const auto all = [&] { return bytes_of(folder / "a") + ", " + bytes_of(folder / "b"); };
+  const Names before = {"a", "b", "there"};
+
+  for (const int done : {0, 1, 2}) {
+    const FailedRename failed(done, EDQUOT);
+    EXPECT_HAS(refusal([&] { write_together(files); }), files[static_cast<std::size_t>(done)].first.string() +
+                                                            ": cannot be written (Disk quota exceeded)");
+    EXPECT_EQ(all(), "old a, old b");
+    EXPECT_EQ(files_in(folder.path()), before);
+    EXPECT_EQ(files_in(folder / "there"), Names{"b"});
+  }
+  auto impossible = files;
+  for (const char* name : {"nowhere/c", "there"}) {
+    impossible[2].first = folder / name;
+    EXPECT_HAS(refusal([&] { write_together(impossible); }), std::string(name) + ": cannot be written (");
+    EXPECT_EQ(all(), "old a, old b");
+    EXPECT_EQ(files_in(folder.path()), before);
+  }
+  {
+    const AnswersOfWrite full{{5, 0}, {-1, ENOSPC}};
+    EXPECT_HAS(refusal([&] { write_together(files); }), "b: cannot be written (No space left on device)");
+    EXPECT_EQ(files_in(folder.path()), before);
+  }
+  write_together(files);
+  EXPECT_EQ(all(), "new a, new b");
+  EXPECT_TRUE(fs::is_symlink(folder / "b"));
+  EXPECT_EQ(bytes_of(folder / "new"), "");
+  EXPECT_EQ(files_in(folder.path()), (Names{"a", "b", "new", "there"}));
+  EXPECT_EQ(files_in(folder / "there"), Names{"b"});
+}
+
+// The second rename fails, and then the one that puts the first file back.
+TEST(NewFiles, KeepAnOldFileThatCannotBePutBack) {
+  const TestFolder folder("new_files");
+  folder.write("a", "old a"), folder.write("b", "old b");
+  const std::string kept = (folder / "a").string() + ".old-" + std::to_string(::getpid());
+  const FailedRename failed(1, EDQUOT, 2);
+  const std::string why = refusal([&] {
+    write_together({{folder / "a", "new a"}, {folder / "b", "new b"}});
+  });
+  EXPECT_HAS(why, "b: cannot be written (Disk quota exceeded)");
+  EXPECT_HAS(why, "; the old " + (folder / "a").string() + " is now " + kept);
+  remove_leftovers(folder / "a");
+  EXPECT_EQ(bytes_of(kept), "old a");
+  EXPECT_EQ(bytes_of(folder / "b"), "old b");
+  EXPECT_EQ(files_in(folder.path()).size(), 3u);
+}
+
+TEST(NewFiles, AreNamedIfTheyCannotBeBegun) {
+  const TestFolder folder("new_files");
+  NewFiles files;
+  EXPECT_HAS(refusal([&] { files.begin(folder / "nowhere/a"); }), "nowhere/a: cannot be written");
+  EXPECT_HAS(refusal([&] { files.begin("/dev/null"); }), "/dev/null: cannot be written");
+  EXPECT_HAS(refusal([&] { files.begin(folder.path()); }), "cannot be written (Is a directory)");
 }
 
 }  // namespace

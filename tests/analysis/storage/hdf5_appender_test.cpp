@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/storage/file_digest.h"
+#include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "tests/analysis/storage/system_answers.h"
 #include "tests/support/test_files.h"

@@ -12,9 +12,8 @@
 #include <numeric>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/file_digest.h"
+#include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/sha256.h"
 #include "analysis/sweeps/sweep_in_progress.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"

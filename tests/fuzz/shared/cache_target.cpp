@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "analysis/storage/digest.h"
 #include "analysis/storage/packed_values.h"
-#include "analysis/storage/sha256.h"
 #include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz {

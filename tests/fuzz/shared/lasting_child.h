@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/storage/child_process.h"
+#include "analysis/storage/other_processes.h"
 
 namespace remote_touch::fuzz {
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/storage/schema.h"
 #include "analysis/sweeps/sweep_columns.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_session.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/digest.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/evaluation/regression/baseline_check.h"
 #include "runners/evaluation/regression/manifest.h"

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "core/geometry/rotation.h"
 #include "tests/runners/experiment/sessions/small_session.h"
 #include "tests/support/test_files.h"

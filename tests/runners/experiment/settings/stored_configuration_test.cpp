@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "analysis/storage/schema.h"
+#include "analysis/storage/hdf5_file.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "scenarios/text_files/json_text.h"
 #include "tests/support/test_files.h"

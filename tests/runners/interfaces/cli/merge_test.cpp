@@ -1,8 +1,8 @@
 // Tests of the files that the command `merge` may overwrite.
 #include <gtest/gtest.h>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/block_journal.h"
-#include "analysis/storage/replacement_rule.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/kernels/isa.h"
 #include "runners/interfaces/cli/commands.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
-#include "analysis/storage/file_lock.h"
+#include "analysis/storage/other_processes.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "runners/sweep/sweep.h"

@@ -1,4 +1,4 @@
-#include "analysis/storage/hdf5_dimensions.h"
+#include "analysis/storage/hdf5_values.h"
 
 #include <gtest/gtest.h>
 #include <hdf5_hl.h>
@@ -7,10 +7,9 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/hdf5_values.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::hdf5_dimensions_test {
+namespace remote_touch::hdf5_values_test {
 namespace {
 
 struct Hdf5Dimensions : testing::Test {
@@ -103,4 +102,4 @@ TEST_F(Hdf5Dimensions, TextsOfFormerFilesComeBack) {
 }
 
 }  // namespace
-}  // namespace remote_touch::hdf5_dimensions_test
+}  // namespace remote_touch::hdf5_values_test

@@ -1,5 +1,5 @@
 // The answer of a child process about an HDF5 file arrives unchanged, or is refused.
-#include "analysis/storage/hdf5_child_source.h"
+#include "analysis/storage/hdf5_source.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch::hdf5_child_source_test {
+namespace remote_touch::hdf5_source_test {
 namespace {
 
 const Hdf5Summary kSummary{{{"schema", "x"}, {"empty", ""}}, {"/a", "/b/c"}, {-1, 2048}};
@@ -58,4 +58,4 @@ TEST(ChildAnswer, IsRefusedIfItsRowsAreNotWhole) {
 }
 
 }  // namespace
-}  // namespace remote_touch::hdf5_child_source_test
+}  // namespace remote_touch::hdf5_source_test

@@ -3,19 +3,16 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <stdexcept>
-#include <utility>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/file_digest.h"
-#include "analysis/storage/hdf5_dimensions.h"
+#include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_handle.h"
+#include "analysis/storage/hdf5_values.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Columns of more than kMaxContiguous rows are compressed, in chunks of kChunk rows. Those of several
@@ -247,6 +244,7 @@ void Hdf5Writer::scale(const std::string& path) {
 }
 
 namespace {
+
 // Returns a name that no column has.
 std::string name_of_rows(const std::vector<Column>& columns) {
   std::string name = "row";
@@ -254,6 +252,7 @@ std::string name_of_rows(const std::vector<Column>& columns) {
   while (std::any_of(columns.begin(), columns.end(), is_taken)) name += '_';
   return name;
 }
+
 }  // namespace
 
 void Hdf5Writer::columns(const std::string& group, const std::vector<Column>& columns,

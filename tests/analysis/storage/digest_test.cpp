@@ -1,5 +1,5 @@
 // A changed byte in a finished result is found, wherever it is, before the HDF5 library sees the file.
-#include "analysis/storage/file_digest.h"
+#include "analysis/storage/digest.h"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,13 @@
 #include <string>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/storage/child_process.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/sha256.h"
+#include "analysis/storage/other_processes.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::file_digest_test {
+namespace remote_touch::digest_test {
 namespace {
 
 struct FileDigest : testing::Test {
@@ -112,4 +111,4 @@ TEST(Sha256, AnEarlierInterruptionDoesNotCount) {
 }
 
 }  // namespace
-}  // namespace remote_touch::file_digest_test
+}  // namespace remote_touch::digest_test
