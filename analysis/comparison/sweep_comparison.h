@@ -15,8 +15,6 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/paired_test.h"
-#include "analysis/sweeps/cell_streams.h"
-#include "analysis/sweeps/sweep_regions.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/tolerance.h"
 

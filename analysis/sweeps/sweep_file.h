@@ -3,6 +3,7 @@
 // runs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -12,6 +13,20 @@
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
+
+// The arrays of a sweep in its file, beside the measures.
+
+// Each has the values of the result; without values if it has none.
+Column state_column(const SweepResult& result);
+Column notes_column(const SweepResult& result);
+// Returns the numbers of a stored column of notes. Earlier results store them in 32 bits.
+std::vector<std::uint64_t> note_numbers(const Column& notes);
+Column error_column(const SweepResult& result);
+Column round_column(const SweepResult& result);
+// The numbers of the runs of a part. pre: the result is a part.
+Column run_column(const SweepResult& result);
+// The scale of the last dimension, if there are several replicates.
+Column replicate_column(const SweepResult& result);
 
 // Digest of axes, the runs of a part, measures, states, errors and, with refinement, rounds. Notes are not
 // part of it, because they do not change the numbers.
@@ -60,5 +75,36 @@ std::int32_t checksum(const SweepResult& result, std::size_t place);
 std::string plan_digest(const SweepResult& result, TextAttributes attributes);
 // Size of that file, bytes. The finished one is usually smaller.
 std::size_t size_in_progress(const SweepResult& result, const TextAttributes& attributes);
+
+// The result file of a sweep while it runs.
+
+// The file is written whole at the start, with space for every run, so a full disk is noticed before any work
+// is done, and the file can be read at any time. Every finished run is then written in place at once: a
+// killed program loses no finished run. pre: the caller holds the file's lock (other_processes.h).
+class SweepInProgress {
+ public:
+  // already_there: the file exists, is in progress and holds this result. If false, the file is written.
+  // Throws InputError if it cannot be written.
+  SweepInProgress(const std::filesystem::path& file, const SweepResult& result,
+                  const TextAttributes& attributes, bool already_there);
+  ~SweepInProgress();
+  SweepInProgress(const SweepInProgress&) = delete;
+  SweepInProgress& operator=(const SweepInProgress&) = delete;
+
+  // Stores the values, the state and the notes of the run at a place. One call at a time. Throws InputError
+  // if the file cannot be written.
+  void record(const SweepResult& result, std::size_t at);
+  // Makes everything recorded survive a power cut. Throws InputError if that fails, and also if the file was
+  // replaced or removed.
+  void flush();
+
+ private:
+  void put(std::int64_t offset, const void* value, std::size_t size);
+
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+  std::vector<std::int64_t> measure_offsets_;
+  std::int64_t state_offset_ = 0, checksum_offset_ = 0, notes_offset_ = 0;
+};
 
 }  // namespace remote_touch

@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "analysis/statistics/interval_estimates.h"
-#include "analysis/sweeps/cell_groups.h"
-#include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {

@@ -1,8 +1,12 @@
 #include "analysis/sweeps/sweep_result.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
+#include <set>
 #include <stdexcept>
 
 namespace remote_touch {
@@ -126,6 +130,156 @@ EventCounts event_counts(const SweepResult& result, const std::vector<double>& m
     ++(std::isnan(measure[run]) ? counts.unknown : measure[run] > above ? counts.events : counts.without);
   }
   return counts;
+}
+
+namespace {
+
+constexpr std::size_t kMaxParts = 36;
+
+std::string text_of(const Column& axis, std::size_t index) {
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&axis.values)) return (*texts)[index];
+  const auto number_at = [index](const auto& values) {
+    if constexpr (std::is_same_v<decltype(values), const std::vector<std::string>&>)
+      return 0.0;
+    else
+      return static_cast<double>(values[index]);
+  };
+  const double number = std::visit(number_at, axis.values);
+  if (!axis.value_names.empty()) return axis.value_names[static_cast<std::size_t>(number)];
+  char text[32];  // 6 digits: 0.3 for 0.30000000000000004
+  return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::general, 6).ptr};
+}
+
+}  // namespace
+
+bool Region::contains(const std::vector<std::size_t>& indices) const {
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    if (indices[i] < ranges[i].first || indices[i] >= ranges[i].second) return false;
+  return true;
+}
+
+std::vector<Region> regions_of(const std::vector<Column>& axes) {
+  std::vector<Region> parts = {{"", {}}};
+  Region whole{"all runs", {}};
+  for (const Column& axis : axes) {
+    const std::size_t length = axis.length();
+    const bool named =
+        !axis.value_names.empty() || std::holds_alternative<std::vector<std::string>>(axis.values);
+    whole.ranges.emplace_back(0, length);
+    std::size_t count = length <= 4 ? length : length >= 6 && !named ? 3 : 1;
+    if (parts.size() * count > kMaxParts) count = 1;
+    std::vector<Region> finer;
+    for (const Region& part : parts)
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t from = i * length / count, to = (i + 1) * length / count;
+        finer.push_back(part);
+        finer.back().ranges.emplace_back(from, to);
+        if (count == 1) continue;
+        std::string& label = finer.back().label;
+        label += (label.empty() ? "" : ", ") + axis.name + " " + text_of(axis, from);
+        if (to - from > 1) label += " to " + text_of(axis, to - 1);
+      }
+    parts = std::move(finer);
+  }
+  if (parts.size() == 1) parts.clear();
+  parts.insert(parts.begin(), whole);
+  return parts;
+}
+
+std::vector<CellGroup> cell_groups(const SweepResult& result, const std::vector<std::size_t>& axes) {
+  std::size_t count = 1;
+  for (const std::size_t axis : axes) count *= result.axes[axis].length();
+  std::vector<CellGroup> groups(count);
+  for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
+    const std::vector<std::size_t> places = result.axis_indices(cell);
+    std::size_t number = 0;
+    for (const std::size_t axis : axes) number = number * result.axes[axis].length() + places[axis];
+    CellGroup& group = groups[number];
+    if (group.cells.empty())
+      for (const std::size_t axis : axes) group.indices.push_back(places[axis]);
+    group.cells.push_back(cell);
+  }
+  return groups;
+}
+
+Column axis_at(const Column& axis, const std::vector<std::size_t>& places) {
+  Column column = axis;
+  std::visit(
+      [&](auto& values) {
+        auto all = std::move(values);
+        values.clear();
+        for (const std::size_t place : places) values.push_back(all[place]);
+      },
+      column.values);
+  return column;
+}
+
+std::vector<Column> axes_of(const SweepResult& result, const std::vector<std::size_t>& axes,
+                            const std::vector<CellGroup>& groups) {
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    std::vector<std::size_t> places;
+    for (const CellGroup& group : groups) places.push_back(group.indices[i]);
+    columns.push_back(axis_at(result.axes[axes[i]], places));
+  }
+  return columns;
+}
+
+Values counts_in_column(const std::vector<std::int64_t>& counts) {
+  const auto fits = [](std::int64_t count) { return count <= std::numeric_limits<std::int32_t>::max(); };
+  if (std::all_of(counts.begin(), counts.end(), fits))
+    return std::vector<std::int32_t>(counts.begin(), counts.end());
+  return std::vector<double>(counts.begin(), counts.end());
+}
+
+bool CellStreams::share_replicates(const std::vector<std::size_t>& cells) const {
+  return std::any_of(cells.begin(), cells.end(), [&](std::size_t cell) { return draws[cell].of_replicate; });
+}
+
+bool CellStreams::are_independent(const std::vector<std::size_t>& cells) const {
+  std::set<std::size_t> seen, seeds;
+  for (const std::size_t cell : cells) {
+    if (draws[cell].of_cell && !seen.insert(noise_cell[cell]).second) return false;
+    if (draws[cell].of_replicate && !seeds.insert(seed[cell]).second) return false;
+  }
+  return true;
+}
+
+CellStreams independent_streams(std::size_t cells) {
+  CellStreams streams;
+  streams.draws.assign(cells, {true, false});
+  streams.noise_cell.resize(cells), streams.seed.assign(cells, 0);
+  std::iota(streams.noise_cell.begin(), streams.noise_cell.end(), std::size_t{0});
+  return streams;
+}
+
+std::vector<RunCluster> clusters_of(const SweepResult& result, const CellStreams& streams,
+                                    const std::vector<std::size_t>& cells, bool by_replicate) {
+  std::vector<RunCluster> clusters;
+  std::map<std::pair<std::size_t, int>, std::size_t> of_key;
+  for (const std::size_t cell : cells)
+    for (int replicate = 0; replicate < result.replicates; ++replicate) {
+      const std::size_t run = result.run(cell, replicate);
+      if (result.state[run] != RunState::done) continue;
+      if (streams.is_fixed(cell)) {
+        clusters.push_back({{run}, streams.noise_cell[cell], true});
+        break;
+      }
+      const std::size_t key = by_replicate ? streams.seed[cell] : streams.noise_cell[cell];
+      const auto [at, is_new] = of_key.try_emplace({key, replicate}, clusters.size());
+      if (is_new) clusters.push_back({{}, streams.noise_cell[cell], false});
+      clusters[at->second].runs.push_back(run);
+    }
+  return clusters;
+}
+
+std::string equal_runs_note(const CellStreams& streams, const std::vector<std::size_t>& cells,
+                            const std::function<std::int64_t(std::size_t cell)>& done) {
+  std::int64_t runs = 0, fixed = 0;
+  for (const std::size_t cell : cells)
+    if (const std::int64_t own = streams.is_fixed(cell) ? done(cell) : 0; own > 1) runs += own, ++fixed;
+  if (fixed == 0) return {};
+  return std::to_string(runs) + " equal runs count as " + (fixed == 1 ? "one" : std::to_string(fixed));
 }
 
 }  // namespace remote_touch

@@ -4,8 +4,8 @@
 
 #include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/limit.h"
-#include "analysis/sweeps/cell_groups.h"
 #include "analysis/sweeps/sweep_means.h"
+#include "analysis/sweeps/sweep_result.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

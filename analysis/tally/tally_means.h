@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/tally/sweep_tally.h"
 

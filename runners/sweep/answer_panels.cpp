@@ -8,7 +8,7 @@
 #include <set>
 
 #include "analysis/statistics/means_and_extremes.h"
-#include "analysis/sweeps/cell_groups.h"
+#include "analysis/sweeps/sweep_result.h"
 #include "core/parameters/unit.h"
 
 namespace remote_touch {

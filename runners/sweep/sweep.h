@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
-#include "analysis/sweeps/refinement.h"
+#include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/sweep/keep.h"

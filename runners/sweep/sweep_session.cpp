@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "analysis/storage/atomic_file.h"
-#include "analysis/sweeps/sweep_in_progress.h"
+#include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/simulation/simulation.h"

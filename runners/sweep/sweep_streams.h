@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "analysis/sweeps/cell_streams.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "analysis/sweeps/cell_streams.h"
+#include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,6 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/trace.h"

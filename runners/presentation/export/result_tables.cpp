@@ -4,7 +4,6 @@
 
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"

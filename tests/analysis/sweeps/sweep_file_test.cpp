@@ -1,6 +1,5 @@
 // The files of sweeps: what is written is read back, finished or not, and damage is noticed.
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/sweep_columns.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -14,7 +13,6 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/sweeps/sweep_in_progress.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"

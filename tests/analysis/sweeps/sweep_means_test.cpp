@@ -11,7 +11,7 @@
 
 #include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/paired_test.h"
-#include "analysis/sweeps/cell_groups.h"
+#include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch::sweep_means_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/sweeps/sweep_columns.h"
+#include "analysis/sweeps/sweep_file.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"

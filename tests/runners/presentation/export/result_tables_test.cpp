@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "analysis/figures/result_file.h"
-#include "analysis/sweeps/sweep_columns.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
