@@ -2,13 +2,90 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "analysis/tally/measure_tally.h"
+#include "analysis/tally/unrounded_sum.h"
 
 namespace remote_touch {
+
+// Counts of values in fixed narrow buckets, from which quantiles follow with a known error.
+
+// The bucket of a double is its sign, its exponent and the first 5 bits of its mantissa, so that nothing is
+// rounded. There are 32 buckets of equal width from each power of two to the next. Buckets are numbered in
+// the order of their values: 0 holds 0 and -0 only; b > 0 holds the doubles whose bits, shifted right by 47,
+// are b - 1; -b holds their negatives. The sketch of values does not depend on their order.
+class QuantileSketch {
+ public:
+  // Number of the bucket of a finite value.
+  static std::int32_t bucket_of(double value);
+  // Returns the middle of a bucket. It differs from each value v in the bucket by at most |v| / 64 (1.6 %),
+  // because the bucket is 1/32 of the power of two at or below |v| wide. Below 2^-1022 it differs by at most
+  // 2^-1028 instead. The middle of bucket 0 is 0.
+  static double middle_of(std::int32_t bucket);
+
+  // pre: the value is finite.
+  void add(double value);
+  void add(const QuantileSketch& other);
+
+  std::int64_t count() const;  // number of values
+  // Approximates x_k of the sorted values x_1 .. x_n, k = max(1, ceil(p n)), by the middle of its bucket.
+  // This is the inverse of the empirical distribution function: type 1 of Hyndman and Fan, Sample quantiles
+  // in statistical packages, The American Statistician 50 (1996). The product p n is rounded to a double. NaN
+  // without values. pre: 0 <= p <= 1.
+  double quantile(double p) const;
+  // Returns the bucket that has x_k; 0 without values.
+  std::int32_t bucket_at(double p) const;
+
+  // Buckets with their counts, increasing. from_pairs() returns nothing unless pairs() may return the list.
+  std::vector<std::pair<std::int32_t, std::int64_t>> pairs() const;
+  static std::optional<QuantileSketch> from_pairs(
+      const std::vector<std::pair<std::int32_t, std::int64_t>>& pairs);
+
+  bool operator==(const QuantileSketch&) const = default;
+
+ private:
+  std::vector<std::int32_t> buckets_;  // increasing
+  std::vector<std::int64_t> counts_;   // counts of these buckets; above 0
+};
+
+// The tally of one measure in the runs of a cell.
+
+// Equal values in any order, and in any parts that are added to each other, give equal bits.
+struct MeasureTally {
+  std::int64_t values = 0;    // number of finite values; least, greatest, sums and sketch are of these only
+  std::int64_t unknown = 0;   // NaN
+  std::int64_t infinite = 0;  // infinity of either sign
+  double least = std::numeric_limits<double>::infinity();  // infinity and -infinity without values
+  double greatest = -std::numeric_limits<double>::infinity();
+  UnroundedSum sum,
+      squares;  // sums of the values and of their squares; add_square() states the range of the latter
+  QuantileSketch sketch;
+
+  void add(double value);  // any double; -0 counts as 0
+  void add(const MeasureTally& other);
+
+  // Returns the rounded sum divided by the number of values; NaN without values.
+  double mean() const;
+  // Returns (n sum of squares - (sum)^2) / (n (n - 1)). The numerator is rounded once, so nothing cancels.
+  // NaN with fewer than two values, or if the sum or the sum of squares is above the largest double (values
+  // of 1e154). Deviations below 1e-146 are lost.
+  double variance() const;
+  double standard_deviation() const;
+  // Returns the quantile of QuantileSketch, clipped to least .. greatest. It differs by at most 1.6 % from
+  // the value that it approximates, x_k of the sorted values. p = 0 gives least and p = 1 greatest. NaN
+  // without values.
+  double quantile(double p) const;
+
+  // Checks a tally of unknown origin. Returns what contradicts what, such as "the extremes are outside the
+  // sketch"; empty if it is consistent.
+  std::string contradiction() const;
+  bool operator==(const MeasureTally&) const = default;
+};
 
 // The layout that all tallies of one sweep have.
 struct TallyLayout {

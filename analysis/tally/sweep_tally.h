@@ -6,11 +6,42 @@
 #include <string>
 #include <vector>
 
+#include "analysis/sweeps/sweep_result.h"
 #include "analysis/tally/cell_tally.h"
-#include "analysis/tally/run_ranges.h"
 #include "analysis/trace/column.h"
 
 namespace remote_touch {
+
+// A set of runs, as ranges of their numbers.
+
+struct RunRange {
+  std::uint64_t first = 0, end = 0;  // first .. end - 1
+
+  bool operator==(const RunRange&) const = default;
+};
+
+class RunRanges {
+ public:
+  // Adds the runs first .. end - 1. pre: the set has none of them.
+  void add(RunRange range);
+  // pre: the sets have no run in common.
+  void add(const RunRanges& other);
+
+  // Increasing; between two ranges is at least one run that the set does not have.
+  const std::vector<RunRange>& ranges() const { return ranges_; }
+  std::uint64_t count() const;  // number of runs
+  // Number of runs in this range.
+  std::uint64_t count_in(RunRange range) const;
+  // Returns the first range of runs in both sets; an empty one if there is none.
+  RunRange first_common(const RunRanges& other) const;
+  // Returns the runs of first .. end - 1 that the set does not have.
+  RunRanges missing_in(RunRange range) const;
+
+  bool operator==(const RunRanges&) const = default;
+
+ private:
+  std::vector<RunRange> ranges_;
+};
 
 // Cells and runs are numbered as in SweepResult: the last axis runs fastest, and a run is the cell times the
 // replicates plus the replicate. The same runs in any order, and in any parts, give an equal tally.
@@ -49,5 +80,21 @@ struct SweepTally {
  private:
   CellTally& tally_for(const TallyLayout& layout, std::uint64_t run);
 };
+
+// Means of the measures of a tally, and how often its events happened.
+
+// Returns the outcomes of an event in the finished runs of a cell. pre: the measure of that number is an
+// event (is_event()).
+EventCounts event_counts(const SweepTally& tally, std::size_t measure, std::uint64_t cell);
+
+// Returns the number of finished runs of a cell with a note. If there are several kinds of notes, it is that
+// of the most frequent kind: a tally does not know how many runs have two kinds.
+std::int64_t noted_runs(const SweepTally& tally, std::uint64_t cell);
+
+// Returns a table as sweep_means() does, but without a correction for skewness: a tally has no third moments.
+// outline: of the tally. Throws InputError, about the options `by`, if a row would pool cells that share
+// random numbers, because a tally does not know which of its runs do.
+Table tally_means(const SweepTally& tally, const SweepResult& outline, std::size_t measure,
+                  const std::vector<std::size_t>& by, const CellStreams& streams);
 
 }  // namespace remote_touch

@@ -25,7 +25,7 @@ namespace remote_touch {
 //   MEASURE/median_bucket, bucket_values        the sketch: number of values in the bucket median_bucket +
 //                                               bucket_offset, over bucket_offset, too
 // and groups of lists, which are absent if they are empty:
-//   MEASURE/far_buckets/cell, bucket, values    buckets with another offset; see quantile_sketch.h
+//   MEASURE/far_buckets/cell, bucket, values    buckets with another offset; see cell_tally.h
 //   MEASURE/events/run         the runs in which the event happened, increasing (keep "events")
 //   errors/run, error          of each cell with failed runs the first of them, and why it failed
 // Numbers of cells and runs are those of SweepTally.

@@ -9,7 +9,7 @@
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
-#include "analysis/tally/tally_means.h"
+#include "analysis/tally/sweep_tally.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/answer_panels.h"
 #include "runners/sweep/sweep_streams.h"

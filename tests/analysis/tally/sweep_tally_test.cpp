@@ -1,4 +1,3 @@
-// Tallies of parts of a sweep, and what they are when added to each other.
 #include "analysis/tally/sweep_tally.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +11,8 @@
 
 namespace remote_touch::sweep_tally_test {
 namespace {
+
+// Tallies of parts of a sweep, and what they are when added to each other.
 
 std::vector<RunRange> ranges_of(const std::set<std::uint64_t>& runs) {
   std::vector<RunRange> ranges;
@@ -148,6 +149,36 @@ TEST(SweepTally, NoticesAContradiction) {
   expect_wrong([](SweepTally& tally) { tally.tallies[0].first_failed = 20; });
   expect_wrong([](SweepTally& tally) { tally.tallies[0].events[0].back() = 20; });
   expect_wrong([](SweepTally& tally) { tally.tallies[1].notes[0].first = 1; });
+}
+
+// Means of a tally, on runs made by hand.
+
+template <class T>
+T first_of(const Table& table, const std::string& name) {
+  for (const Column& column : table.columns)
+    if (column.name == name) return std::get<std::vector<T>>(column.values).front();
+  return {};
+}
+
+// Four runs of the first cell: two kinds of notes in the first run, and a value that is infinite in the
+// third.
+TEST(TallyMeans, CountNotesAndRunsWithoutAValue) {
+  SweepTally tally = example_plan(4);
+  const TallyLayout layout = tally.layout();
+  const auto add = [&](std::uint64_t run, double jump, std::uint64_t notes) {
+    tally.add_done(layout, run, std::vector<double>{jump, 0, 0}, notes);
+  };
+  add(0, 1, 0b011), add(1, 2, 0b001), add(2, INFINITY, 0), add(3, 6, 0b100);
+  EXPECT_EQ(noted_runs(tally, 0), 2);
+  EXPECT_EQ(noted_runs(tally, 1), 0);
+  SweepResult outline;
+  outline.axes = tally.axes, outline.replicates = tally.replicates;
+  const Table table = tally_means(tally, outline, 0, {0, 1}, independent_streams(6));
+  EXPECT_EQ(first_of<double>(table, "value"), 3);
+  EXPECT_EQ(first_of<std::int32_t>(table, "runs"), 3);
+  EXPECT_EQ(first_of<std::int32_t>(table, "unknown"), 1);
+  EXPECT_EQ(first_of<std::int32_t>(table, "noted_runs"), 2);
+  EXPECT_NE(first_of<std::string>(table, "note").find("of 3 of 4 runs that have a value"), std::string::npos);
 }
 
 }  // namespace
