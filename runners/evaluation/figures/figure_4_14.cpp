@@ -4,7 +4,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "analysis/theory/ball_closing.h"
+#include "analysis/theory/exact_contacts.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

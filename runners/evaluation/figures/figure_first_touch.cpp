@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/statistics/means_and_extremes.h"
-#include "analysis/theory/first_touch.h"
+#include "analysis/theory/pop_through_limits.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {
@@ -131,8 +131,8 @@ Table formula_table(const Losses& losses) {
                   rows);
 }
 
-// The lost start times form one interval (first_touch.h). The number of evenly spaced start times in an
-// interval differs from the formula by less than one.
+// The lost start times form one interval (pop_through_limits.h). The number of evenly spaced start times in
+// an interval differs from the formula by less than one.
 void add_formula_claim(Figure& figure, const Losses& losses, const std::string& where) {
   Claims(figure, where)
       .at_most(

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "analysis/statistics/means_and_extremes.h"
-#include "analysis/theory/tool_rest.h"
+#include "analysis/theory/exact_contacts.h"
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/statistics/curve_fits.h"
-#include "analysis/theory/lift_noise.h"
+#include "analysis/theory/pop_through_limits.h"
 #include "runners/evaluation/figures/figures.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/theory/pop_through_bound.h"
+#include "analysis/theory/pop_through_limits.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 

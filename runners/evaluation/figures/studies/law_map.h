@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/sweeps/event_limits.h"
-#include "analysis/theory/pop_through_law.h"
+#include "analysis/theory/pop_through_limits.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "analysis/theory/delayed_position_force.h"
+#include "analysis/theory/haptic_loops.h"
 #include "runners/evaluation/figures/teleoperation/slave_tasks.h"
 #include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/theory/sampled_wall.h"
+#include "analysis/theory/haptic_loops.h"
 #include "runners/evaluation/figures/context/figure_context.h"
 
 namespace remote_touch {

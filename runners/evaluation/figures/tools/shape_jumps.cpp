@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "analysis/theory/tool_jump.h"
+#include "analysis/theory/exact_contacts.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/geometry/rotation.h"
 #include "runners/experiment/tool_files/tool_loading.h"

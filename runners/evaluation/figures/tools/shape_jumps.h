@@ -1,5 +1,5 @@
 // Distances by which one frame may move an edge, a corner, a ball or a plane against the plate of figure
-// tool-shapes, by each contact rule: the closed forms of analysis/theory/tool_jump.h for what counts as
+// tool-shapes, by each contact rule: the closed forms of analysis/theory/exact_contacts.h for what counts as
 // inside by that rule.
 #pragma once
 

@@ -10,7 +10,7 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/measures/run_events.h"
-#include "analysis/theory/first_touch.h"
+#include "analysis/theory/pop_through_limits.h"
 #include "core/search/neighbour_search.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/scenes.h"

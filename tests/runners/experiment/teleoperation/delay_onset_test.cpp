@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/theory/delayed_position_force.h"
+#include "analysis/theory/haptic_loops.h"
 #include "runners/experiment/hand/operator_model.h"
 #include "runners/experiment/teleoperation/teleoperation.h"
 

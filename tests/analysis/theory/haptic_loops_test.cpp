@@ -1,18 +1,158 @@
-// Comparison of the onsets with closed forms and with a direct integration of the delay differential
-// equation.
-#include "analysis/theory/delayed_position_force.h"
+#include "analysis/theory/haptic_loops.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <vector>
 
+namespace remote_touch::haptic_loops_test {
+namespace {
+
+// The distances of a slave from its command, against an integration of its equation of motion in small steps.
+
+constexpr double kStep_s = 1e-5;
+
+// Calls seen(time, command, slave) after each step until it returns false. The command is 0 before the start.
+void follow(double natural_frequency_hz, double duration_s, const std::function<double(double)>& command,
+            const std::function<bool(double, double, double)>& seen) {
+  const double w = 2 * std::numbers::pi * natural_frequency_hz;
+  double x = command(0), v = 0, before = x;
+  for (double t = kStep_s; t < duration_s; t += kStep_s) {
+    const double c = command(t);
+    v += kStep_s * (w * w * (c - x) + 2 * w * ((c - before) / kStep_s - v));
+    x += kStep_s * v, before = c;
+    if (!seen(t, c, x)) return;
+  }
+}
+
+TEST(FollowingError, IsThatOfTheIntegratedMotion) {
+  for (const FollowedShake& shake :
+       {FollowedShake{0.02, 0.5, 2, 0.1}, FollowedShake{0.01, 1, 1, 0}, FollowedShake{0.02, 2, 10, 0.2}}) {
+    const double u = 2 * std::numbers::pi * shake.hz;
+    double largest = 0;
+    follow(
+        shake.natural_frequency_hz, 6,
+        [&](double t) { return shake.amplitude_m * std::sin(u * (t - shake.age_s)); },
+        [&](double t, double, double x) {
+          if (t > 4) largest = std::max(largest, std::abs(shake.amplitude_m * std::sin(u * t) - x));
+          return true;
+        });
+    EXPECT_NEAR(following_error_m(shake), largest, 0.01 * largest);
+  }
+}
+
+TEST(FirstImpact, IsThatOfTheIntegratedMotion) {
+  for (const Approach& a : {Approach{0.2, 0.05, 0, 1}, Approach{0.2, 0.1, 0.005, 1},
+                            Approach{0.4, 0.08, -0.02, 3}, Approach{0.1, 0.05, -1e-4, 8}}) {
+    double time_s = 0, speed = 0, last = a.way_m + a.gap_m;
+    follow(
+        a.natural_frequency_hz, 5,
+        [&](double t) { return std::max(a.gap_m, a.gap_m + a.way_m - a.speed_m_per_s * t); },
+        [&](double t, double, double x) {
+          time_s = t, speed = (last - x) / kStep_s, last = x;
+          return x > 0;
+        });
+    const std::optional<Impact> touch = first_impact(a);
+    ASSERT_TRUE(touch);
+    EXPECT_NEAR(touch->time_s, time_s, 1e-3);
+    EXPECT_NEAR(touch->speed_m_per_s, speed, 0.02 * a.speed_m_per_s);
+  }
+}
+
+// The slave passes the end of the command by at most v / (e w).
+TEST(FirstImpact, HappensOnlyIfTheOvershootExceedsTheGap) {
+  const double overshoot_m = 0.2 / (std::numbers::e * 2 * std::numbers::pi * 2);
+  EXPECT_TRUE(first_impact({0.2, 1, 0.99 * overshoot_m, 2}));
+  EXPECT_FALSE(first_impact({0.2, 1, 1.01 * overshoot_m, 2}));
+}
+
+TEST(FirstImpact, AtTheEndOfTheCommandIsLaterByTheClosedForm) {
+  const double w = 2 * std::numbers::pi, stop_s = 0.25;
+  const std::optional<Impact> touch = first_impact({0.2, 0.05, 0, 1});
+  ASSERT_TRUE(touch);
+  EXPECT_NEAR(touch->time_s, stop_s / (1 - std::exp(-w * stop_s)), 1e-6);
+}
+
+TEST(ImpactForce, StopsTheMass) {
+  const double push_N = 3, K = 30000, m = 2, speed = 0.2;
+  const double depth_m = impact_force_N(push_N, K, m, speed) / K;
+  EXPECT_NEAR(m * speed * speed / 2 + push_N * depth_m, K * depth_m * depth_m / 2, 1e-12);
+  EXPECT_DOUBLE_EQ(impact_force_N(0, K, m, speed), speed * std::sqrt(K * m));
+}
+
+// The largest stable stiffness of a sampled wall: the law where it holds, and the simulated device beyond it.
+
+// The correction of the law to first order, see wall_law_N_per_m().
+double corrected_law(const SampledWall& w) {
+  const double t = (0.5 + w.delay_ticks) * w.tick_s, t_B = t + 0.5 * w.velocity_ticks * w.tick_s;
+  const double law = wall_law_N_per_m(w);
+  return law *
+         (1 + law * t * t / (6 * w.mass_kg) - w.wall_damping_Ns_per_m * t_B * t_B / (2 * w.mass_kg * t));
+}
+
+TEST(SampledWall, TheLawAndItsCorrectionHoldForAHeavyHand) {
+  for (const double mass_kg : {1.0, 3.0, 10.0})
+    for (const double b : {0.1, 0.5, 2.0})
+      for (const double B : {0.0, 0.5, 10.0})
+        for (const int delay : {0, 1, 5})
+          for (const int ticks : {1, 5}) {
+            const SampledWall wall{mass_kg, b, B, 0, delay, ticks};
+            const double correction = std::abs(corrected_law(wall) / wall_law_N_per_m(wall) - 1);
+            if (correction > 0.1) continue;
+            EXPECT_NEAR(exact_wall_limit_N_per_m(wall) / corrected_law(wall), 1,
+                        8 * correction * correction + 0.002)
+                << mass_kg << " " << b << " " << B << " " << delay << " " << ticks;
+          }
+}
+
+// A spring of the hand makes the oscillation faster, which a wall without a damper hardly notices.
+TEST(SampledWall, ASpringOfTheHandHardlyMatters) {
+  const SampledWall without{0.3, 1, 0, 0, 5};
+  SampledWall with = without;
+  with.spring_share = 0.25;
+  EXPECT_NEAR(exact_wall_limit_N_per_m(with) / exact_wall_limit_N_per_m(without), 1, 0.01);
+}
+
+// The law promises 3429 N/m here.
+TEST(SampledWall, TheLawIsTooHighForALightHandWithALateDamper) {
+  const SampledWall wall{.mass_kg = 0.1,
+                         .damping_Ns_per_m = 2,
+                         .wall_damping_Ns_per_m = 10,
+                         .delay_ticks = 3,
+                         .velocity_ticks = 5};
+  EXPECT_NEAR(wall_law_N_per_m(wall), 3428.6, 0.1);
+  EXPECT_NEAR(exact_wall_limit_N_per_m(wall), 2000, 50);
+}
+
+// Masses, dampers and stiffnesses have a common factor: it has no meaning.
+TEST(SampledWall, ScalesWithTheMass) {
+  for (const double factor : {0.001, 7.0}) {
+    const SampledWall a{0.2, 1, 3, 0.25, 2, 4};
+    const SampledWall b{factor * 0.2, factor * 1, factor * 3, 0.25, 2, 4};
+    EXPECT_NEAR(exact_wall_limit_N_per_m(b) / exact_wall_limit_N_per_m(a), factor, 1e-6 * factor);
+  }
+}
+
+TEST(SampledWall, ADamperThatIsTooLateMakesEveryWallUnstable) {
+  EXPECT_EQ(exact_wall_limit_N_per_m(
+                {.mass_kg = 0.01, .damping_Ns_per_m = 0.1, .wall_damping_Ns_per_m = 10, .delay_ticks = 5}),
+            0);
+}
+
+}  // namespace
+}  // namespace remote_touch::haptic_loops_test
+
 namespace remote_touch::delayed_position_force_test {
 namespace {
+
+// Comparison of the onsets with closed forms and with a direct integration of the delay differential
+// equation.
 
 constexpr double kPi = std::numbers::pi, kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kStep_s = 1e-5;

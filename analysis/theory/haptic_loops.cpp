@@ -1,5 +1,6 @@
-#include "analysis/theory/delayed_position_force.h"
+#include "analysis/theory/haptic_loops.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -8,6 +9,58 @@
 #include <vector>
 
 namespace remote_touch {
+namespace {
+
+double angular(double hz) {
+  return 2 * std::numbers::pi * hz;
+}
+
+// The distance by which a command that began to move with the speed 1 some time ago is ahead of the slave.
+double lag_s(double time_s, double w) {
+  return time_s > 0 ? time_s * std::exp(-w * time_s) : 0;
+}
+double lag_rate(double time_s, double w) {
+  return time_s > 0 ? (1 - w * time_s) * std::exp(-w * time_s) : 0;
+}
+
+// Distance of the slave from where it touches.
+double height_m(const Approach& a, double time_s) {
+  const double w = angular(a.natural_frequency_hz), stop_s = a.way_m / a.speed_m_per_s;
+  return a.gap_m +
+         a.speed_m_per_s * (std::max(0.0, stop_s - time_s) + lag_s(time_s, w) - lag_s(time_s - stop_s, w));
+}
+
+double closing_speed_m_per_s(const Approach& a, double time_s) {
+  const double w = angular(a.natural_frequency_hz), stop_s = a.way_m / a.speed_m_per_s;
+  return a.speed_m_per_s * ((time_s < stop_s ? 1 : 0) - lag_rate(time_s, w) + lag_rate(time_s - stop_s, w));
+}
+
+}  // namespace
+
+double following_error_m(const FollowedShake& shake) {
+  const double u = angular(shake.hz), w = angular(shake.natural_frequency_hz);
+  const std::complex<double> s(0, u), followed = (2.0 * w * s + w * w) / ((s + w) * (s + w));
+  return shake.amplitude_m * std::abs(1.0 - followed * std::exp(-s * shake.age_s));
+}
+
+std::optional<Impact> first_impact(const Approach& a) {
+  const double w = angular(a.natural_frequency_hz), step_s = 1 / (1000 * w);
+  // The lag is largest 1 / w after the stop, and all but gone 50 / w after it.
+  const double end_s = a.way_m / a.speed_m_per_s + 50 / w;
+  double below_s = step_s;
+  while (below_s < end_s && height_m(a, below_s) > 0) below_s += step_s;
+  if (height_m(a, below_s) > 0) return {};
+  double above_s = below_s - step_s;
+  while (below_s - above_s > 1e-9) {
+    const double middle_s = (above_s + below_s) / 2;
+    (height_m(a, middle_s) > 0 ? above_s : below_s) = middle_s;
+  }
+  return Impact{below_s, closing_speed_m_per_s(a, below_s)};
+}
+
+double impact_force_N(double push_N, double stiffness_N_per_m, double mass_kg, double speed_m_per_s) {
+  return push_N + std::sqrt(push_N * push_N + stiffness_N_per_m * mass_kg * speed_m_per_s * speed_m_per_s);
+}
 
 namespace {
 
@@ -143,6 +196,65 @@ double max_environment_stiffness(const PositionForceLoop& loop, double round_tri
 
 double held_round_trip(double round_trip_s, double tick_s, int holds) {
   return round_trip_s + 0.5 * holds * tick_s;
+}
+
+namespace {
+
+// Returns the matrix that maps position, velocity and held force to their values one tick later: the
+// exponential of the motion, by its series for a sixteenth of the tick and four squarings.
+Eigen::Matrix3d motion_of(const SampledWall& wall, double stiffness_N_per_m) {
+  constexpr int kSquarings = 4, kTerms = 16;
+  const double m = wall.mass_kg;
+  Eigen::Matrix3d rate;
+  rate << 0, 1, 0, -wall.spring_share * stiffness_N_per_m / m, -wall.damping_Ns_per_m / m, 1 / m, 0, 0, 0;
+  rate *= wall.tick_s / (1 << kSquarings);
+  Eigen::Matrix3d motion = Eigen::Matrix3d::Identity(), term = motion;
+  for (int i = 1; i <= kTerms; ++i) term = (term * rate / i).eval(), motion += term;
+  for (int i = 0; i < kSquarings; ++i) motion = (motion * motion).eval();
+  return motion;
+}
+
+// The state is x, x', the positions of the last n ticks and the commands of the last d ticks, newest first.
+bool is_stable(const SampledWall& wall, double stiffness_N_per_m) {
+  constexpr double kRounding = 1e-12;
+  const int n = wall.velocity_ticks, d = wall.delay_ticks, size = 2 + n + d;
+  const double damper_N_per_m = wall.wall_damping_Ns_per_m / (n * wall.tick_s);
+  Eigen::RowVectorXd command = Eigen::RowVectorXd::Zero(size);
+  command[0] = -stiffness_N_per_m - damper_N_per_m, command[1 + n] = damper_N_per_m;
+  const Eigen::MatrixXd now = Eigen::MatrixXd::Identity(size, size);
+  const Eigen::RowVectorXd force = d == 0 ? command : Eigen::RowVectorXd(now.row(size - 1));
+  const Eigen::Matrix3d motion = motion_of(wall, stiffness_N_per_m);
+  Eigen::MatrixXd next = Eigen::MatrixXd::Zero(size, size);
+  for (int i = 0; i < 2; ++i)
+    next.row(i) = motion(i, 0) * now.row(0) + motion(i, 1) * now.row(1) + motion(i, 2) * force;
+  next.row(2) = now.row(0);
+  for (int i = 3; i < 2 + n; ++i) next.row(i) = now.row(i - 1);
+  if (d > 0) next.row(2 + n) = command;
+  for (int i = 3 + n; i < size; ++i) next.row(i) = now.row(i - 1);
+  return Eigen::EigenSolver<Eigen::MatrixXd>(next, false).eigenvalues().cwiseAbs().maxCoeff() <=
+         1 + kRounding;
+}
+
+}  // namespace
+
+double wall_law_N_per_m(const SampledWall& wall) {
+  return (wall.damping_Ns_per_m + wall.wall_damping_Ns_per_m) / ((0.5 + wall.delay_ticks) * wall.tick_s);
+}
+
+double exact_wall_limit_N_per_m(const SampledWall& wall) {
+  constexpr double kStep = 1.02, kPrecision = 1e-9;
+  const double law = wall_law_N_per_m(wall);
+  double low = 0, high = 0.01 * law;
+  while (is_stable(wall, high)) {
+    low = high, high *= kStep;
+    if (high > 100 * law) return std::numeric_limits<double>::infinity();
+  }
+  if (low == 0) return 0;
+  while (high - low > kPrecision * high) {
+    const double middle = 0.5 * (low + high);
+    (is_stable(wall, middle) ? low : high) = middle;
+  }
+  return low;
 }
 
 }  // namespace remote_touch

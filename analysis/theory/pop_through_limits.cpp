@@ -1,0 +1,240 @@
+#include "analysis/theory/pop_through_limits.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+
+#include "analysis/statistics/curve_fits.h"
+#include "analysis/trace/trace.h"
+
+namespace remote_touch {
+
+double critical_acceleration(const Lift& lift) {
+  return lift.r1_m * lift.frame_rate_hz * lift.frame_rate_hz;
+}
+
+double bound_acceleration(const Lift& lift, double thickness_m, double normal_error) {
+  const double f = lift.frame_rate_hz;
+  const double gap_m = lift.r1_m + thickness_m - lift.start_velocity_m_per_s * normal_error / f;
+  const double bound = gap_m * f * f / (1 + (lift.updates - 1) * normal_error);
+  return bound < 0 ? 0 : bound;  // NaN stays NaN
+}
+
+double PrintedFit::at(double sigma_m) const {
+  return polynomial(coefficients, powers, sigma_m);
+}
+
+double PrintedFit::digits_band(double sigma_m) const {
+  return polynomial(half_digits, powers, sigma_m);
+}
+
+const PrintedFit& printed_thickness() {
+  static const PrintedFit fit{
+      {4, 3, 2, 1, 0}, {5.5e4, -6.7e3, 63, 1, -4.1e-5}, {0.05e4, 0.05e3, 0.5, 0.05, 0.05e-5}};
+  return fit;
+}
+
+const PrintedFit& printed_normal_error() {
+  static const PrintedFit fit{
+      {5, 4, 3, 2, 1}, {2.9e10, -6.4e8, 4.8e6, -1.2e4, 16}, {0.05e10, 0.05e8, 0.05e6, 0.05e4, 0.5}};
+  return fit;
+}
+
+double survival_probability(const Lift& lift, const NoiseEffect& noise, double acceleration) {
+  const double f = lift.frame_rate_hz, upright = 1 - noise.normal_error;
+  double probability = 1, estimate = lift.start_velocity_m_per_s;
+  for (int j = 1; j <= lift.updates; ++j) {
+    const double velocity = lift.start_velocity_m_per_s + j * acceleration / f;
+    const double margin = lift.r1_m + noise.thickness_m + (estimate * upright - velocity) / f;
+    const auto square = [](double x) { return x * x; };
+    const double variance =
+        square(noise.margin_sd_m) + square(noise.thickness_sd_m) +
+        (square(estimate) - square(lift.start_velocity_m_per_s)) * square(noise.normal_error_sd / f);
+    if (std::isnan(margin) || std::isnan(variance)) return std::numeric_limits<double>::quiet_NaN();
+    // Zero variance: the probability is a step from 0 to 1, and the rounding of (4.14) does not affect it.
+    probability *= variance > 0 ? 0.5 * std::erfc(-margin / std::sqrt(2 * variance)) : margin > 0 ? 1 : 0;
+    estimate += noise.gain * (velocity - estimate);
+  }
+  return probability;
+}
+
+double scatter_bound(const Lift& lift, const NoiseEffect& noise) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr int kMaxDoublings = 60;
+  double low = 0, high = 10 * critical_acceleration(lift);
+  const double at_rest = survival_probability(lift, noise, low);
+  if (std::isnan(at_rest)) return kNone;
+  if (at_rest < 0.5) return 0;
+  int doublings = 0;
+  while (survival_probability(lift, noise, high) >= 0.5 && doublings++ < kMaxDoublings) high *= 2;
+  if (!(survival_probability(lift, noise, high) < 0.5)) return kNone;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (survival_probability(lift, noise, middle) >= 0.5 ? low : high) = middle;
+  }
+  return low;
+}
+
+namespace {
+
+// Returns the distance from the proxy's centre to the plane if the nearest points are this far from the
+// centre.
+double plane_distance_m(const FirstTouch& touch, double point_distance_m) {
+  const double b = touch.nearest_beside_m;
+  return std::sqrt(point_distance_m * point_distance_m - b * b);
+}
+
+double resting_m(const FirstTouch& touch) {
+  return plane_distance_m(touch, 0.5 * (touch.r1_m + touch.r2_m));
+}
+
+}  // namespace
+
+double max_first_touch_velocity(const FirstTouch& touch) {
+  return plane_distance_m(touch, touch.r1_m) * touch.frame_rate_hz;
+}
+
+double max_touched_velocity(const FirstTouch& touch) {
+  return resting_m(touch) * touch.frame_rate_hz;
+}
+
+double lost_at_first_touch(const FirstTouch& touch, double velocity_m_per_s) {
+  const double moved_m = velocity_m_per_s / touch.frame_rate_hz;
+  const double touching_m = plane_distance_m(touch, touch.r1_m);
+  const double first_m = std::max(0.0, moved_m - touching_m);
+  const double second_m = std::max(0.0, moved_m + touching_m - 2 * resting_m(touch));
+  return std::min(1.0, (first_m + second_m) / moved_m);
+}
+
+PopThroughLaw fitted_law(const std::vector<LimitPoint>& points) {
+  const auto rows = static_cast<Eigen::Index>(points.size());
+  Eigen::MatrixX2d terms(rows, 2);
+  Eigen::VectorXd changes(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const LimitPoint& point = points[static_cast<std::size_t>(i)];
+    terms.row(i) << point.noise, -point.spacing * point.noise;
+    changes[i] = point.limit - PopThroughLaw::without_noise(point.spacing);
+  }
+  const Eigen::Vector2d law = terms.colPivHouseholderQr().solve(changes);
+  return {law[0], law[1]};
+}
+
+double rms_residual(const PopThroughLaw& law, const std::vector<LimitPoint>& points) {
+  double sum = 0;
+  for (const LimitPoint& point : points) {
+    const double residual = point.limit - law.limit(point.spacing, point.noise);
+    sum += residual * residual;
+  }
+  return std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+namespace {
+
+double plane_height(const Trace& trace, std::size_t i, const Vec3& normal) {
+  return trace.proxy_position_m[i].dot(normal) - trace.signed_distance_m[i];
+}
+
+// Returns the normal that (4.3) used. If (4.3) moved nothing, it is the normal with which the tick before
+// ended.
+Vec3 normal_of_update(const Trace& trace, std::size_t first_tick) {
+  const Vec3 frame_correction = trace.frame_correction_m[first_tick];
+  return frame_correction.isZero(0) ? trace.normal[first_tick - 1] : Vec3(frame_correction.normalized());
+}
+
+}  // namespace
+
+std::vector<LiftUpdate> lift_updates(const Trace& trace, const Vec3& normal, double r1_m,
+                                     double frame_rate_hz) {
+  std::vector<LiftUpdate> updates;
+  for (std::size_t i = 1; i < trace.length(); ++i) {
+    if (!trace.frame_update(i)) continue;
+    if (!updates.empty()) updates.back().above_after = trace.signed_distance_m[i - 1] > 0;
+    LiftUpdate update;
+    update.frame = trace.frame_index[i];
+    update.velocity_m_per_s =
+        (plane_height(trace, i, normal) - plane_height(trace, i - 1, normal)) * frame_rate_hz;
+    update.estimate_m_per_s = trace.surface_velocity_m_per_s[i - 1];
+    update.thickness_m = trace.signed_distance_m[i - 1] - r1_m;
+    update.normal_error = 1 - normal.dot(normal_of_update(trace, i));
+    update.frame_correction_m = trace.frame_correction_m[i].dot(normal);
+    update.above_before = trace.signed_distance_m[i - 1] > 0;
+    updates.push_back(update);
+  }
+  if (!updates.empty()) updates.back().above_after = trace.signed_distance_m.back() > 0;
+  return updates;
+}
+
+namespace {
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+bool counts(const LiftUpdate& update, SettledFrom settled) {
+  return update.above_before && update.frame > settled.frame;
+}
+
+struct Sums {
+  double sum = 0, squares = 0;
+  std::size_t count = 0;
+  void add(double value) {
+    sum += value, squares += value * value;
+    ++count;
+  }
+  double mean() const { return sum / static_cast<double>(count); }
+  double variance() const {
+    const double n = static_cast<double>(count);
+    const double value = n > 1 ? (squares - sum * sum / n) / (n - 1) : kNotKnown;
+    return value < 0 ? 0 : value;  // NaN stays NaN
+  }
+  double deviation() const { return std::sqrt(variance()); }
+};
+
+// Error of v_hat_j against v_{j-1}, which is v_j, the velocity of the update itself, without acceleration.
+double velocity_error(const LiftUpdate& update) {
+  return update.estimate_m_per_s - update.velocity_m_per_s;
+}
+
+// 1 - correlation of the velocity error at one update with that at the next.
+double gain(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double mean) {
+  double product = 0, square = 0;
+  for (const std::vector<LiftUpdate>& lift : lifts)
+    for (std::size_t i = 1; i < lift.size(); ++i) {
+      if (!counts(lift[i - 1], settled) || !counts(lift[i], settled)) continue;
+      const double before = velocity_error(lift[i - 1]) - mean, after = velocity_error(lift[i]) - mean;
+      product += before * after, square += before * before;
+    }
+  // Below this the errors are rounding, not noise.
+  constexpr double kRounding = 1e-16;
+  return square > kRounding ? std::clamp(1 - product / square, 0.0, 1.0) : 1;
+}
+
+}  // namespace
+
+NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
+                         double frame_rate_hz) {
+  Sums thickness, normal_error, velocity, margin;
+  for (const std::vector<LiftUpdate>& lift : lifts)
+    for (const LiftUpdate& update : lift) {
+      if (!counts(update, settled)) continue;
+      thickness.add(update.thickness_m);
+      normal_error.add(update.normal_error);
+      velocity.add(velocity_error(update));
+      margin.add(update.margin_m(r1_m, frame_rate_hz));
+    }
+  return {thickness.mean(),    thickness.deviation(),
+          normal_error.mean(), normal_error.deviation(),
+          velocity.mean(),     velocity.deviation(),
+          margin.deviation(),  velocity.count > 1 ? gain(lifts, settled, velocity.mean()) : kNotKnown};
+}
+
+LiftMeans lift_means(const std::vector<LiftUpdate>& lift, SettledFrom settled) {
+  Sums thickness, normal_error;
+  for (const LiftUpdate& update : lift) {
+    if (!counts(update, settled)) continue;
+    thickness.add(update.thickness_m);
+    normal_error.add(update.normal_error);
+  }
+  if (thickness.count == 0) return {kNotKnown, kNotKnown};
+  return {thickness.mean(), normal_error.mean()};
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,209 @@
+// Limits of the motion of a surface, beyond which it passes the proxy, and the quantities of 4.4 that they
+// depend on.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "core/geometry/vector.h"
+
+namespace remote_touch {
+
+struct Trace;
+
+// The bounds of 4.4 on the acceleration with which a cloud can be lifted before it passes the proxy.
+//
+// Definitions: v_hat is the velocity estimate, assumed correct, v_hat_j = v_{j-1} (4.19); n_hat the estimated
+// and n the true normal; h the thickness of the cloud, h = (P - plane).n - r_1; e_n = 1 - n.n_hat (4.22).
+
+// A lift as in 4.3.2: velocity v_0, then `updates` updates with acceleration a.
+struct Lift {
+  double r1_m = 0;
+  double frame_rate_hz = 0;
+  double start_velocity_m_per_s = 0;
+  int updates = 10;
+};
+
+// (4.14), noise-free: no pop-through below this acceleration, r_1 f_c^2.
+double critical_acceleration(const Lift& lift);
+// (4.21), (4.25) solved for a: the acceleration at which r_1 + h = a / f_c^2 + v_hat e_n / f_c, with the
+// estimate at the last update, v_hat = v_0 + (updates - 1) a / f_c (4.20).
+double bound_acceleration(const Lift& lift, double thickness_m, double normal_error);
+
+// The printed fits for sigma from 0 to 2 r_c, and the error that rounding their coefficients to two digits
+// may cause: half a unit of the last digit of each, added up.
+struct PrintedFit {
+  std::vector<int> powers;
+  std::vector<double> coefficients, half_digits;
+  double at(double sigma_m) const;
+  double digits_band(double sigma_m) const;
+};
+const PrintedFit& printed_thickness();     // (4.23)
+const PrintedFit& printed_normal_error();  // (4.24)
+
+// The effect of noise of one strength on the quantities of (4.18): means and standard deviations over lifts
+// without acceleration.
+struct NoiseEffect {
+  double thickness_m = 0, thickness_sd_m = 0;
+  double normal_error = 0, normal_error_sd = 0;
+  double velocity_bias_m_per_s = 0, velocity_sd_m_per_s = 0;  // mean and scatter of v_hat_j - v_{j-1}
+  double margin_sd_m = 0;  // scatter of the margin of (4.17), whose terms above are correlated
+  double gain = 1;         // fraction of a velocity error that one update corrects, see below
+};
+
+// A bound that accounts for scatter. (4.18) requires a margin above 0 at every update:
+//   G_j = r_1 + h + v_hat_j (1 - e_n) / f_c - v_j / f_c,
+// and h, e_n and v_hat_j scatter. With the mean and variance of G_j at every update, a lift survives with
+// probability prod_j Phi(E G_j / sqrt(Var G_j)). The inputs, all from lifts without acceleration:
+//
+// - E v_hat_j follows the velocity with a gain g: E v_hat_{j+1} = E v_hat_j + g (v_j - E v_hat_j). g is 1
+//   minus the correlation of the error of v_hat between updates, which is right if that error is
+//   autoregressive of first order.
+// - As in (4.19), v_hat is assumed correct in the mean at constant velocity. In fact noise makes it too high
+//   by velocity_bias, which is about as large as its scatter. The bound does not use that.
+// - Var G_j = Var G at rest + Var h + ((E v_hat_j)^2 - v_0^2) Var e_n / f_c^2. The second term is the
+//   scatter of the new frame: its points, not the true plane, decide whether the proxy stays above. The
+//   third is the scatter of the normal at higher velocity.
+// - e_n is assumed the same at every velocity, G_j normal, and updates independent. In accelerating lifts
+//   with much noise e_n is larger, and updates share the error of v_hat.
+//
+// Not using the bias makes the bound too low at little noise; at much noise, where e_n grows, it is about
+// right. The figure "bounds" shows predicted and observed survival.
+//
+// NaN if a part of the noise that it needs is NaN.
+double survival_probability(const Lift& lift, const NoiseEffect& noise, double acceleration);
+// The acceleration at which the survival probability is one half; 0 if it is less at rest. NaN if it is NaN,
+// or if more lifts survive at any acceleration.
+double scatter_bound(const Lift& lift, const NoiseEffect& noise);
+
+// Limit of the velocity of a surface when the proxy of chapter 4 first touches it, without noise and at any
+// frame rate. (4.14) bounds the acceleration of a surface whose velocity the proxy has already estimated. At
+// the first touch the estimate v_hat is still 0 (4.2.5).
+//
+// The points form a plane that moves along its normal with constant velocity v. So each frame shows the plane
+// closer by delta = v / f_c. The hand, and so the proxy, is at rest. b is the distance from the proxy's
+// centre to the nearest points, measured in the plane. d is the distance from the proxy's centre to the
+// plane. Two values of d matter:
+//   t = (r_1^2 - b^2)^(1/2): the proxy is entrenched if d < t;
+//   e = (r_c^2 - b^2)^(1/2), with r_c = (r_1 + r_2) / 2: (4.10) moves the proxy to this distance.
+// The last frame before the touch shows the plane at d, with t <= d < t + delta. The next frame shows it at
+// the distance d - delta, which is below t.
+//   1. If d < delta, the plane is behind the centre. Then the normal (4.1) has changed its sign, and the
+//      proxy is lost.
+//   2. Otherwise (4.10) moves the proxy by e - (d - delta), and (4.13) sets v_hat / f_c to this step. At the
+//      following frame (4.3) moves the proxy by the same step before the proxy tests the points. The plane is
+//      then at e + (e - d + delta) - delta = 2 e - d. If d > 2 e, the proxy is lost.
+//   3. Otherwise (4.13) gives v_hat = v, and the proxy rests at e after each later frame.
+// If the motion starts at a time that is uniform over one interval between frames, d is uniform too. So the
+// proxy is lost for a fraction
+//   (max(0, delta - t) + max(0, delta + t - 2 e)) / delta, at most 1,
+// of all start times. This fraction is
+//   0                     up to v = t f_c,
+//   1 - t f_c / v         from there to v = (2 e - t) f_c,
+//   2 (1 - e f_c / v)     from there to v = 2 e f_c,
+//   1                     above.
+// The two lost intervals of d are one interval of the phase at which the motion starts: d = t + delta and
+// d = t are the same phase.
+//
+// A hand that touches the moving surface between two frames finds it at d = e, at every phase. Then step 1
+// alone decides: the proxy is lost above e f_c.
+//
+// Assumptions: the estimated normal is that of the plane. This holds if the proxy is over a point or in the
+// middle between points. Elsewhere the proxy slides, and the fraction lies between those of these two
+// positions. r_3 >= 2 r_c as in Table 4.2, so the proxy has a normal before the touch if d <= 2 e.
+
+struct FirstTouch {
+  double r1_m = 0, r2_m = 0;    // Table 4.2
+  double nearest_beside_m = 0;  // b: 0 over a point; s / sqrt(2) in the middle of four points s apart
+  double frame_rate_hz = 0;
+};
+
+// Preconditions of all functions: 0 <= nearest_beside_m < r1_m <= r2_m; frame_rate_hz and velocity_m_per_s
+// are positive.
+
+// t f_c, m/s: up to this velocity no proxy is lost.
+double max_first_touch_velocity(const FirstTouch& touch);
+// e f_c, m/s: the same limit for a hand that touches the moving surface between two frames. Above it every
+// proxy is lost.
+double max_touched_velocity(const FirstTouch& touch);
+// The fraction of start times for which a proxy at rest is lost, 0 to 1.
+double lost_at_first_touch(const FirstTouch& touch, double velocity_m_per_s);
+
+// A law for the acceleration at which half of the lifts of 4.3.2 pop through. It extends (4.14), the limit
+// without noise, r_1 f_c^2, to the spacing of the points and to noise. It is of this project, and empirical
+// in the noise.
+
+// All members are pure numbers: spacing and noise in contact radii r_c, accelerations in r_c f_c^2.
+struct LimitPoint {
+  double spacing = 0;  // distance of the points in a square grid
+  double noise = 0;    // standard deviation of each coordinate of a point
+  double limit = 0;    // acceleration at which half of the lifts pop through
+};
+
+// limit = (1 - s^2 / 2)^(1/2) + (gain - loss s) sigma, for a spacing s and noise sigma. The first term is the
+// height at which the proxy rests in the middle of four points (see FirstTouch); without noise (4.14) holds
+// with this height in place of r_1. gain and loss are fitted.
+struct PopThroughLaw {
+  double gain = 0, loss = 0;
+
+  static double without_noise(double spacing) { return std::sqrt(1 - spacing * spacing / 2); }
+  double limit(double spacing, double noise) const {
+    return without_noise(spacing) + (gain - loss * spacing) * noise;
+  }
+  // The spacing at which noise does not change the limit.
+  double neutral_spacing() const { return gain / loss; }
+};
+
+// Returns the law with the least sum of squared residuals. pre: at least two points with noise, of different
+// spacings.
+PopThroughLaw fitted_law(const std::vector<LimitPoint>& points);
+
+// Root mean square of the measured limits minus those of the law. pre: there is a point.
+double rms_residual(const PopThroughLaw& law, const std::vector<LimitPoint>& points);
+
+// The quantities of 4.4 at each update of a cloud that moves along a known normal.
+
+// Update j, when frame j replaces frame j - 1. Metres, seconds; heights are along the true normal n.
+struct LiftUpdate {
+  int frame = 0;                  // j
+  double velocity_m_per_s = 0;    // v_j: how far the plane moved, times f_c
+  double estimate_m_per_s = 0;    // v_hat_j, with which (4.3) moves the proxy
+  double thickness_m = 0;         // h_{j-1} = (P - plane).n - r_1 at the end of frame j - 1
+  double normal_error = 0;        // e_n = 1 - n.n_hat_{k-1}, (4.22)
+  double frame_correction_m = 0;  // v_hat_j n.n_hat_{k-1} / f_c: how far (4.3) moved the proxy along n
+  bool above_before = false;      // the proxy's centre was above the plane at the end of frame j - 1
+  bool above_after = false;       // and at the end of frame j
+
+  // r_1 + h_{j-1} + frame_correction - v_j / f_c, the margin of (4.17) and (4.18): below 0 the criterion
+  // predicts a pop-through. It is the height of the corrected proxy over the new plane.
+  double margin_m(double r1_m, double frame_rate_hz) const {
+    return r1_m + thickness_m + frame_correction_m - velocity_m_per_s / frame_rate_hz;
+  }
+};
+
+// Returns every update in the trace after the first frame. pre: signed_distance is that to the newest frame's
+// plane.
+std::vector<LiftUpdate> lift_updates(const Trace& trace, const Vec3& normal, double r1_m,
+                                     double frame_rate_hz);
+
+// The effect of noise on the quantities of 4.4, measured over lifts without acceleration.
+
+// Updates up to this frame are not used, because the velocity estimate starts at 0 when the cloud meets the
+// proxy.
+struct SettledFrom {
+  int frame = 0;
+};
+
+// Computes means and scatter over the updates of all lifts of one noise strength before which the proxy was
+// still above the plane. The means are NaN without such an update, the scatter and the gain with fewer than
+// two.
+NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
+                         double frame_rate_hz);
+
+// Means of one lift: one observation, independent of other lifts. NaN if no update counts.
+struct LiftMeans {
+  double thickness_m, normal_error;
+};
+LiftMeans lift_means(const std::vector<LiftUpdate>& lift, SettledFrom settled);
+
+}  // namespace remote_touch

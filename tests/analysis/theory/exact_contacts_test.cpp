@@ -1,0 +1,303 @@
+#include "analysis/theory/exact_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace remote_touch::exact_contacts_test {
+namespace {
+
+constexpr double kRadius = 0.005, kSpacing = 1e-4;
+constexpr int kHalf = 300;  // samples on either side of the middle: 3 cm
+
+double place(std::size_t i) {
+  return (static_cast<int>(i) - kHalf) * kSpacing;
+}
+
+std::vector<double> sampled(const std::function<double(double)>& profile) {
+  std::vector<double> heights;
+  for (std::size_t i = 0; i <= 2 * kHalf; ++i) heights.push_back(profile(place(i)));
+  return heights;
+}
+
+std::vector<double> closed(const std::vector<double>& heights) {
+  return ball_closing(heights, kSpacing, kRadius);
+}
+
+std::vector<double> rough_profile(unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<double> heights;
+  for (int i = 0; i <= 2 * kHalf; ++i) heights.push_back(0.01 * (random() / 4294967296.0));
+  return heights;
+}
+
+// Sums of a height and half a ball, each rounded twice.
+constexpr double kRounding = 1e-17;
+
+TEST(BallClosing, KeepsAFlatSurface) {
+  for (const double height : {0.0, -0.02, 0.01})
+    for (const double h : closed(sampled([&](double) { return height; }))) EXPECT_NEAR(h, height, kRounding);
+}
+
+// A ball touches both flanks of a V of slope angle a at r sin a, with its centre r / cos a above the vertex.
+// Beyond that the ball rolls on the flank itself.
+TEST(BallClosing, BallRestsInAV) {
+  for (const double angle : {0.1, 0.4, 0.8, 1.1}) {
+    const double slope = std::tan(angle), width = kRadius * std::sin(angle);
+    const std::vector<double> got = closed(sampled([&](double x) { return slope * std::abs(x); }));
+    // The ball sinks between two samples by spacing^2 / 8 times the second derivative of its profile at the
+    // contact with the flank.
+    const double sag = kSpacing * kSpacing / 8 / (kRadius * std::pow(std::cos(angle), 3));
+    EXPECT_NEAR(got[kHalf], kRadius * (1 / std::cos(angle) - 1), sag + kRounding) << angle;
+    for (std::size_t i = 100; i <= 500; ++i) {
+      const double x = std::abs(place(i));
+      const double want =
+          x < width ? kRadius / std::cos(angle) - std::sqrt(kRadius * kRadius - x * x) : slope * x;
+      EXPECT_NEAR(got[i], want, 2 * sag + kRounding) << angle << " at " << x;
+    }
+  }
+}
+
+TEST(BallClosing, PeakIsFeltAsItIs) {
+  for (const double slope : {0.5, 1.0, 5.0}) {
+    const std::vector<double> peak = sampled([&](double x) { return -slope * std::abs(x); });
+    const std::vector<double> got = closed(peak);
+    EXPECT_NEAR(got[kHalf], 0, kRounding);
+    // The ball is convex and so is the peak: it touches every sample, a radius away from the ends.
+    for (std::size_t i = 50; i + 50 < got.size(); ++i) EXPECT_NEAR(got[i], peak[i], 10 * kRounding) << slope;
+  }
+}
+
+TEST(BallClosing, BallLeavesAFilletAtTheFootOfAWall) {
+  const double wall = 0.02;
+  const std::vector<double> got = closed(sampled([&](double x) { return x < 0 ? 0 : wall; }));
+  // The nearest centre touches the wall, or is one sample short of it, because a ball that touches may count
+  // as lifted.
+  for (std::size_t i = 100; i <= 500; ++i) {
+    const double x = place(i);
+    if (x >= 0) {
+      EXPECT_NEAR(got[i], wall, kRounding);
+    }
+    const auto fillet = [&](double centre) {
+      return x <= centre ? 0
+                         : kRadius - std::sqrt(std::max(0.0, kRadius * kRadius - std::pow(x - centre, 2)));
+    };
+    if (x < 0) {
+      EXPECT_GE(got[i], fillet(-kRadius) - kRounding) << x;
+    }
+    if (x < 0) {
+      EXPECT_LE(got[i], fillet(-kRadius - 1.01 * kSpacing) + kRounding) << x;
+    }
+  }
+}
+
+// A gap between two edges, narrower than the ball: the scallop of a sparse grid.
+TEST(BallClosing, BallSagsIntoAGap) {
+  for (const int half_gap : {3, 20, 49}) {
+    const double w = half_gap * kSpacing;
+    const std::vector<double> got =
+        closed(sampled([&](double x) { return std::abs(x) < w - 0.5 * kSpacing ? -0.03 : 0; }));
+    EXPECT_NEAR(got[kHalf], -(kRadius - std::sqrt(kRadius * kRadius - w * w)), 10 * kRounding) << half_gap;
+    EXPECT_NEAR(got[kHalf + static_cast<std::size_t>(half_gap)], 0, kRounding);
+  }
+  // The ball falls into a wider gap.
+  const std::vector<double> wide = closed(sampled([](double x) { return std::abs(x) < 0.006 ? -0.03 : 0; }));
+  EXPECT_NEAR(wide[kHalf], -0.03, kRounding);
+}
+
+TEST(BallClosing, NeverBelowTheProfileAndNoHigherThanItsTop) {
+  const std::vector<double> heights = rough_profile(1), got = closed(heights);
+  int lifted = 0;
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    EXPECT_GE(got[i], heights[i] - kRounding);
+    EXPECT_LE(got[i], *std::max_element(heights.begin(), heights.end()) + kRounding);
+    lifted += got[i] > heights[i] + 1e-6;
+  }
+  EXPECT_GT(lifted, 400);
+}
+
+// A second closing changes nothing that the ball can feel: exact for samples, up to rounding.
+TEST(BallClosing, IsIdempotent) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const std::vector<double> once = closed(rough_profile(seed)), twice = closed(once);
+    for (std::size_t i = 0; i < once.size(); ++i) ASSERT_NEAR(twice[i], once[i], kRounding) << i;
+  }
+}
+
+TEST(BallClosing, HigherProfileIsNeverFeltLower) {
+  const std::vector<double> low = rough_profile(4), more = rough_profile(5);
+  std::vector<double> high = low;
+  for (std::size_t i = 0; i < high.size(); i += 7) high[i] += more[i];
+  const std::vector<double> felt_low = closed(low), felt_high = closed(high);
+  for (std::size_t i = 0; i < high.size(); ++i) ASSERT_GE(felt_high[i], felt_low[i]);
+}
+
+TEST(BallClosing, IsMirroredAndShiftedWithTheProfile) {
+  const std::vector<double> heights = rough_profile(6);
+  std::vector<double> mirrored(heights.rbegin(), heights.rend()), shifted(heights.begin() + 5, heights.end());
+  const std::vector<double> got = closed(heights), got_mirrored = closed(mirrored),
+                            got_shifted = closed(shifted);
+  for (std::size_t i = 0; i < got.size(); ++i) ASSERT_EQ(got_mirrored[got.size() - 1 - i], got[i]);
+  // The heights two radii away from the new end are unchanged.
+  for (std::size_t i = 110; i < got_shifted.size(); ++i) ASSERT_EQ(got_shifted[i], got[i + 5]);
+}
+
+// Comparison of the closed forms with the least energy that is found by trying poses.
+
+const EvenSpring kSpring{600, 0.03};
+constexpr double kTurning = 600 * 0.03 * 0.03;
+
+TEST(ToolRest, ABlockOnALineHasTheLeastEnergy) {
+  constexpr double a = 0.02, b = 0.005;
+  for (const double angle : {0.05, -0.05, 0.2, 0.5})
+    for (const double depth_m : {-0.001, 0.0005, 0.003, 0.01}) {
+      const double height_m = a * std::sin(std::abs(angle)) + b * std::cos(angle) - depth_m;
+      double least = 1e9, at_y = 0, at_phi = 0;
+      for (double phi = -1; phi < 1; phi += 2e-5) {
+        const double touching_m = a * std::abs(std::sin(phi)) + b * std::cos(phi);
+        const double y = std::max(height_m, touching_m);
+        const double energy =
+            300 * (y - height_m) * (y - height_m) + 0.5 * kTurning * (phi - angle) * (phi - angle);
+        if (energy < least) least = energy, at_y = y, at_phi = phi;
+      }
+      const RestingWrench wrench = block_on_line(a, b, kSpring, height_m, angle);
+      EXPECT_NEAR(wrench.force_N.y(), 600 * (at_y - height_m), 1e-3) << angle << ", " << depth_m;
+      EXPECT_NEAR(wrench.torque_Nm, kTurning * (at_phi - angle), 3e-5) << angle << ", " << depth_m;
+      EXPECT_EQ(wrench.force_N.x(), 0);
+    }
+}
+
+// The torque is only that of the force at the corner.
+TEST(ToolRest, TheTorqueIsThatOfTheForceAtTheCorner) {
+  constexpr double a = 0.02, b = 0.005, angle = 0.3;
+  const RestingWrench wrench = block_on_line(a, b, kSpring, 0.007, angle);
+  const double phi = angle + wrench.torque_Nm / kTurning;
+  ASSERT_GT(phi, 0.01);
+  EXPECT_NEAR(wrench.torque_Nm, -wrench.force_N.y() * (a * std::cos(phi) - b * std::sin(phi)), 1e-12);
+}
+
+TEST(ToolRest, ABallInAGrooveHasTheLeastEnergy) {
+  constexpr double radius_m = 0.01;
+  for (const double slope : {0.2, 0.6, 1.0})
+    for (const double x : {-0.012, -0.001, 0.0, 0.004})
+      for (const double y : {-0.01, 0.004, 0.03}) {
+        double least = 1e9;
+        Eigen::Vector2d rest(0, 0);
+        for (double px = -0.03; px <= 0.03; px += 1e-5) {
+          const double lowest = std::abs(px) * std::tan(slope) + radius_m / std::cos(slope);
+          const Eigen::Vector2d p(px, std::max(y, lowest));
+          const double squared = (p - Eigen::Vector2d(x, y)).squaredNorm();
+          if (squared < least) least = squared, rest = p;
+        }
+        const RestingWrench wrench = ball_in_groove(radius_m, slope, kSpring, {x, y});
+        EXPECT_NEAR((wrench.force_N - 600 * (rest - Eigen::Vector2d(x, y))).norm(), 0, 0.015)
+            << slope << ", " << x << ", " << y;
+      }
+}
+
+TEST(ToolRest, ABarInASlotTurnsUntilItsCornersTouch) {
+  const double stop = stop_angle_rad(0.04, 0.005, 0.02);
+  EXPECT_NEAR(0.04 * std::sin(stop) + 0.005 * std::cos(stop), 0.02, 1e-15);
+  EXPECT_NEAR(stop * 180 / M_PI, 22.62, 0.001);
+  EXPECT_EQ(bar_in_slot(0.04, 0.005, 0.02, kSpring, 0.9 * stop).torque_Nm, 0);
+  EXPECT_NEAR(bar_in_slot(0.04, 0.005, 0.02, kSpring, -stop - 0.1).torque_Nm, 0.1 * kTurning, 1e-12);
+}
+
+// Comparison of the closed forms with heights that are computed position by position, and with random noise.
+
+constexpr double kHalf_m = 0.02, kDegree = 0.017453292519943295;
+
+// Lowest and highest position over the square, found by trying 401 x 401.
+UnderPlate tried(const std::function<double(double x, double z)>& height_m) {
+  UnderPlate under{-1, -1};
+  for (int i = -200; i <= 200; ++i)
+    for (int k = -200; k <= 200; ++k) {
+      const double height = height_m(i * kHalf_m / 200, k * kHalf_m / 200);
+      under.drop_m = std::max(under.drop_m, -height), under.rise_m = std::max(under.rise_m, height);
+    }
+  return under;
+}
+
+// The flanks are lines through the edge, so they stay lines when it turns.
+TEST(ToolJump, AnEdgeThatTurnsRisesOnOneSideAndFallsOnTheOther) {
+  for (const double slope : {0.0, 15.0, 30.0})
+    for (const double turn : {0.0, 10.0, 40.0}) {
+      const UnderPlate right = tried(
+          [&](double x, double) { return x * std::tan((x > 0 ? turn - slope : turn + slope) * kDegree); });
+      const UnderPlate under = under_edge(slope * kDegree, kHalf_m, turn * kDegree);
+      EXPECT_NEAR(under.drop_m, right.drop_m, 1e-12) << slope << ", " << turn;
+      EXPECT_NEAR(under.rise_m, right.rise_m, 1e-12) << slope << ", " << turn;
+    }
+}
+
+TEST(ToolJump, ACornerFallsMostTowardsACornerOfThePlate) {
+  for (const double slope : {10.0, 45.0, 70.0}) {
+    const UnderPlate right = tried([&](double x, double z) {
+      double height = 1;
+      for (const double face : {90.0, 210.0, 330.0})
+        height = std::min(height, -std::tan(slope * kDegree) *
+                                      (x * std::cos(face * kDegree) + z * std::sin(face * kDegree)));
+      return height;
+    });
+    EXPECT_NEAR(under_corner(slope * kDegree, kHalf_m).drop_m, right.drop_m, 1e-12) << slope;
+  }
+}
+
+TEST(ToolJump, ABallFallsUpToTheCornersOfThePlateOrToItsMiddle) {
+  for (const double radius_m : {0.03, 0.05, 0.2}) {
+    const UnderPlate right =
+        tried([&](double x, double z) { return std::sqrt(radius_m * radius_m - x * x - z * z) - radius_m; });
+    EXPECT_NEAR(under_ball(radius_m, std::sqrt(2.0) * kHalf_m).drop_m, right.drop_m, 1e-12) << radius_m;
+  }
+  EXPECT_EQ(under_ball(0.01, 0.02).drop_m, 0.01);
+}
+
+// Returns the fraction of randomly drawn jumps after which no point is left in the plate.
+double lost_fraction(double jump_m, double thickness_m, const std::vector<NoisyPoint>& points,
+                     double sigma_m) {
+  constexpr int kJumps = 2000;
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, sigma_m);
+  std::uniform_real_distribution<double> chance(0, 1);
+  int lost = 0;
+  for (int jump = 0; jump < kJumps; ++jump) {
+    double bottom_m = -1;
+    bool left = false;
+    for (const NoisyPoint& p : points)
+      if (chance(random) < p.under_plate_probability)
+        bottom_m = std::max(bottom_m, p.height_m + noise(random));
+    for (const NoisyPoint& p : points) {
+      const double place_m = p.height_m + jump_m + noise(random) - bottom_m;
+      left |= chance(random) < p.under_plate_probability && place_m > 0 && place_m < thickness_m;
+    }
+    lost += left ? 0 : 1;
+  }
+  return static_cast<double>(lost) / kJumps;
+}
+
+// 2000 jumps determine a fraction within 0.04 (3.5 standard errors at one half). The closed form uses the
+// median position of the plate, which scatters; this changes the fraction by less than 0.05 here.
+TEST(ToolJump, HalfOfAllToolsAreLostAtTheJumpOfNoisyPoints) {
+  std::vector<NoisyPoint> plane(400), slope, fading;
+  for (int i = 0; i < 400; ++i) {
+    slope.push_back({-0.00005 * i, 1});
+    fading.push_back({-0.00005 * i, i < 200 ? 1 : 2 - 0.005 * i});
+  }
+  for (const auto& points : {plane, slope, fading})
+    for (const double sigma_m : {0.0005, 0.002}) {
+      const double jump_m = noisy_jump_m(0.01, points, sigma_m);
+      EXPECT_NEAR(lost_fraction(jump_m, 0.01, points, sigma_m), 0.5, 0.09) << sigma_m;
+      EXPECT_LT(lost_fraction(jump_m - 2 * sigma_m, 0.01, points, sigma_m), 0.15) << sigma_m;
+      EXPECT_GT(lost_fraction(jump_m + 2 * sigma_m, 0.01, points, sigma_m), 0.85) << sigma_m;
+    }
+}
+
+TEST(ToolJump, IsTheThicknessAndTheDropAtLittleNoise) {
+  EXPECT_NEAR(noisy_jump_m(0.01, {{0}, {-0.002}, {-0.004}, {-0.006}}, 1e-7), 0.016, 1e-6);
+}
+
+}  // namespace
+}  // namespace remote_touch::exact_contacts_test
