@@ -8,8 +8,8 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/trace/column.h"
 #include "analysis/trace/hash64.h"
-#include "analysis/trace/renamed_columns.h"
 
 namespace remote_touch {
 

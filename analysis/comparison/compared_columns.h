@@ -10,7 +10,6 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/column.h"
-#include "analysis/trace/tolerance.h"
 
 namespace remote_touch {
 
@@ -83,7 +82,7 @@ class ColumnsInMemory final : public ColumnSource {
 // A row is a number or a vector. Its deviation is the length of the difference, in the column's units. The
 // row is inside the tolerance if the deviation is at most absolute + relative * |row of the baseline|.
 //
-// Numbers are compared as in tolerance.h. Names (enumerations), texts and hashes are outside unless they are
+// Numbers are compared as in column.h. Names (enumerations), texts and hashes are outside unless they are
 // equal. Different types, widths, units, value names or lengths are a problem. Columns of different types or
 // widths are not compared further; otherwise the rows that both have are compared nevertheless. Two columns
 // without rows are the same.

@@ -16,7 +16,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/paired_test.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/trace/tolerance.h"
+#include "analysis/trace/column.h"
 
 namespace remote_touch {
 

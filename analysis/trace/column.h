@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -50,5 +51,30 @@ std::vector<std::string> split_names(const std::string& joined);
 // Returns the column of numbers with this name. Throws std::out_of_range if the table has no such column, and
 // std::bad_variant_access if the column is not of type double.
 const std::vector<double>& numbers(const Table& table, const std::string& column);
+
+// Columns of figures that earlier versions wrote under other names.
+
+// Returns the present name of a column that a figure of schema /2 has; any other name is returned as it is.
+// name: that of the column, or table/column.
+std::string present_column(const std::string& name);
+
+// Allowed deviation of a number from the number of a baseline.
+
+// The deviation |candidate - baseline| may be at most absolute + relative * |baseline|. If both are zero, the
+// numbers must be equal.
+struct Tolerance {
+  double absolute = 0;
+  double relative = 0;
+  bool operator==(const Tolerance&) const = default;
+};
+
+// Tolerances by name; "*" applies to all names that are not listed. A name without either has the tolerance
+// 0: its numbers must be equal.
+using Tolerances = std::map<std::string, Tolerance>;
+Tolerance tolerance_of(const Tolerances& tolerances, const std::string& name);
+
+// Returns true if the deviation is allowed. Numbers that are equal by == are allowed (so 0 and -0 are), and
+// so is NaN for NaN. NaN or infinity against any other number is outside, whatever the tolerance.
+bool within(const Tolerance& tolerance, double baseline, double candidate);
 
 }  // namespace remote_touch

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "analysis/trace/column.h"
-#include "analysis/trace/hand_state.h"
-#include "analysis/trace/slave_state.h"
+#include "analysis/trace/hand_and_slave_state.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 

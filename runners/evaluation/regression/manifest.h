@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trace/tolerance.h"
+#include "analysis/trace/column.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,6 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/trace/column.h"
-#include "analysis/trace/tolerance.h"
 #include "runners/evaluation/regression/manifest.h"
 
 namespace remote_touch {

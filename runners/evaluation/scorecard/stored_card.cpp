@@ -12,7 +12,7 @@
 #include "analysis/scorecard/card_summaries.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/trace/renamed_columns.h"
+#include "analysis/trace/column.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/text_files/json_text.h"

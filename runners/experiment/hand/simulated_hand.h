@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "analysis/trace/hand_state.h"
+#include "analysis/trace/hand_and_slave_state.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/wrench.h"
 #include "runners/experiment/hand/device_model.h"

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "analysis/trace/slave_state.h"
+#include "analysis/trace/hand_and_slave_state.h"
 #include "core/numeric/noise.h"
 #include "core/rendering/rendered_wrench.h"
 #include "core/teleoperation/tool_slave.h"

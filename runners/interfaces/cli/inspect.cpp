@@ -11,7 +11,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
-#include "analysis/trace/renamed_columns.h"
+#include "analysis/trace/column.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/unfinished_session.h"
 #include "runners/experiment/settings/json_parameters.h"
