@@ -32,7 +32,7 @@ constexpr double kPressDepth_m = 0.03;
 constexpr int kFirstTimedFrame = 2;         // the two frames before begin a track
 constexpr double kStandsNoise_rc = 2;       // largest noise at which the sheet may not pop through
 constexpr double kMinHeight_rc = -0.5;      // least height of its last proxy above the cloud
-constexpr double kMotionStep_rc = 0x1p-12;  // grid of positions in core/beyond/tracked_surface/patch_frame.h
+constexpr double kMotionStep_rc = 0x1p-12;  // grid of positions in core/beyond/tracked_surface/height_map.h
 
 // --- a lift, and the answers on it ---
 

@@ -1,12 +1,116 @@
 // The heights of a sheet over a patch.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 
-#include "core/beyond/tracked_surface/patch_frame.h"
+#include "core/geometry/vector.h"
 #include "core/kernels/patch_kernels.h"
 
 namespace remote_touch {
+
+// Coordinates of a patch of surface: two along it and the height above it, in units of the contact radius.
+
+// A position in a patch: u and v along it, h along its normal, in contact radii.
+struct PatchPlace {
+  double u, v, h;
+};
+
+// Coordinates are rounded to multiples of 2^-12 contact radii. So sums of the coordinates, of their squares
+// and of their products are exact for any number of points that a patch can hold, and no result depends on
+// the order of the points.
+class PatchFrame {
+ public:
+  PatchFrame() = default;
+  // The normal is a unit vector. The other two axes are computed from it alone.
+  PatchFrame(const Vec3& origin_W, const Vec3& normal_W, double contact_radius_m);
+
+  PatchPlace place(const Vec3& p_W) const {
+    const Vec3 d = (p_W - origin_W_) / unit_m_;
+    return {rounded(d.dot(u_W_)), rounded(d.dot(v_W_)), rounded(d.dot(n_W_))};
+  }
+  Vec3 world(const PatchPlace& p) const {
+    return origin_W_ + unit_m_ * (p.u * u_W_ + p.v * v_W_ + p.h * n_W_);
+  }
+  const Vec3& origin_W() const { return origin_W_; }
+  const Vec3& normal_W() const { return n_W_; }
+  // Returns the unit normal of a surface that rises with these slopes along u and v.
+  Vec3 normal_W(double slope_u, double slope_v) const {
+    return (n_W_ - slope_u * u_W_ - slope_v * v_W_).normalized();
+  }
+  const Vec3& u_W() const { return u_W_; }
+  const Vec3& v_W() const { return v_W_; }
+  double unit_m() const { return unit_m_; }
+  void move_along_normal(double units) { origin_W_ += units * unit_m_ * n_W_; }
+
+  // Rounds x to a multiple of 2^-12, halves to even; pre: x is below 2^39.
+  static double rounded(double x) { return (x + kRoundsToPatchGrid) - kRoundsToPatchGrid; }
+
+ private:
+  Vec3 origin_W_ = Vec3::Zero(), n_W_ = Vec3::UnitY(), u_W_ = Vec3::UnitZ(), v_W_ = Vec3::UnitX();
+  double unit_m_ = 1;
+};
+
+// Shrinkage: the part of a measurement that is kept if noise may explain it.
+
+// Returns the standard error of the difference of two heights that each have this standard error, rounded up
+// and at least 0.003; contact radii.
+inline double error_of_two(double error) {
+  return std::max(1.5 * error, 0.003);
+}
+
+// Returns the part of a measurement that its standard error does not explain: nearly all of a large
+// measurement, nearly nothing of a small one.
+inline double shrunk(double x, double error) {
+  const double square = x * x;
+  return square > 0 ? square / (square + 4 * error * error) * x : 0;
+}
+
+// Histogram of the heights of a patch's points.
+
+// Counts in bins of a tenth of a contact radius, symmetric about height 0.
+class HeightProfile {
+ public:
+  static constexpr double kBin = 0.1;
+  static constexpr double kMaxRange = 51.2;
+
+  explicit HeightProfile(double half_range = 0) { clear(half_range); }
+  void clear(double half_range);
+  void add(double height) {
+    const double bin = (height + half_range_) / kBin;
+    if (bin >= 0 && bin < bins_) count_[static_cast<std::size_t>(bin)] += 1;  // false for NaN
+  }
+
+  // Adds points, given by the indices of their bins. The index bins() means that a point is in no bin.
+  void add_bins(const std::int32_t* bin, std::size_t number);
+
+  int bins() const { return bins_; }
+  double half_range() const { return half_range_; }
+  double centre(int bin) const { return (bin + 0.5) * kBin - half_range_; }
+  double count(int bin) const { return count_[static_cast<std::size_t>(bin)]; }
+  double max() const;
+
+  // Returns the profile smoothed with a triangle of about this standard deviation.
+  HeightProfile smoothed(double sigma) const;
+  // Returns the distance, at most reach in either direction, by which the other profile must be moved down to
+  // agree best with this one, that is with the largest sum of products. If several distances are nearly as
+  // good, it is the smallest of them.
+  double shift_of(const HeightProfile& other, double reach) const;
+  // Returns the distance from a height, upwards (1) or downwards (-1), to the border of another sheet: the
+  // bottom of a valley that chance does not explain. Returns 2 half_range() if there is none. pre: the
+  // profile is smoothed.
+  double valley_from(double height, int direction) const;
+
+ private:
+  double half_range_ = 0;
+  double window_ = 1;  // number of bins over which a count is averaged
+  int bins_ = 0;
+  static constexpr int kMaxBins = 1024;
+  std::array<double, kMaxBins + 1> count_;  // count of each bin; then the count of points in no bin
+};
 
 // Heights over the square |u|, |v| <= kHalf around the patch's origin, in contact radii. Nodes, one contact
 // radius apart, hold local planes. The corners of the cells between them hold heights. The map is bilinear in

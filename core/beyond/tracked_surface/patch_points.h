@@ -1,15 +1,32 @@
 // The points of a frame around a patch, in the patch's coordinates.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/beyond/tracked_surface/height_profile.h"
-#include "core/beyond/tracked_surface/patch_region.h"
 #include "core/search/gathered_points.h"
 
 namespace remote_touch {
+
+// The region in which the points of a patch replace those of the frame.
+
+// A cylinder about the patch's normal; radius and half height in contact radii.
+struct PatchRegion {
+  PatchFrame frame;
+  double radius = 0, half_height = 0;
+
+  bool holds(const PatchPlace& p) const {
+    return p.u * p.u + p.v * p.v < radius * radius && std::abs(p.h) <= half_height;
+  }
+  bool holds(const Ball& ball) const;
+  // Returns the bounding ball, m, world frame.
+  Ball around() const {
+    return {frame.origin_W(), std::hypot(radius, half_height) * frame.unit_m() * (1 + 1e-9)};
+  }
+};
 
 // Only reserve() allocates.
 class PatchPoints {
@@ -51,6 +68,29 @@ class PatchPoints {
   Buffer<std::uint32_t> source_;
   Buffer<std::uint8_t> member_;
   Buffer<std::int32_t> bin_;  // work buffer of profile_near()
+};
+
+// Points of a patch that do not belong to its sheet: points of other surfaces, or outliers.
+
+// Distinguishes the two by density. A point belongs to a surface if the number of points per area around it,
+// in layers at least as thick as the noise, is at least a quarter of the sheet's, and if there are at least
+// two other points.
+class StrayPoints {
+ public:
+  // Counts the points that are no members. per_unit_area: number of members in a square of one contact
+  // radius.
+  void count(const PatchPoints& points, const PatchRegion& region, double sigma, double per_unit_area);
+  // Returns true if the point belongs to a surface. pre: the point is no member.
+  bool is_surface(const PatchPlace& p) const;
+
+ private:
+  int column(double coordinate) const;
+  int layer(double height) const;
+
+  double half_side_ = 0, half_height_ = 0, thickness_ = 1, min_ = 0;
+  int side_ = 0, layers_ = 0;
+  std::vector<std::uint16_t> counts_ = std::vector<std::uint16_t>(kMaxCount);
+  static constexpr std::size_t kMaxCount = 18 * 18 * 130;
 };
 
 }  // namespace remote_touch

@@ -5,9 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/beyond/tracked_surface/carried_motion.h"
+#include "core/beyond/tracked_surface/carried_tool.h"
 #include "core/beyond/tracked_surface/sheet_tracker.h"
-#include "core/beyond/tracked_surface/tool_positions.h"
 #include "core/dissertation/tool/contact/tiled_cloud.h"
 #include "core/dissertation/tool/dynamics/motion_program.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"

@@ -5,9 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/beyond/tracked_surface/sheet_acquisition.h"
-#include "core/beyond/tracked_surface/sheet_registration.h"
-#include "core/beyond/tracked_surface/shrinkage.h"
+#include "core/beyond/tracked_surface/height_map.h"
+#include "core/beyond/tracked_surface/sheet_search.h"
 #include "core/kernels/depth_kernels.h"
 
 namespace remote_touch {

@@ -7,11 +7,8 @@
 
 #include "core/beyond/tracked_surface/height_fit.h"
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/beyond/tracked_surface/height_profile.h"
 #include "core/beyond/tracked_surface/patch_points.h"
 #include "core/beyond/tracked_surface/sheet_search.h"
-#include "core/beyond/tracked_surface/sheet_settings.h"
-#include "core/beyond/tracked_surface/stray_points.h"
 
 namespace remote_touch {
 

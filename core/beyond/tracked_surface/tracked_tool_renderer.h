@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/beyond/tracked_surface/sheet_patches.h"
-#include "core/beyond/tracked_surface/sheet_settings.h"
+#include "core/beyond/tracked_surface/sheet_search.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/rendering/usual_interval.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/beyond/tracked_surface/trend.h"
+#include "core/beyond/tracked_surface/height_fit.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::patch_points_test {
