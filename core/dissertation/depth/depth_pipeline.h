@@ -21,13 +21,120 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/point_cloud.h"
 #include "core/kernels/depth_kernels.h"
 #include "core/kernels/kernels.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
+
+// Interface for computing a cloud with normals from a depth frame. DepthPipeline does it on the CPU; another
+// implementation may do it elsewhere, with the same bits.
+
+// Method of computing a normal. total_least_squares fits a plane with the weights psi(q). inverse_depth is
+// faster: every plane has an inverse depth that is an affine function of the pixel, and this function is
+// fitted with the weights (1 - q^2)^2 in place of psi(q).
+enum class NormalFit { total_least_squares, inverse_depth };
+
+struct DepthPipelineSettings {
+  bool filter = true;
+  int filter_window = 9;
+  double sigma_f_m = 0.025;
+  int normal_window = 9;
+  double normal_radius_m = 0.014;
+  int normal_step = 1;
+  NormalFit normal_fit = NormalFit::total_least_squares;
+  bool sharp_edges = false;
+
+  bool operator==(const DepthPipelineSettings&) const = default;
+};
+
+// The fast setting: it needs a quarter to a third of the default's time. The normal uses only every second
+// pixel of its window, but the filter fills the gaps: together they use every pixel of 11 x 11.
+inline constexpr DepthPipelineSettings kFastDepthPipeline{
+    true, 3, 0.025, 9, 0.02, 2, NormalFit::inverse_depth, true};
+
+Parameters parameters(DepthPipelineSettings& s);
+std::string validate(const DepthPipelineSettings& s);
+
+// A whole depth image, camera.width x camera.height depths in m.
+struct DepthFrame {
+  const double* depth_m;
+  CameraIntrinsics camera;
+  RigidTransform X_WC;      // registration of the camera in the base frame
+  bool has_points = false;  // the cloud has its points already, and they are not filtered
+
+  std::size_t pixels() const { return camera.pixels(); }
+};
+
+// A whole depth image as sensors send it.
+struct RawDepth {
+  const std::uint16_t* units;  // measured value of each pixel; 0: nothing measured
+  double metres_per_unit;
+  CameraIntrinsics camera;
+  RigidTransform X_WC;
+  std::span<const std::uint32_t> colour = {};  // 0xRRGGBB of each pixel; empty: no colours
+};
+
+// A processor reuses its memory: after the first frame of a size it allocates nothing if the caller passes
+// the same cloud again. Only one thread may use it at a time. It throws std::invalid_argument if sizes do not
+// match. Constructors of implementations throw it for settings that validate() rejects.
+class DepthProcessor {
+ public:
+  virtual ~DepthProcessor() = default;
+
+  // Writes points, normals and image layout into cloud, and clears its other columns. X_WC is the
+  // registration of the camera in the base frame. Points and normals are NaN where nothing was measured.
+  // Normals are also NaN where there is no plane.
+  void process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC,
+               PointCloud& cloud);
+  PointCloud process(const DepthImage& depth, const CameraIntrinsics& camera, const RigidTransform& X_WC);
+  // Processes an organised cloud in place. Its depth image is computed from its points. The normals are
+  // written, and the filtered points if the filter is on; all other columns stay as they are. Throws
+  // std::invalid_argument if the cloud has no image layout or not the camera's size.
+  void process(PointCloud& cloud);
+
+  // Does the work of process(cloud) and then writes the columns of r_f and k_s, from the steps and the
+  // cloud's colours. One call does both because copying to some processors takes long. Returns false, with
+  // the cloud unchanged, if this processor does not support it.
+  virtual bool process_all(PointCloud& /*cloud*/, const HueSteps& /*steps*/) { return false; }
+  // Does the same for a sensor's image, which first becomes a cloud with its colours, as cloud_from_depth()
+  // would make it. If steps is null, the columns of r_f and k_s are not written.
+  virtual bool process_all(const RawDepth& /*raw*/, PointCloud& /*cloud*/, const HueSteps* /*steps*/) {
+    return false;
+  }
+
+  // Computes the normals of every pixel of the frame and, unless has_points is set, the points. The cloud
+  // has columns x, y, z of the frame's size, and the image layout.
+  virtual void process_frame(const DepthFrame& frame, PointCloud& cloud) = 0;
+
+ protected:
+  explicit DepthProcessor(const DepthPipelineSettings& settings);
+  DepthProcessor(const DepthProcessor&) = default;
+  DepthProcessor& operator=(const DepthProcessor&) = delete;
+
+  // Returns the depth frame of an organised cloud, with depths computed from its points. It is valid until
+  // the next call. Throws std::invalid_argument if the cloud has no image layout or not the camera's size.
+  DepthFrame frame_of(const PointCloud& cloud);
+
+  const DepthPipelineSettings settings_;
+
+ private:
+  std::vector<double> depth_m_;
+};
+
+// Makes the columns x, y, z as long as an image of this camera, sets the image layout, and clears the columns
+// of r_f, k_s and colour. The caller writes the values of x, y, z and the columns of the normals, which are
+// not changed here.
+void become_image(PointCloud& cloud, const CameraIntrinsics& camera, const RigidTransform& X_WC);
+// Throws std::invalid_argument if the depth image does not have the camera's size.
+void check_sizes(const DepthImage& depth, const CameraIntrinsics& camera);
 
 struct PixelRectangle {
   int left = 0, top = 0;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/numeric/noise.h"
 #include "core/rendering/renderer.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "runners/experiment/opencl/opencl_devices.h"
 
 namespace remote_touch {

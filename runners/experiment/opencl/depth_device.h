@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/opencl/device_trial.h"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "runners/experiment/opencl/built_kernels.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
 
 namespace remote_touch {

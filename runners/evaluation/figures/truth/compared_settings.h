@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/measures/no_value.h"
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "runners/evaluation/figures/truth/true_contacts.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/measures/no_value.h"
-#include "core/dissertation/depth/depth_processor.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
 #include "scenarios/recordings/recorded_scene.h"
 
