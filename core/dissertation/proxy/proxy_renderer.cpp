@@ -5,16 +5,36 @@
 #include <new>
 #include <utility>
 
-#include "core/dissertation/proxy/admissible_motion.h"
 #include "core/dissertation/proxy/proxy_step.h"
-#include "core/dissertation/proxy/region_exit.h"
+#include "core/dissertation/proxy/region_motion.h"
 #include "core/rendering/elapsed_ticks.h"
 
 namespace remote_touch {
 
+Vec3 VirtualCoupling::force(const Vec3& u, double since_frame_s, const Vec3& velocity,
+                            double stiffness_N_per_m, double ticks) {
+  // The surface continues along v_hat between updates, and the proxy would continue with it. The term is
+  // subtracted, because u = HIP - P.
+  Vec3 u_hat = u;
+  if (p_.velocity_force == VelocityForce::minus) u_hat -= since_frame_s * velocity;
+  if (p_.velocity_force == VelocityForce::plus) u_hat += since_frame_s * velocity;
+
+  const double length = u_hat.norm();
+  const double rate = has_previous_ ? haptic_rate_hz_ * (length - previous_length_) / ticks : 0;
+  previous_length_ = length;
+  has_previous_ = true;
+  if (!(length > p_.contact_radius_m())) return Vec3::Zero();
+  const double spring = stiffness_N_per_m * (length - p_.contact_radius_m());
+  const double damper = p_.damping_Ns_per_m * rate;
+  const double pull = p_.damping_sign == DampingSign::plus ? spring + damper : spring - damper;
+  return u_hat * (-pull / length);
+}
+
 namespace {
+
 // A HIP farther away than this cannot be a hand's, and squares of its distances would be too inaccurate.
 constexpr double kMaxHipDistance_m = 1e6;
+
 }  // namespace
 
 ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)

@@ -1,7 +1,9 @@
 // One step of the proxy movement algorithm, 4.2.3 and 4.2.4 (chapter 5: the same with r_n and r_f).
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "core/dissertation/proxy/proxy_parameters.h"
 #include "core/geometry/vector.h"
@@ -44,5 +46,42 @@ bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const 
 // Returns the same for a goal from admissible_motion(): true if the angle between -u and the cone of the
 // touching regions' normals is below theta. False if no goal was found.
 bool has_converged(const std::optional<Vec3>& goal, const Vec3& u, const ProxyParameters& p);
+
+// A cache of the steps of the proxy (4.2.3). On noisy points the proxy often moves in a cycle: it returns to
+// exactly the same positions, tick after tick, while the HIP and the frame do not change.
+
+// One step of the proxy, world frame.
+struct KnownStep {
+  Vec3 proxy_W;                  // position at which the step begins
+  Vec3 normal_W;                 // (4.1) at this position; zero if it has no direction
+  Vec3 motion_m = Vec3::Zero();  // (4.4) to (4.12)
+  ContactState state;            // 4.2.1
+  double stiffness_N_per_m;      // (5.8)
+};
+
+// A table of steps, each of which is found by the position at which it begins. The table is a cache: it may
+// lose a step, which then has to be computed again.
+class KnownSteps {
+ public:
+  KnownSteps();
+  // Forgets all steps. Call it when the cloud or the settings change.
+  void forget() { ++generation_; }
+  // Forgets all steps if the HIP has another position than in the last call, compared bit for bit.
+  void set_hip(const Vec3& hip_W);
+  // Returns the step that begins at this position, compared bit for bit; null if the table does not hold it.
+  // Valid until the next remember().
+  const KnownStep* from(const Vec3& proxy_W) const;
+  // Stores a step. It may replace a step that begins at another position.
+  void remember(const KnownStep& step);
+
+ private:
+  struct Entry {
+    std::uint64_t generation = 0;
+    KnownStep step;
+  };
+  std::vector<Entry> entries_;
+  std::uint64_t generation_ = 1;
+  Vec3 hip_W_ = Vec3::Zero();
+};
 
 }  // namespace remote_touch

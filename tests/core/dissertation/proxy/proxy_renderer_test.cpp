@@ -1,4 +1,4 @@
-#include "core/dissertation/proxy/virtual_coupling.h"
+#include "core/dissertation/proxy/proxy_renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch::virtual_coupling_test {
+namespace remote_touch::proxy_renderer_test {
 namespace {
 
 constexpr double kRate = 1000, kStiffness = 600;
@@ -176,4 +176,4 @@ TEST(VirtualCoupling, FirstForceAndTheFirstAfterReleaseHaveNoDifference) {
 }
 
 }  // namespace
-}  // namespace remote_touch::virtual_coupling_test
+}  // namespace remote_touch::proxy_renderer_test
