@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/dissertation/sphere_tree/tree_collision.h"
+#include "core/dissertation/sphere_tree/region_contacts.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/sequence_log.h"
-#include "core/dissertation/sphere_tree/region_tree.h"
+#include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/tools/tool_picture.h"
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <vector>
 
-#include "core/dissertation/sphere_tree/region_tree.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/leaf_pairs.h"
 #include "tests/support/scenes.h"
