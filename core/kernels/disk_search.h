@@ -1,5 +1,5 @@
 // Constants of the search for the nearest position on a disk, and of the contact computed from it. They are
-// shared by disk_contact.cpp and the kernel that processes many disks at once.
+// shared by near_disks.cpp and the kernel that processes many disks at once.
 #pragma once
 
 namespace remote_touch::disk_search {

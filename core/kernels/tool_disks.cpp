@@ -1,5 +1,5 @@
 // Surface disks near a tool, 6.2.2: their positions, the trilinear distance field there, and a lower bound of
-// the distance of any position on a disk. The operations are those of voxel_tool.cpp and disk_contact.cpp, in
+// the distance of any position on a disk. The operations are those of voxel_tool.cpp and near_disks.cpp, in
 // the same order.
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"

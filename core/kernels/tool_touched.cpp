@@ -1,6 +1,6 @@
 // The points of a cloud that a tool touches, 6.2.2: points that lie in voxels, and points outside the voxels
 // whose distance is small enough. Every touched point is counted. The operations are those of voxel_tool.cpp
-// and disk_contact.cpp, in the same order.
+// and near_disks.cpp, in the same order.
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
 

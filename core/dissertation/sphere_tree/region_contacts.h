@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
+#include "core/dissertation/tool/contact/contact_list.h"
 #include "core/dissertation/tool/contact/contact_thinning.h"
-#include "core/dissertation/tool/contact/near_contacts.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/kernels/kernels.h"
 

@@ -1,12 +1,10 @@
 #include "core/dissertation/tool/contact/contact_list.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 namespace remote_touch {
-
 namespace {
 
 constexpr double kRounding = 1 + 1e-5;  // larger than the rounding of normals

@@ -1,18 +1,57 @@
 #include "core/dissertation/tool/contact/tiled_cloud.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
-#include "core/dissertation/tool/contact/merged_points.h"
 #include "core/geometry/bounding_box.h"
 #include "core/numeric/order_statistic.h"
+#include "core/search/compact_order.h"
 #include "core/search/morton_order.h"
 
 namespace remote_touch {
+namespace {
+
+constexpr double kWider = 1 + 1e-12;
+constexpr double kMinArea_m2 = 1e-18;  // a smaller triangle shows no plane
+
+}  // namespace
+
+// The plane contains the directions to the farthest point and to the point that is farthest from the line to
+// it.
+GroupSlab group_slab(std::span<const Vec3> points) {
+  BoundingBox box;
+  for (const Vec3& p : points) box.extend(p);
+  GroupSlab slab{0.5 * (box.min() + box.max()), Vec3::Zero(), 0, 0};
+  Vec3 farthest = Vec3::Zero(), across = Vec3::Zero();
+  for (const Vec3& p : points)
+    if ((p - slab.centre_W).norm() > farthest.norm()) farthest = p - slab.centre_W;
+  for (const Vec3& p : points) {
+    const Vec3 cross = farthest.cross(p - slab.centre_W);
+    if (cross.norm() > across.norm()) across = cross;
+  }
+  slab.radius_m = kWider * farthest.norm();
+  if (!(across.norm() > kMinArea_m2)) return slab;
+  slab.n_W = across.normalized();
+  for (const Vec3& p : points)
+    slab.half_m = std::max(slab.half_m, kWider * std::abs(slab.n_W.dot(p - slab.centre_W)));
+  return slab;
+}
+
+NormalCone normal_cone(std::span<const Vec3> normals_W) {
+  constexpr double kSpare = 1e-9;  // more than the rounding of normals and their products
+  NormalCone cone{Vec3::Zero(), 0};
+  int count = 0;
+  for (const Vec3& n_W : normals_W)
+    if (n_W.allFinite()) cone.middle_W += n_W, ++count;
+  if (count == 0) return cone;
+  cone.middle_W /= count;
+  for (const Vec3& n_W : normals_W)
+    if (n_W.allFinite()) cone.deviation = std::max(cone.deviation, (n_W - cone.middle_W).norm() + kSpare);
+  return cone;
+}
 
 namespace {
 
@@ -285,6 +324,52 @@ void TiledCloud::measure_spacing(const PointCloud& cloud) {
   for (std::size_t t = 0; t < tiles_.size(); ++t)  // a tile of few points may contain no neighbours
     std::fill_n(spacing_m_.begin() + tiles_[t].first, tiles_[t].padded_count,
                 of_tiles[t] > 0 ? std::min(of_tiles[t], 2 * usual) : usual);
+}
+
+// The packed() cloud of a dense one, with the slabs of its groups.
+
+void TiledCloud::pack() {
+  std::vector<Vec3> places;
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < x_.size(); ++i)
+    if (x_[i] != kFarAway) places.push_back(point(i)), numbers.push_back(i);
+  std::vector<std::uint32_t> order = compact_order(places);
+  for (std::uint32_t& i : order) i = numbers[i];
+  packed_ = std::make_unique<TiledCloud>();
+  packed_->assign_packed(*this, order);
+}
+
+void TiledCloud::assign_packed(const TiledCloud& all, std::span<const std::uint32_t> points) {
+  for (std::size_t i = 0; i < points.size(); i += kTilePoints) {
+    const auto first = static_cast<std::uint32_t>(x_.size());
+    for (const std::uint32_t k : points.subspan(i, std::min<std::size_t>(kTilePoints, points.size() - i))) {
+      add_point({all.point(k), all.normal(k), all.spacing_m(k)});
+      number_.push_back(k);
+    }
+    finish_tile(first);
+  }
+  number_.resize(x_.size(), 0);
+  extent_m_.assign(x_.size(), 0);
+  gather_slabs();
+  finish();
+}
+
+// Replaces the bounding spheres of the groups by slabs, whose spheres have the same centres and radii.
+void TiledCloud::gather_slabs() {
+  group_spheres_.clear();
+  std::vector<Vec3> points, normals;
+  for (std::uint32_t first = 0; first < x_.size(); first += kLanes) {
+    points.clear(), normals.clear();
+    for (std::uint32_t i = first; i < first + kLanes; ++i)
+      if (x_[i] != kFarAway) points.push_back(point(i)), normals.push_back(normal(i));
+    const GroupSlab slab =
+        points.empty() ? GroupSlab{Vec3::Constant(kFarAway), Vec3::Zero(), 0, 0} : group_slab(points);
+    group_spheres_.add({slab.centre_W, slab.radius_m});
+    const NormalCone cone = normal_cone(normals);
+    const double values[] = {slab.n_W.x(),      slab.n_W.y(),      slab.n_W.z(),      slab.half_m,
+                             cone.middle_W.x(), cone.middle_W.y(), cone.middle_W.z(), cone.deviation};
+    for (std::size_t k = 0; k < slabs_.size(); ++k) slabs_[k].push_back(values[k]);
+  }
 }
 
 }  // namespace remote_touch

@@ -1,6 +1,10 @@
 // Detects the points of the newest frame that are in the tool or near it: the collision list of 6.2.2.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,6 +17,34 @@
 #include "core/search/gathered_points.h"
 
 namespace remote_touch {
+
+// Columns of doubles of one length, in one piece of memory.
+
+// Columns begin at whole cache lines, each at a different offset in its page. Columns that are whole pages
+// apart would share the same few lines of a cache, and evict each other if there are more of them than cache
+// ways.
+template <std::size_t kCount>
+class ColumnBlock {
+ public:
+  // Makes room for `size` values in each column. The contents of the columns are lost if they grow.
+  void grow(std::size_t size) {
+    if (size <= size_) return;
+    size_ = size;
+    stride_ = (size + kPage - 1) / kPage * kPage + kShift;
+    memory_.grow(kCount * stride_ + kLine);
+  }
+  double* operator[](std::size_t column) const {
+    const auto at = reinterpret_cast<std::uintptr_t>(memory_.data()) / sizeof(double);
+    return memory_.data() + (kLine - at % kLine) % kLine + column * stride_;
+  }
+
+ private:
+  static constexpr std::size_t kLine = 64 / sizeof(double), kPage = 4096 / sizeof(double);
+  static constexpr std::size_t kShift = 5 * kLine;  // 5 and the 64 lines of a page have no common factor
+
+  Buffer<double> memory_;
+  std::size_t size_ = 0, stride_ = 0;
+};
 
 // Lists of points are in the order of the cloud's tiles and stay valid until the next call.
 class TouchFinder {
@@ -79,5 +111,29 @@ class TouchFinder {
   std::shared_ptr<const TiledCloud> cloud_ = std::make_shared<TiledCloud>();
   mutable Buffer<std::uint32_t> rows_, tiles_, groups_, found_;
 };
+
+// The field of a tool at a pose, for kernels, and bounds of its change between poses.
+
+inline constexpr double kMaxSearch_m = kFieldMargin_m - 1e-4;  // the search has no larger reach
+
+// The tool has to outlive it.
+PosedField posed_field(const VoxelTool& tool, const ToolPose& pose);
+
+// Returns an upper bound of the change of the field, between two poses, at a point that is fixed in the world
+// and in the grid: the slope of the field times the path of the point through the grid.
+double max_change_m(const TouchFinder& finder, const ToolPose& from, const ToolPose& to);
+
+// Returns the distance up to which points are searched: reach_m plus spare_m, but no more than kMaxSearch_m
+// unless reach_m is.
+inline double searched_m(double reach_m, double spare_m) {
+  return std::max(reach_m, std::min(reach_m + spare_m, kMaxSearch_m));
+}
+
+// Returns the field value above which a point cannot have come within reach_m while the field changed by
+// change_m. Returns infinity if the search did not reach so far.
+inline double passed_m(double reach_m, double change_m) {
+  const double passed = reach_m + change_m;
+  return passed < kMaxSearch_m ? passed : std::numeric_limits<double>::infinity();
+}
 
 }  // namespace remote_touch

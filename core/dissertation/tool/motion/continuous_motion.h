@@ -1,5 +1,5 @@
 // The continuous rule: the look-ahead rule, with steps that end before the first point would enter the tool.
-// So no point that is outside a closed tool enters it between two frames (clear_way.h).
+// So no point that is outside a closed tool enters it between two frames (continuous_contacts.h).
 //
 // A new frame can put its points anywhere, also into the tool or past it. If points held the tool before the
 // frame, the tool is first moved out, in the direction in which they pushed it. It stops at the first

@@ -5,7 +5,7 @@
 // result is still the motion that all contacts within the look-ahead allow. Not in the dissertation.
 #pragma once
 
-#include "core/dissertation/tool/contact/near_contacts.h"
+#include "core/dissertation/tool/contact/contact_list.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/contact/merged_points.h"
+#include "core/dissertation/tool/contact/contact_thinning.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "core/geometry/rotation.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch::merged_points_test {
+namespace remote_touch::contact_thinning_test {
 namespace {
 
 constexpr double kCube_m = 2e-3, kSpacing_m = 3e-4;
@@ -163,4 +163,4 @@ TEST(MergedPoints, PointsThatNeedMoreSquaresStandForThemselves) {
 }
 
 }  // namespace
-}  // namespace remote_touch::merged_points_test
+}  // namespace remote_touch::contact_thinning_test
