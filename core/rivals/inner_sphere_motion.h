@@ -22,7 +22,7 @@
 
 #include <memory>
 
-#include "core/dissertation/tool/dynamics/even_coupling.h"
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/dissertation/tool/motion/tool_motion.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/sphere_penetration.h"

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/dissertation/sphere_tree/region_contacts.h"
-#include "core/dissertation/tool/dynamics/slave_position.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/dissertation/tool/motion/look_ahead_motion.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/rendering/frame_order.h"

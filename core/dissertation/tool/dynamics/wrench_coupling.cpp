@@ -3,7 +3,6 @@
 #include "core/geometry/limited_length.h"
 
 namespace remote_touch {
-
 namespace {
 
 Eigen::Matrix3d cross_matrix(const Vec3& v) {

@@ -36,7 +36,7 @@
 #pragma once
 
 #include "core/dissertation/tool/contact/continuous_contacts.h"
-#include "core/dissertation/tool/dynamics/even_coupling.h"
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/dissertation/tool/motion/tool_motion.h"
 
 namespace remote_touch {

@@ -34,7 +34,7 @@
 #pragma once
 
 #include "core/dissertation/tool/contact/voxmap.h"
-#include "core/dissertation/tool/dynamics/even_coupling.h"
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/dissertation/tool/motion/tool_motion.h"
 #include "core/dissertation/tool/shape/pointshell.h"
 #include "core/parameters/parameter.h"

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/dissertation/tool/contact/contact_list.h"
-#include "core/dissertation/tool/dynamics/slave_position.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/dissertation/tool/motion/tool_motion.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
