@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/dissertation/tool/contact/contact_list.h"
-#include "core/dissertation/tool/motion/look_ahead_program.h"
+#include "core/dissertation/tool/motion/look_ahead_motion.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/kernels/isa.h"
 #include "core/search/neighbour_search.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/dissertation/tool/motion/progress.h"
+#include "core/dissertation/tool/motion/tool_motion.h"
 
 namespace remote_touch {
 

@@ -21,7 +21,7 @@
 namespace remote_touch::tool_crossings_test {
 namespace {
 
-// A point less deep than this is no collision for the look-ahead rule (look_ahead_program.h).
+// A point less deep than this is no collision for the look-ahead rule (look_ahead_motion.h).
 constexpr double kLookAhead_m = 1e-4;
 constexpr double kContinuous_m = 1e-5;
 // The printed rule lets points into the shell: a point of it is within 1.5 sqrt(3) voxels of the centre of a

@@ -1,8 +1,8 @@
-#include "core/dissertation/tool/motion/progress.h"
+#include "core/dissertation/tool/motion/tool_motion.h"
 
 #include <gtest/gtest.h>
 
-namespace remote_touch::progress_test {
+namespace remote_touch::tool_motion_test {
 namespace {
 
 TEST(MotionProgress, HasNotEndedWhileTheToolComesNearer) {
@@ -34,4 +34,4 @@ TEST(MotionProgress, CountsAgainFromTheNearestWay) {
 }
 
 }  // namespace
-}  // namespace remote_touch::progress_test
+}  // namespace remote_touch::tool_motion_test
