@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/dissertation/tool/shape/outer_field.h"
+#include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/geometry/point_cloud.h"
 

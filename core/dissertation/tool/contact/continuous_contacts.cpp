@@ -4,9 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/dissertation/tool/shape/cell_field.h"
 #include "core/dissertation/tool/shape/distance_field.h"
-#include "core/dissertation/tool/shape/outer_field.h"
 
 namespace remote_touch {
 namespace {

@@ -7,14 +7,14 @@
 
 #include "core/dissertation/tool/contact/contact_list.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/dissertation/tool/shape/slope_blocks.h"
+#include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/kernels/tool_kernels.h"
 
 namespace remote_touch {
 
 // Computes the part of a motion that a tool may make before the first point of a cloud enters it, by
-// conservative advancement of points through the tool's field (outer_field.h). Compare Xu and Barbic 2016.
+// conservative advancement of points through the tool's field (distance_field.h). Compare Xu and Barbic 2016.
 // Not in the dissertation.
 //
 // A point moves on a curve in the tool frame. The second derivative of the curve bounds its distance from its

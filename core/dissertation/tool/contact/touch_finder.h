@@ -11,7 +11,7 @@
 
 #include "core/dissertation/tool/contact/tiled_cloud.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/dissertation/tool/shape/slope_blocks.h"
+#include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/search/gathered_points.h"

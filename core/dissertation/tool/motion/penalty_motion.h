@@ -10,7 +10,7 @@
 //
 // Voxmap and pointshell (`voxmap`): W. McNeely, K. Puterbaugh and J. Troy, "Six degree-of-freedom haptic
 // rendering using voxel sampling", SIGGRAPH 1999. The tool consists of points with normals into it
-// (pointshell.h). The scene consists of voxels (voxmap.h), which prepare() makes from each frame. The depth
+// (voxel_tool.h). The scene consists of voxels (voxmap.h), which prepare() makes from each frame. The depth
 // of a tool point in a surface voxel is its depth below the tangent plane: the plane through the middle of
 // the voxel, perpendicular to the normal of the point.
 //
@@ -36,7 +36,7 @@
 #include "core/dissertation/tool/contact/voxmap.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/dissertation/tool/motion/tool_motion.h"
-#include "core/dissertation/tool/shape/pointshell.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {

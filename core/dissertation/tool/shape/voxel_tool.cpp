@@ -1,17 +1,16 @@
 #include "core/dissertation/tool/shape/voxel_tool.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "core/dissertation/tool/shape/distance_field.h"
-#include "core/dissertation/tool/shape/mass_properties.h"
-#include "core/dissertation/tool/shape/outer_field.h"
 #include "core/dissertation/tool/shape/voxelisation.h"
 #include "core/geometry/bounding_box.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
-
 namespace {
 
 // The first node of the cell that holds `at` (in voxels from the origin), and the position within the cell.
@@ -212,6 +211,103 @@ std::string text(const ToolReport& report) {
     all += "; " + tenths(100 * report.thin_fraction) +
            " % of the surface is on parts thinner than about three voxels";
   return all;
+}
+
+namespace {
+
+// I = tr(S) 1 - S for the second moments S = integral of x x^T about the centre.
+Eigen::Matrix3d inertia_of(const Eigen::Matrix3d& second_moments) {
+  return second_moments.trace() * Eigen::Matrix3d::Identity() - second_moments;
+}
+
+}  // namespace
+
+// The integrals over a tetrahedron (0, a, b, c) of volume V are V (a + b + c) / 4 for x, and
+// V (s s^T + a a^T + b b^T + c c^T) / 20 for x x^T, with s = a + b + c.
+MassProperties mass_properties(const TriangleMesh& mesh) {
+  MassProperties all;
+  if (mesh.vertices.empty()) return all;
+  const Vec3 o = mesh.vertices.front();
+  Vec3 first = Vec3::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 a = mesh.vertices[i] - o, b = mesh.vertices[j] - o, c = mesh.vertices[k] - o;
+    const Vec3 sum = a + b + c;
+    const double volume = a.dot(b.cross(c)) / 6;
+    all.volume_m3 += volume;
+    first += volume / 4 * sum;
+    second +=
+        volume / 20 * (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+  }
+  if (all.volume_m3 == 0) return all;
+  const Vec3 mean = first / all.volume_m3;
+  all.centre = o + mean;
+  all.inertia_m2 = inertia_of(second / all.volume_m3 - mean * mean.transpose());
+  return all;
+}
+
+MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uint8_t>& inside_nodes) {
+  // The sums are integers in units of the voxel, so that nothing is lost over millions of nodes.
+  const std::size_t columns = grid.cells[0] + 1, rows = grid.cells[1] + 1;
+  Vec3 first = Vec3::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  double count = 0;
+  for (std::size_t n = 0; n < inside_nodes.size(); ++n) {
+    if (!inside_nodes[n]) continue;
+    const std::size_t i = n % columns, j = n / columns % rows, k = n / columns / rows;
+    const Vec3 at(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
+    ++count, first += at, second += at * at.transpose();
+  }
+  MassProperties all;
+  if (count == 0) return all;
+  const double size = grid.size_m;
+  const Vec3 mean = first / count;
+  all.volume_m3 = count * size * size * size;
+  all.centre = grid.origin_T + size * mean;
+  const Eigen::Matrix3d own = Eigen::Matrix3d::Identity() / 12;  // second moments of each cube
+  all.inertia_m2 = size * size * inertia_of(second / count - mean * mean.transpose() + own);
+  return all;
+}
+
+namespace {
+
+struct Chosen {
+  double squared_m2;  // squared distance to the middle of the cube
+  Vec3 p_T;
+};
+
+}  // namespace
+
+Pointshell make_pointshell(const VoxelTool& tool, double spacing_m) {
+  const VoxelGrid& grid = tool.grid;
+  std::map<std::array<int, 3>, Chosen> cubes;
+  std::size_t cell = 0;
+  for (int k = 0; k < grid.cells[2]; ++k)
+    for (int j = 0; j < grid.cells[1]; ++j)
+      for (int i = 0; i < grid.cells[0]; ++i, ++cell) {
+        if (tool.voxels[cell] != Voxel::shell) continue;
+        const Vec3 p_T = grid.origin_T + grid.size_m * Vec3(i + 0.5, j + 0.5, k + 0.5);
+        std::array<int, 3> cube;
+        Vec3 middle_T;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const auto at = static_cast<Eigen::Index>(axis);
+          cube[axis] = static_cast<int>(std::floor(p_T[at] / spacing_m));
+          middle_T[at] = (cube[axis] + 0.5) * spacing_m;
+        }
+        const Chosen voxel{(p_T - middle_T).squaredNorm(), p_T};
+        const auto [place, is_first] = cubes.try_emplace(cube, voxel);
+        if (!is_first && voxel.squared_m2 < place->second.squared_m2) place->second = voxel;
+      }
+  Pointshell shell;
+  for (const auto& [cube, chosen] : cubes) {
+    const FieldSample at = sample_field(tool, chosen.p_T);
+    const double slope = at.gradient_T.norm();
+    if (!(slope > 0)) continue;
+    const Vec3 out_T = at.gradient_T / slope;
+    shell.p_T.emplace_back(chosen.p_T - at.distance_m / slope * out_T);
+    shell.n_T.emplace_back(-out_T);
+  }
+  return shell;
 }
 
 }  // namespace remote_touch

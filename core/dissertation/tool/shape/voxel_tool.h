@@ -59,8 +59,8 @@ struct VoxelToolSettings {
   double voxel_m = 5e-4;
   double size_m = 0;    // longest side of the mesh's box; 0: the mesh is in metres
   bool repair = false;  // accept a mesh that is not closed, see repair_mesh()
-  // Lowers distance_m as outer_field.h describes, so that the field is nowhere positive in a closed tool. The
-  // voxels do not change.
+  // Lowers distance_m as distance_field.h describes, so that the field is nowhere positive in a closed tool.
+  // The voxels do not change.
   bool outer_field = false;
 };
 
@@ -83,5 +83,35 @@ std::string text(const ToolReport& report);
 inline constexpr double kMaxCells = 150e6;
 VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, ToolReport& report,
                           const std::string& name = "mesh");
+
+// Volume, centre of mass and inertia of a solid of uniform density.
+
+struct MassProperties {
+  double volume_m3 = 0;
+  Vec3 centre = Vec3::Zero();
+  Eigen::Matrix3d inertia_m2 = Eigen::Matrix3d::Zero();  // about the centre, divided by the mass
+};
+
+// Computes the exact values, as sums over the tetrahedra between one point and every triangle. pre: a closed
+// mesh. If the faces point inwards, the volume is negative; the centre and the inertia are the same.
+MassProperties mass_properties(const TriangleMesh& mesh);
+
+// Computes the values from the nodes inside, each as a cube of one voxel. This is for a mesh with gaps, for
+// which the sum above has no meaning.
+MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uint8_t>& inside_nodes);
+
+// The surface of a tool as points with normals: the pointshell of W. McNeely, K. Puterbaugh and J. Troy, "Six
+// degree-of-freedom haptic rendering using voxel sampling", SIGGRAPH 1999.
+
+struct Pointshell {
+  std::vector<Vec3> p_T, n_T;  // n_T: unit, into the tool
+
+  std::size_t size() const { return p_T.size(); }
+};
+
+// Returns one point for each cube of the tool frame, of side spacing_m, that contains voxels of the shell.
+// The point is the middle of that voxel which is nearest to the middle of the cube, moved onto the surface
+// along the gradient of the field; no point if the gradient is zero. The source uses the middle of the cube.
+Pointshell make_pointshell(const VoxelTool& tool, double spacing_m);
 
 }  // namespace remote_touch

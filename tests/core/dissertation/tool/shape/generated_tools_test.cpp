@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/dissertation/tool/shape/marching_tetrahedra.h"
 #include "core/mesh/mesh_check.h"
 #include "core/parameters/input_error.h"
 #include "tests/support/meshes.h"
