@@ -7,11 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/everywhere.h"
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
-#include "core/dissertation/virtual_fixtures/half_space.h"
-#include "core/dissertation/virtual_fixtures/hue_range.h"
-#include "core/dissertation/virtual_fixtures/near_point.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/proxy_benchmark.h"
 

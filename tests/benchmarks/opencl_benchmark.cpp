@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/kernels/isa.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/opencl/depth_device.h"

@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/point_cloud.h"
 #include "core/kernels/depth_kernels.h"

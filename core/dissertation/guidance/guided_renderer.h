@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/dissertation/guidance/guidance_spring.h"
+#include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/dissertation/virtual_fixtures/fixture_rule.h"
-#include "core/dissertation/virtual_fixtures/fixture_switches.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Interpolates between `from` (weight 0) and `to` (weight 1). A weight of 1 returns exactly `to`.

@@ -4,10 +4,7 @@
 
 #include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/dissertation/virtual_fixtures/everywhere.h"
-#include "core/dissertation/virtual_fixtures/half_space.h"
-#include "core/dissertation/virtual_fixtures/hue_range.h"
-#include "core/dissertation/virtual_fixtures/near_point.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/rivals/averaged_proxy_renderer.h"
 #include "core/rivals/density_proxy_renderer.h"
 #include "core/rivals/god_object_renderer.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/geometry/colour.h"
 #include "tests/support/scenes.h"
 

@@ -8,8 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/everywhere.h"
-#include "core/dissertation/virtual_fixtures/hue_range.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::fixture_assignment_test {

@@ -5,10 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/everywhere.h"
-#include "core/dissertation/virtual_fixtures/half_space.h"
-#include "core/dissertation/virtual_fixtures/hue_range.h"
-#include "core/dissertation/virtual_fixtures/near_point.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/colour.h"
 #include "tests/support/scenes.h"

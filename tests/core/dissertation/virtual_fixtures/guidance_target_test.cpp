@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
-#include "core/dissertation/virtual_fixtures/near_point.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/geometry/rotation.h"
 #include "tests/support/scenes.h"
 

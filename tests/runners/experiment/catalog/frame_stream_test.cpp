@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/trace/hash64.h"
-#include "core/dissertation/virtual_fixtures/everywhere.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/synthetic/moving_lift.h"
 #include "tests/doubles/frame_recorder.h"

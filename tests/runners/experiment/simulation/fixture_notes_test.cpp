@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/dissertation/virtual_fixtures/half_space.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/search/neighbour_search.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
 

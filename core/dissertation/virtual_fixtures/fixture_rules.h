@@ -1,0 +1,113 @@
+// Rules that select the points of a frame: all, a half space, a range of hues, and a ball around a position.
+#pragma once
+
+#include <vector>
+
+#include "core/dissertation/virtual_fixtures/fixture_rule.h"
+
+namespace remote_touch {
+
+// A rule that selects every measured point of a frame, as in 5.3.3.
+
+class Everywhere final : public FixtureRule {
+ public:
+  struct Settings {
+    FixtureValues values;
+  };
+  explicit Everywhere(const Settings& settings) : FixtureRule(settings.values) {}
+  std::vector<double> weights(const PointCloud& cloud) const override;
+};
+
+Parameters parameters(Everywhere::Settings& s);
+std::string validate(const Everywhere::Settings& s);
+
+// A rule that selects the points on one side of a plane, as in 5.3.2.
+
+class HalfSpace final : public FixtureRule {
+ public:
+  struct Settings {
+    FixtureValues values;
+    Vec3 point_m{0, 0, 0};
+    Vec3 normal{1, 0, 0};
+    double transition_m = 0;
+  };
+  explicit HalfSpace(const Settings& settings);
+  // The plane itself belongs to the half-space. If transition_m is above 0, the weight rises linearly from 0
+  // at the plane to 1 at that distance.
+  std::vector<double> weights(const PointCloud& cloud) const override;
+
+ private:
+  Vec3 point_W_, normal_W_;
+  double transition_m_;
+};
+
+Parameters parameters(HalfSpace::Settings& s);
+std::string validate(const HalfSpace::Settings& s);
+
+// A rule that selects points by their colour, 7.3.2: the hue marks objects to protect or to guide to.
+
+class HueRange final : public FixtureRule {
+ public:
+  struct Settings {
+    FixtureValues values;
+    double from_deg = 340;
+    double to_deg = 20;
+    double min_saturation = 0.3;
+    double min_lightness = 0.1;
+    double max_lightness = 0.9;
+  };
+  explicit HueRange(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
+  // Throws InputError if the cloud has points but no colours.
+  void require(const PointCloud& cloud) const override;
+  std::vector<double> weights(const PointCloud& cloud) const override;
+  const Settings& settings() const { return settings_; }
+
+ private:
+  bool contains(std::uint32_t rgb) const;
+
+  const Settings settings_;
+};
+
+// A HueRange in the role forbidden, with its strength at one moment. A list of these, applied in order, gives
+// the same columns of r_f and k_s as FixtureAssignment::assign().
+struct HueStep {
+  HueRange::Settings range;
+  double strength = 1;
+  double first_stiffness_N_per_m = 0;  // k_s from which the rule fades in at a point that has none
+};
+using HueSteps = std::vector<HueStep>;
+
+Parameters parameters(HueRange::Settings& s);
+std::string validate(const HueRange::Settings& s);
+
+// A rule that selects the points around a centre: a position in the world, or the point that a pixel has in
+// each frame.
+
+class NearPoint final : public FixtureRule {
+ public:
+  struct Settings {
+    FixtureValues values;
+    Vec3 point_m{0, 0, 0};
+    int row = -1;
+    int column = -1;
+    double inner_radius_m = 0.05;
+    double falloff_m = 0;
+  };
+  explicit NearPoint(const Settings& settings) : FixtureRule(settings.values), settings_(settings) {}
+  // Throws InputError if a pixel is set and the cloud is not an image that contains it.
+  void require(const PointCloud& cloud) const override;
+  // The weight is 1 up to inner_radius_m from the centre, and then falls linearly to 0 over falloff_m. If the
+  // selected pixel has no depth, the nearest pixel (in the image) that has one replaces it. If no pixel has a
+  // depth, all weights are 0.
+  std::vector<double> weights(const PointCloud& cloud) const override;
+
+ private:
+  Vec3 picked(const PointCloud& cloud) const;
+
+  const Settings settings_;
+};
+
+Parameters parameters(NearPoint::Settings& s);
+std::string validate(const NearPoint::Settings& s);
+
+}  // namespace remote_touch
