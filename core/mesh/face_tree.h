@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {

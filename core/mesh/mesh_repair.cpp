@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 
 namespace remote_touch {

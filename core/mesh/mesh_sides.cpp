@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/triangle_tree.h"
 

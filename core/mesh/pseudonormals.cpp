@@ -1,6 +1,6 @@
 #include "core/mesh/pseudonormals.h"
 
-#include "core/geometry/angle.h"
+#include "core/geometry/rotation.h"
 #include "core/mesh/mesh_check.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

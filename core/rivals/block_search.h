@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/search/neighbour_search.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/numeric/counting_sort.h"
 
 namespace remote_touch {

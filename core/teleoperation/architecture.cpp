@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/geometry/limited_length.h"
+#include "core/geometry/vector.h"
 #include "core/teleoperation/slave_drive.h"
 
 namespace remote_touch {

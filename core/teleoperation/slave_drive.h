@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "core/geometry/limited_length.h"
+#include "core/geometry/vector.h"
 #include "core/teleoperation/slave.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 #include "scenarios/text_files/refuse.h"
 

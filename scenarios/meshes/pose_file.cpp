@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "scenarios/text_files/number_columns.h"
 #include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"

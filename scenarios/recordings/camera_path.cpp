@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "scenarios/recordings/folder_files.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/refuse.h"

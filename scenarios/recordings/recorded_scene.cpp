@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "core/geometry/rotation.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/measured_surface.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 namespace {

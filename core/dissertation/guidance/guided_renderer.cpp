@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/limited_length.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "runners/evaluation/contract/checks.h"
 #include "runners/evaluation/contract/flat_scene.h"
 

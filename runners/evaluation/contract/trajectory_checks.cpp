@@ -1,7 +1,7 @@
 // The contract of every scripted hand.
 #include <gtest/gtest.h>
 
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "runners/evaluation/contract/checks.h"
 #include "runners/evaluation/contract/flat_scene.h"
 

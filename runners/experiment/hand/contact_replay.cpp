@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/geometry/bounding_box.h"
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "core/geometry/rotation.h"
+#include "core/geometry/vector.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/hand/force_trace_file.h"
 #include "scenarios/text_files/file_ending.h"

@@ -1,6 +1,6 @@
 #include "runners/experiment/hand/device_motors.h"
 
-#include "core/geometry/limited_length.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

@@ -17,7 +17,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/packed_values.h"
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/mesh_corners.h"
 #include "core/mesh/polygon_triangles.h"
 #include "core/parameters/input_error.h"

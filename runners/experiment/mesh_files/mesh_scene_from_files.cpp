@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

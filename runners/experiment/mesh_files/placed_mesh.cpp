@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/bounding_box.h"
 #include "core/geometry/rotation.h"
+#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_repair.h"
 #include "core/mesh/mesh_sides.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "core/kernels/noise_kernels.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/geometry/near_origin.h"
+#include "core/geometry/point_cloud.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/clouds.h"

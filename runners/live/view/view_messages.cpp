@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/geometry/bounding_box.h"
 #include "core/geometry/colour.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

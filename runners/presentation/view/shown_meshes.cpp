@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "runners/presentation/view/shown_sensor.h"
 
 namespace remote_touch {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/bounding_box.h"
 #include "core/geometry/point_cloud.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "runners/presentation/view/packed_arrays.h"
 #include "scenarios/text_files/json_text.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 

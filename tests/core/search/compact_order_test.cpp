@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::compact_order_test {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/numeric/order_statistic.h"
 #include "core/search/compact_order.h"
 #include "core/search/morton_order.h"

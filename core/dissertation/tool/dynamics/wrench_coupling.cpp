@@ -1,6 +1,6 @@
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
 
-#include "core/geometry/limited_length.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxelisation.h"
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

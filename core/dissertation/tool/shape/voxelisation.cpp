@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
 namespace {

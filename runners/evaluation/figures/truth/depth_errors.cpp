@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/geometry/angle.h"
+#include "core/geometry/rotation.h"
 #include "core/numeric/order_statistic.h"
 #include "runners/evaluation/figures/truth/recording_window.h"
 #include "runners/experiment/hand/image_frames.h"

@@ -1,12 +1,10 @@
-#include "core/geometry/bounding_box.h"
+#include "core/geometry/vector.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "core/geometry/limited_length.h"
-
-namespace remote_touch::bounding_box_test {
+namespace remote_touch::vector_test {
 namespace {
 
 TEST(BoundingBox, IsAroundEveryPosition) {
@@ -24,4 +22,4 @@ TEST(LimitedLength, OnlyWhatIsLongerIsShortened) {
 }
 
 }  // namespace
-}  // namespace remote_touch::bounding_box_test
+}  // namespace remote_touch::vector_test
