@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "core/mesh/face_tree.h"
-#include "core/mesh/pseudonormals.h"
+#include "core/mesh/mesh_sides.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"
 
 namespace remote_touch {
 
 // The point of a surface that is nearest to a position. The normal is a unit vector: that of the face, or at
-// an edge or a vertex the mean of the faces that meet there, weighted by their angles (pseudonormals.h).
+// an edge or a vertex the mean of the faces that meet there, weighted by their angles (mesh_sides.h).
 struct NearestOnMesh {
   double distance_m = 0;  // 0 or more on the side to which the normal points, negative on the other
   Vec3 point = Vec3::Zero();

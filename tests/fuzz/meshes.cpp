@@ -1,5 +1,5 @@
 // Mesh files of each kind, read in a child process with limits.
-#include "core/mesh/mesh_corners.h"
+#include "core/mesh/triangle_mesh.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/lasting_child.h"

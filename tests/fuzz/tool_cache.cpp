@@ -1,7 +1,7 @@
 // Tools in the cache. A file that is read is sound, and is written as it was.
 #include "runners/experiment/tool_files/tool_cache.h"
 
-#include "core/mesh/mesh_corners.h"
+#include "core/mesh/triangle_mesh.h"
 #include "tests/fuzz/shared/cache_target.h"
 
 namespace remote_touch::fuzz::tool_cache {

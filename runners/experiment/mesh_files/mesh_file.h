@@ -12,7 +12,7 @@ namespace remote_touch {
 bool is_mesh_file(const std::filesystem::path& file);
 
 // Returns all meshes of the file as one mesh. Vertices at equal positions are welded, and polygons are cut
-// into triangles of their area (polygon_triangles.h). Lines and points are left out. Coordinates have single
+// into triangles of their area (triangle_mesh.h). Lines and points are left out. Coordinates have single
 // precision, in the unit of the file. Throws InputError, with the name of the file, also for a polygon that
 // cannot be cut, and if single precision is coarser than 1e-4 of the mesh's size, as at map coordinates. run:
 // runs the child process, because the library reads the file only there.

@@ -10,7 +10,6 @@
 #include "core/geometry/rotation.h"
 #include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
-#include "core/mesh/mesh_repair.h"
 #include "core/mesh/mesh_sides.h"
 #include "core/mesh/welded_mesh.h"
 #include "runners/experiment/mesh_files/named_mesh.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/mesh/mesh_corners.h"
+#include "core/mesh/triangle_mesh.h"
 #include "runners/experiment/provenance/cache_file.h"
 
 namespace remote_touch {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/mesh/mesh_distance.h"
-#include "core/mesh/mesh_repair.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/mesh/polygon_triangles.h"
+#include "core/mesh/triangle_mesh.h"
 #include "tests/support/meshes.h"
 
 namespace remote_touch::mesh_shapes {

@@ -8,7 +8,6 @@
 
 #include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
-#include "core/mesh/mesh_repair.h"
 #include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch {

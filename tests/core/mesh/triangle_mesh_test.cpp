@@ -1,4 +1,4 @@
-#include "core/mesh/polygon_triangles.h"
+#include "core/mesh/triangle_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/support/meshes.h"
 
-namespace remote_touch::polygon_triangles_test {
+namespace remote_touch::triangle_mesh_test {
 namespace {
 
 using Polygon = std::vector<Vec3>;
@@ -174,4 +174,4 @@ TEST(PolygonTriangles, AreAFanForAPolygonWithoutArea) {
 }
 
 }  // namespace
-}  // namespace remote_touch::polygon_triangles_test
+}  // namespace remote_touch::triangle_mesh_test

@@ -1,11 +1,9 @@
-#include "core/mesh/polygon_triangles.h"
+#include "core/mesh/triangle_mesh.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace remote_touch {
-
 namespace {
 
 using Vec2 = Eigen::Vector2d;

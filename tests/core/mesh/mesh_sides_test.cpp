@@ -1,4 +1,4 @@
-#include "core/mesh/pseudonormals.h"
+#include "core/mesh/mesh_sides.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/core/mesh/mesh_shapes.h"
 
-namespace remote_touch::pseudonormals_test {
+namespace remote_touch::mesh_sides_test {
 namespace {
 
 using namespace mesh_shapes;
@@ -96,4 +96,4 @@ TEST(Pseudonormals, AreThoseOfTheFirstFaceWhereTheMeanVanishes) {
 }
 
 }  // namespace
-}  // namespace remote_touch::pseudonormals_test
+}  // namespace remote_touch::mesh_sides_test
