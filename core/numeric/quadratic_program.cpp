@@ -1,14 +1,168 @@
 #include "core/numeric/quadratic_program.h"
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
-#include "core/numeric/active_rows.h"
-
 namespace remote_touch {
-
 namespace {
+
+// Small vectors and square matrices, stored in pairs of doubles for SSE2. The bits are the same from every
+// compiler and on every x86-64 machine, and the speed is about twice that of scalar code.
+
+using Pair [[gnu::vector_size(16)]] = double;
+inline Pair pair_at(const double* p) {
+  Pair pair;
+  std::memcpy(&pair, p, sizeof pair);
+  return pair;
+}
+// Writes both numbers, or only the first.
+inline void put(Pair pair, bool two, double* p) {
+  std::memcpy(p, &pair, two ? sizeof pair : sizeof(double));
+}
+inline Pair root(Pair pair) {
+  return _mm_sqrt_pd(pair);
+}
+inline Pair both(double value) {
+  return Pair{value, value};
+}
+
+// A vector of N numbers in pairs. If N is odd, the second half of the last pair is zero.
+template <int N>
+struct Packed {
+  static constexpr int kPairs = (N + 1) / 2;
+  Pair pair[kPairs] = {};
+
+  double operator[](int i) const { return pair[i / 2][i % 2]; }
+  void set(int i, double value) { pair[i / 2][i % 2] = value; }
+  void add(double factor, const Packed& other) {
+    for (int p = 0; p < kPairs; ++p) pair[p] += both(factor) * other.pair[p];
+  }
+  double dot(const Packed& other) const {
+    Pair sum = pair[0] * other.pair[0];
+    for (int p = 1; p < kPairs; ++p) sum += pair[p] * other.pair[p];
+    return sum[0] + sum[1];
+  }
+  double max_abs() const {
+    double result = 0;
+    for (int i = 0; i < N; ++i) result = std::max(result, std::abs((*this)[i]));
+    return result;
+  }
+};
+
+template <int N>
+struct Square {
+  Packed<N> column[N];
+
+  Packed<N> times(const Packed<N>& x) const {
+    Packed<N> sum;
+    for (int j = 0; j < N; ++j) sum.add(x[j], column[j]);
+    return sum;
+  }
+  Packed<N> transposed_times(const Packed<N>& x) const {
+    Packed<N> result;
+    for (int j = 0; j < N; ++j) result.set(j, column[j].dot(x));
+    return result;
+  }
+  // Reflects all rows (multiplication from the right) in the hyperplane normal to v; factor is 2 / |v|^2.
+  void reflect(const Packed<N>& v, double factor) {
+    const Packed<N> along = times(v);
+    for (int j = 0; j < N; ++j) column[j].add(-factor * v[j], along);
+  }
+};
+
+// The active rows, which are the rows that the solution of a quadratic program fulfils with equality, and
+// their changes: the inner part of the method of Goldfarb and Idnani (1983). This file is for
+// quadratic_program.cpp only.
+
+// The rounding error of row . y, for a row of unit length and coordinates of y up to 1.
+constexpr double kRounding = 1e-14;
+// A row counts as a linear combination of other rows if the squared length of its component normal to them is
+// at most this value.
+constexpr double kParallelSquared = 1e-16;
+
+// The active rows as the columns of a matrix q R: q is orthonormal, and R is stored as its inverse. The
+// columns beyond count are zero, so that all products run over N columns and need no branches.
+template <int N>
+struct ActiveRows {
+  int count = 0;
+  int number[N] = {};
+  double multiplier[N] = {};
+  Square<N> q, inverse;
+
+  // Moves y until it fulfils a row, and makes that row active. The other active rows stay fulfilled with
+  // equality, with multipliers of 0 or more. An active row whose multiplier reaches 0 on the way is removed.
+  // Returns false if no such y exists.
+  bool activate(int row, const Packed<N>& unit_row, double bound, Packed<N>& y) {
+    double its_multiplier = 0;
+    for (;;) {
+      Packed<N> inside = q.transposed_times(unit_row), outside = unit_row;
+      outside.add(-1, q.times(inside));
+      if (outside.dot(outside) < 0.5) {  // large cancellation; a second pass is enough (Daniel et al. 1976)
+        const Packed<N> more = q.transposed_times(outside);
+        inside.add(1, more), outside.add(-1, q.times(more));
+      }
+      const Packed<N> coefficient = inverse.times(inside);  // coefficients of the active rows in unit_row
+      const double squared = outside.dot(outside);
+      const bool is_free = squared > kParallelSquared;
+      double step = is_free ? std::max(0.0, bound - unit_row.dot(y)) / squared
+                            : std::numeric_limits<double>::infinity();
+      int leaving = -1;
+      for (int j = 0; j < count; ++j)
+        if (coefficient[j] > kRounding && multiplier[j] < step * coefficient[j])
+          step = multiplier[j] / coefficient[j], leaving = j;
+      if (!(step < std::numeric_limits<double>::infinity())) return false;
+      if (is_free) y.add(step, outside);
+      for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, multiplier[j] - step * coefficient[j]);
+      its_multiplier += step;
+      if (leaving < 0) {
+        append(row, its_multiplier, outside, coefficient, 1 / std::sqrt(squared));
+        return true;
+      }
+      remove(leaving);
+    }
+  }
+
+  void append(int row, double its_multiplier, const Packed<N>& outside, const Packed<N>& coefficient,
+              double scale) {
+    number[count] = row, multiplier[count] = its_multiplier;
+    q.column[count].add(scale, outside);
+    inverse.column[count].add(-scale, coefficient);
+    inverse.column[count].set(count, scale);
+    ++count;
+  }
+
+  // Removes the active row at `index`. A reflection turns the basis so that its last direction is the
+  // one that only this row needs. That direction is dropped, and the last active row moves to the free index.
+  void remove(int index) {
+    --count;
+    Packed<N> v;
+    for (int j = 0; j < N; ++j) v.set(j, inverse.column[j][index]);
+    const double length = std::sqrt(v.dot(v)), last = v[count];
+    v.set(count, last + std::copysign(length, last));
+    const double factor = 1 / (length * (length + std::abs(last)));
+    q.reflect(v, factor), inverse.reflect(v, factor);
+    q.column[count] = inverse.column[count] = {};
+    number[index] = number[count], multiplier[index] = multiplier[count];
+    for (int j = 0; j < N; ++j) {
+      inverse.column[j].set(index, inverse.column[j][count]);
+      inverse.column[j].set(count, 0);
+    }
+  }
+
+  // Corrects y for its distances to the active rows, which are rounding errors of the steps, and computes the
+  // multipliers that belong to the corrected y.
+  void settle(const Packed<N>& distance, const Packed<N>& target, Packed<N>& y) {
+    y.add(1, q.times(inverse.transposed_times(distance)));
+    Packed<N> moved = y;
+    moved.add(-1, target);
+    const Packed<N> exact = inverse.times(q.transposed_times(moved));
+    for (int j = 0; j < count; ++j) multiplier[j] = std::max(0.0, exact[j]);
+  }
+};
 
 constexpr int kLanes = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
