@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -65,5 +66,38 @@ Choice choice(Enumeration& value, std::vector<std::string> names) {
   return {std::move(names), [&value] { return static_cast<int>(value); },
           [&value](int i) { value = static_cast<Enumeration>(i); }};
 }
+
+// The unit of a parameter, which ends the parameter's name: "r1_m" is a length in metres.
+
+// Powers of metre, second and newton.
+struct Dimension {
+  int length = 0;
+  int time = 0;
+  int force = 0;
+  bool operator==(const Dimension&) const = default;
+};
+
+struct Unit {
+  const char* ending;  // end of the name: "_m_per_s"
+  const char* text;    // unit in results: "m/s"; "1" for a pure number
+  Dimension dimension;
+};
+
+// All units; a unit stands before each one whose ending also ends its own ("_N_per_m" before "_per_m").
+std::span<const Unit> known_units();
+// Returns the first known unit that ends the name, or nullptr, as for counts and pure numbers ("rows",
+// "gamma").
+const Unit* unit_of(const std::string& name);
+
+// A fraction over time: rows of time in seconds and fraction.
+
+// Returns the fraction at a time. It is linear between two rows and jumps where two rows have the same time.
+// It is constant before the first row and after the last. It is 1 if there are no rows.
+double scheduled(const std::vector<double>& rows, double time_s);
+
+// Returns a message about the first row whose fraction is above 1 or whose time is before that of the
+// previous row, such as "NAME: time ..."; empty if there is none. what: name of the fraction in that message.
+std::string validate_schedule(const std::vector<double>& rows, const std::string& name,
+                              const std::string& what);
 
 }  // namespace remote_touch

@@ -9,7 +9,7 @@
 
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "core/parameters/unit.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

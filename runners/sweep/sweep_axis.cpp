@@ -9,7 +9,7 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
-#include "core/parameters/unit.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/sweep/joint_axis.h"
 

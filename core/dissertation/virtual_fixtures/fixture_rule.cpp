@@ -1,6 +1,6 @@
 #include "core/dissertation/virtual_fixtures/fixture_rule.h"
 
-#include "core/parameters/schedule.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

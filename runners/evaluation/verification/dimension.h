@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
-#include "core/parameters/unit.h"
 
 namespace remote_touch {
 

@@ -1,6 +1,6 @@
 #include "runners/experiment/hand/operator_model.h"
 
-#include "core/parameters/schedule.h"
+#include "core/parameters/parameter.h"
 #include "core/rendering/elapsed_ticks.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/parameters/unit.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/settings/json_parameters.h"
 

@@ -1,10 +1,10 @@
-#include "core/parameters/unit.h"
+#include "core/parameters/parameter.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-namespace remote_touch::unit_test {
+namespace remote_touch::parameter_test {
 namespace {
 
 TEST(Unit, IsReadFromTheEndOfAName) {
@@ -23,4 +23,4 @@ TEST(Unit, EveryUnitIsFoundByItsOwnEnding) {
 }
 
 }  // namespace
-}  // namespace remote_touch::unit_test
+}  // namespace remote_touch::parameter_test
