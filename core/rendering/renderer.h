@@ -1,6 +1,8 @@
 // The interface of every haptic renderer: frames at the camera's rate, steps at the haptic rate.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -10,6 +12,14 @@
 #include "core/rendering/frame.h"
 
 namespace remote_touch {
+
+// A force with a torque, as a renderer commands it and a device exerts it.
+
+// Force on the hand, and torque about the device's position; world frame.
+struct Wrench {
+  Vec3 force_N = Vec3::Zero();
+  Vec3 torque_Nm = Vec3::Zero();
+};
 
 enum class ContactState { free = 0, contact = 1, entrenched = 2 };
 
@@ -102,5 +112,28 @@ class Renderer {
   // are reported as a status.
   virtual RenderOutput step(const DeviceState& device, double time_s) = 0;
 };
+
+// The wrench of a renderer's output.
+
+// Returns the wrench that the renderer commands. Without a tool it has no torque.
+inline Wrench rendered_wrench(const RenderOutput& out) {
+  return {out.force_N, out.tool ? out.tool->torque_Nm : Vec3(Vec3::Zero())};
+}
+
+// Choices that the proxy and the tool share: the velocity term of the force, and the command of the slave
+// robot.
+
+enum class VelocityForce { minus, plus, none };  // sign of the velocity term of (4.15); plus is printed
+// Pose that the slave robot follows, 5.2. rendered: that of the proxy or tool, a hard constraint. hip: that
+// of the device, a soft constraint.
+enum class SlaveCommand { rendered, hip };
+
+// The number of ticks between two calls of a renderer or of a simulated hand.
+
+// Returns the number of ticks from before_s to now_s, rounded, and at least 1. It is also 1 if the time does
+// not advance, decreases or is NaN.
+inline double elapsed_ticks(double before_s, double now_s, double haptic_rate_hz) {
+  return std::max(1.0, std::floor((now_s - before_s) * haptic_rate_hz + 0.5));
+}
 
 }  // namespace remote_touch

@@ -1,6 +1,5 @@
 #include "core/rendering/surface_velocity.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/dissertation/proxy/proxy_step.h"
-#include "core/rendering/elapsed_ticks.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

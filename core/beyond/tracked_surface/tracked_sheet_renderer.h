@@ -13,7 +13,7 @@
 
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/rendering/usual_interval.h"
+#include "core/rendering/surface_velocity.h"
 
 namespace remote_touch {
 

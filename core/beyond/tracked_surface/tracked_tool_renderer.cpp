@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/rendering/frame_preparation.h"
+#include "core/rendering/frame_order.h"
 
 namespace remote_touch {
 

@@ -13,7 +13,7 @@
 #include "core/beyond/tracked_surface/sheet_patches.h"
 #include "core/beyond/tracked_surface/sheet_search.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
-#include "core/rendering/usual_interval.h"
+#include "core/rendering/surface_velocity.h"
 
 namespace remote_touch {
 

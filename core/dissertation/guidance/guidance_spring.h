@@ -8,7 +8,7 @@
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/virtual_fixtures/guidance_target.h"
 #include "core/parameters/parameter.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
-#include "core/rendering/output_rules.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

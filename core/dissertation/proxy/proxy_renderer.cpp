@@ -7,7 +7,7 @@
 
 #include "core/dissertation/proxy/proxy_step.h"
 #include "core/dissertation/proxy/region_motion.h"
-#include "core/rendering/elapsed_ticks.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
-#include "core/rendering/frame_preparation.h"
+#include "core/rendering/frame_order.h"
 
 namespace remote_touch {
 

@@ -13,7 +13,7 @@
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
-#include "core/rendering/frame_need.h"
+#include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/rendered_contact.h"
 #include "runners/experiment/hand/trajectory.h"

@@ -9,7 +9,6 @@
 
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/rendering/frame.h"
-#include "core/rendering/frame_need.h"
 #include "runners/experiment/sessions/sensor_frame.h"
 #include "scenarios/interface/scenario.h"
 

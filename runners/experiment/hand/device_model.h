@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/rendering/frame.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 #include "runners/experiment/hand/device_settings.h"
 
 namespace remote_touch {

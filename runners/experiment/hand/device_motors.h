@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

@@ -1,7 +1,7 @@
 #include "runners/experiment/hand/operator_model.h"
 
 #include "core/parameters/parameter.h"
-#include "core/rendering/elapsed_ticks.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

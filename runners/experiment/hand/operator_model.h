@@ -9,7 +9,7 @@
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 #include "runners/experiment/hand/device_settings.h"
 #include "runners/experiment/hand/dry_friction_step.h"
 #include "runners/experiment/hand/held_force_step.h"

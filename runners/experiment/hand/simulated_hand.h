@@ -6,7 +6,7 @@
 
 #include "analysis/trace/hand_and_slave_state.h"
 #include "core/rendering/frame.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 #include "runners/experiment/hand/device_model.h"
 #include "runners/experiment/hand/operator_model.h"
 

@@ -11,7 +11,6 @@
 #include "analysis/storage/hdf5_appender.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "core/rendering/renderer.h"
-#include "core/rendering/wrench.h"
 #include "runners/experiment/sessions/sensor_frame.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 
 #include "analysis/trace/hand_and_slave_state.h"
 #include "core/numeric/noise.h"
-#include "core/rendering/rendered_wrench.h"
+#include "core/rendering/renderer.h"
 #include "core/teleoperation/tool_slave.h"
 #include "runners/experiment/teleoperation/teleoperation_settings.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/rendering/frame.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 #include "runners/experiment/sessions/live_settings.h"
 #include "runners/live/devices/haptic_device.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/geometry/vector.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 #include "runners/live/devices/clock.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 
 #include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
-#include "core/rendering/output_rules.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

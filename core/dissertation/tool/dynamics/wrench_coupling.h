@@ -6,7 +6,7 @@
 
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/rendering/wrench.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

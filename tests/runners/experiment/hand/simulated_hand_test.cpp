@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/rotation.h"
-#include "core/rendering/rendered_wrench.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch::simulated_hand_test {
 namespace {

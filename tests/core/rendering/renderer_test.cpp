@@ -1,10 +1,10 @@
-#include "core/rendering/elapsed_ticks.h"
+#include "core/rendering/renderer.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-namespace remote_touch::elapsed_ticks_test {
+namespace remote_touch::renderer_test {
 namespace {
 
 TEST(ElapsedTicks, IsOneFromTickToTickWhateverTheRounding) {
@@ -27,4 +27,4 @@ TEST(ElapsedTicks, IsNeverBelowOne) {
 }
 
 }  // namespace
-}  // namespace remote_touch::elapsed_ticks_test
+}  // namespace remote_touch::renderer_test
