@@ -1,9 +1,173 @@
 #include "core/rivals/god_object_renderer.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace remote_touch {
+namespace {
+
+// The fraction of its size by which a triangle is enlarged; it is far above rounding.
+constexpr double kSeam = 1e-9;
+
+// Returns the area of (a, b, p), seen along the normal, as a fraction of the area of the triangle. It is 0 or
+// more on the inner side of the edge ab.
+double beside_edge(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& normal, double doubled_area) {
+  return (b - a).cross(p - a).dot(normal) / doubled_area;
+}
+
+bool contains(const Triangle& t, const Vec3& p) {
+  const double doubled = (t.b - t.a).cross(t.c - t.a).dot(t.normal);
+  return beside_edge(t.a, t.b, p, t.normal, doubled) >= -kSeam &&
+         beside_edge(t.b, t.c, p, t.normal, doubled) >= -kSeam &&
+         beside_edge(t.c, t.a, p, t.normal, doubled) >= -kSeam;
+}
+
+}  // namespace
+
+void GridMesh::reserve(std::size_t points) {
+  triangles_.grow(2 * points);
+  index_plus_one_.grow(2 * points);  // room for a last row that is not full
+}
+
+void GridMesh::assign(const GatheredPoints& points, int columns, const Ball& ball) {
+  count_ = 0;
+  if (points.size() == 0) return;
+  const auto wide = static_cast<std::uint32_t>(columns);
+  std::uint32_t first_row = ~0u, last_row = 0, first_column = ~0u, last_column = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t row = points.index()[i] / wide, column = points.index()[i] % wide;
+    first_row = std::min(first_row, row), last_row = std::max(last_row, row);
+    first_column = std::min(first_column, column), last_column = std::max(last_column, column);
+  }
+  const std::size_t width = last_column - first_column + 1, height = last_row - first_row + 1;
+  std::fill_n(index_plus_one_.data(), width * height, 0u);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t row = points.index()[i] / wide, column = points.index()[i] % wide;
+    index_plus_one_[(row - first_row) * width + (column - first_column)] = static_cast<std::uint32_t>(i) + 1;
+  }
+
+  const PointsView view = points.view();
+  const auto point = [&](std::uint32_t place) {
+    return Vec3(view.x[place - 1], view.y[place - 1], view.z[place - 1]);
+  };
+  for (std::size_t row = 0; row + 1 < height; ++row) {
+    for (std::size_t column = 0; column + 1 < width; ++column) {
+      const std::uint32_t* const upper = index_plus_one_.data() + row * width + column;
+      const std::uint32_t a = upper[0], b = upper[1], c = upper[width], d = upper[width + 1];
+      const int measured = (a != 0) + (b != 0) + (c != 0) + (d != 0);
+      if (measured < 3) continue;
+      if (a != 0 && b != 0 && c != 0) add(point(a), point(b), point(c), ball);
+      if (d != 0 && c != 0 && b != 0) add(point(d), point(c), point(b), ball);
+      if (c == 0) add(point(a), point(b), point(d), ball);
+      if (b == 0) add(point(a), point(d), point(c), ball);
+    }
+  }
+}
+
+void GridMesh::add(const Vec3& a, const Vec3& b, const Vec3& c, const Ball& ball) {
+  const double limit = edge_limit_m_ * edge_limit_m_;
+  if (!((b - a).squaredNorm() <= limit && (c - b).squaredNorm() <= limit && (a - c).squaredNorm() <= limit))
+    return;
+  const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+  const Vec3 nearest = ball.centre.cwiseMax(low).cwiseMin(high);
+  if ((nearest - ball.centre).squaredNorm() > ball.radius * ball.radius) return;
+  const Vec3 n = (b - a).cross(c - a);
+  const double length = n.norm();
+  if (!(length > 0)) return;  // three points on a line form no triangle
+  triangles_[count_++] = {a, b, c, n / length};
+}
+
+std::optional<Crossing> GridMesh::first_crossing(const Vec3& from, const Vec3& to) const {
+  std::optional<Crossing> first;
+  for (const Triangle& t : triangles()) {
+    const double over = t.normal.dot(from - t.a), side = over < 0 ? -1 : 1;
+    const Crossing crossing{&t, side * over, side * t.normal.dot(to - t.a)};
+    if (!(crossing.start > 0 && crossing.end <= 0)) continue;
+    if (first && !(crossing.fraction() < first->fraction())) continue;
+    if (contains(t, from + crossing.fraction() * (to - from))) first = crossing;
+  }
+  return first;
+}
+
+namespace {
+
+// Planes whose normals span less than this (squared sine, or volume) are not combined, because their
+// intersection is far away or does not exist. The choices without one of them remain.
+constexpr double kParallel = 1e-9;
+
+// Tries motions from the goal onto planes, and keeps the shortest one that obeys all planes.
+class Search {
+ public:
+  // rise: distance by which the goal must rise along each normal.
+  Search(const std::array<Vec3, PlaneConstraints::kMaxCount>& normal,
+         const std::array<double, PlaneConstraints::kMaxCount>& rise, std::size_t count, double slack)
+      : normal_(normal), rise_(rise), count_(count), slack_(slack) {}
+
+  void on_plane(std::size_t i) { offer(rise_[i] * normal_[i], 1); }
+  // y - goal = l_i n_i + l_j n_j, with the multipliers from the equations of both planes.
+  void on_line(std::size_t i, std::size_t j) {
+    const double between = normal_[i].dot(normal_[j]), rest = normal_[i].cross(normal_[j]).squaredNorm();
+    if (!(rest > kParallel)) return;
+    const double l_i = (rise_[i] - between * rise_[j]) / rest, l_j = (rise_[j] - between * rise_[i]) / rest;
+    offer(l_i * normal_[i] + l_j * normal_[j], 2);
+  }
+  // The three equations are solved by Cramer's rule.
+  void on_corner(std::size_t i, std::size_t j, std::size_t k) {
+    const Vec3 jk = normal_[j].cross(normal_[k]), ki = normal_[k].cross(normal_[i]),
+               ij = normal_[i].cross(normal_[j]);
+    const double volume = normal_[i].dot(jk);
+    if (!(std::abs(volume) > kParallel)) return;
+    offer((rise_[i] * jk + rise_[j] * ki + rise_[k] * ij) / volume, 3);
+  }
+  void offer(const Vec3& motion, int active_planes) {
+    const double squared = motion.squaredNorm();
+    if (!(squared < shortest_)) return;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (!(normal_[i].dot(motion) >= rise_[i] - slack_)) return;
+    shortest_ = squared, best_ = motion, active_planes_ = active_planes;
+  }
+
+  bool found() const { return shortest_ < std::numeric_limits<double>::infinity(); }
+  const Vec3& best() const { return best_; }
+  int active_planes() const { return active_planes_; }
+
+ private:
+  const std::array<Vec3, PlaneConstraints::kMaxCount>& normal_;
+  const std::array<double, PlaneConstraints::kMaxCount>& rise_;
+  std::size_t count_;
+  double slack_, shortest_ = std::numeric_limits<double>::infinity();
+  Vec3 best_ = Vec3::Zero();
+  int active_planes_ = 0;
+};
+
+}  // namespace
+
+bool PlaneConstraints::add(const Vec3& normal, const Vec3& point, double offset_m) {
+  if (count_ == kMaxCount) return false;
+  planes_[count_++] = {normal, point, offset_m};
+  return true;
+}
+
+PlaneConstraints::Nearest PlaneConstraints::nearest(const Vec3& goal) const {
+  std::array<Vec3, kMaxCount> normal;
+  std::array<double, kMaxCount> rise;
+  for (std::size_t i = 0; i < count_; ++i) {
+    normal[i] = planes_[i].normal;
+    rise[i] = planes_[i].normal.dot(planes_[i].point - goal) + planes_[i].offset_m;
+  }
+  Search search(normal, rise, count_, slack_m_);
+  search.offer(Vec3::Zero(), 0);
+  for (std::size_t i = 0; i < count_; ++i) {
+    search.on_plane(i);
+    for (std::size_t j = i + 1; j < count_; ++j) {
+      search.on_line(i, j);
+      for (std::size_t k = j + 1; k < count_; ++k) search.on_corner(i, j, k);
+    }
+  }
+  return {search.found(), goal + search.best(), search.active_planes()};
+}
 
 namespace {
 

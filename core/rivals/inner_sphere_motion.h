@@ -1,5 +1,5 @@
 // A volumetric penalty method for comparison: a tool filled with inner spheres is pushed out of the points of
-// a frame. Force and torque are proportional to the penetration volume (sphere_penetration.h). R. Weller and
+// a frame. Force and torque are proportional to the penetration volume (SpherePenetration). R. Weller and
 // G. Zachmann, "A unified approach for physically-based simulations and haptic rendering", ACM SIGGRAPH
 // Symposium on Video Games 2009, introduced them for two bodies of inner spheres; M. Kaluschke, R. Weller, G.
 // Zachmann and others, World Haptics 2017, for one body and the point cloud of a depth camera.
@@ -20,14 +20,128 @@
 // entirely behind the points feels nothing.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
+#include "core/dissertation/tool/contact/touch_finder.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/motion/tool_motion.h"
 #include "core/parameters/parameter.h"
-#include "core/rivals/sphere_penetration.h"
+#include "core/rivals/exact_sum.h"
+#include "core/rivals/inner_spheres.h"
 
 namespace remote_touch {
+
+// The penetration volume of a tool of inner spheres in the points of a frame, and the wrench that it causes.
+// M. Kaluschke, R. Weller, G. Zachmann and others, "A volumetric penetration measure for 6-DOF haptic
+// rendering of streaming point clouds", World Haptics 2017. The source finds the spheres that collide with
+// points, decides which other spheres are inside the penetrated cloud, along a graph of neighbouring spheres,
+// and computes force and torque from the normals of the points and from the volume of each sphere. Only a
+// summary of it was available, so the following equations are this project's.
+//
+// Sphere i with centre c and radius r collides if it contains points. Point j, with normal n_j, means that
+// the scene fills the half-space n_j . (x - p_j) < 0. The part of the sphere in it is a cap, and the points
+// share the sphere by weights:
+//
+//   h_j = r - n_j . (c - p_j),   V(h) = pi h^2 (3 r - h) / 3,   w_j = 1 - |p_j - c|^2 / r^2,
+//   V_i = sum w_j V(h_j) / sum w_j,   f_i = k_V sum w_j V(h_j) n_j / sum w_j,
+//
+// where h is the height of the cap, and k_V the stiffness. If all points lie in one plane, V_i is the volume
+// of the sphere behind it. Walls on both sides of a sphere push against each other. A point on the sphere has
+// no weight, so it enters and leaves without a jump. The force acts at the centroid of each cap, which lies
+// below the centre along n_j, so the torque is that of a force at the centre. A point without a normal has
+// the direction in which the tool leaves the point soonest.
+//
+// The neighbours of a colliding sphere, and the neighbours of these, take over its plane if they do not
+// collide themselves, reach behind the plane, and fulfil two conditions. They keep the inside from spreading
+// to the side, where the tool reaches beyond the edge of a surface.
+// - The radius of the cut is at most the spacing of the cloud there. A larger cut without points shows that
+//   there is no surface.
+// - t - r_k <= r + max(0, depth of the centre behind the plane), where t is the distance between the centres
+//   of the two spheres beside each other, in the plane, and r_k is the radius of the colliding sphere.
+// A sphere takes the plane with the smallest t - r_k.
+//
+// The result does not depend on the order of the points: the sums over points are exact (exact_sum.h), and
+// spheres are visited in an order of their own.
+
+// The part of a ball on one side of a plane.
+struct BallCap {
+  double volume_m3;
+  double disk_m2;  // area of the cut
+};
+// Returns the part behind a plane; height_m: height of the ball's centre in front of it, negative behind it.
+BallCap cap_behind(double radius_m, double height_m);
+
+// The effect of all spheres, in tool axes, about the origin of the tool. The wrench and its slope have to be
+// multiplied by the stiffness, N/m^3.
+struct SpherePenetration {
+  int spheres = 0;                     // number of spheres of which a part is in the scene
+  double volume_m3 = 0;                // sum of V_i
+  Vector6 wrench_T = Vector6::Zero();  // sum of f_i / k_V and c cross f_i / k_V
+  // Decrease of the wrench per displacement of the tool, if the half-spaces stay: the areas of the cuts times
+  // l l^T, where l = (n, c cross n), in the same weighted means and sums.
+  Eigen::Matrix<double, 6, 6> slope_T = decltype(slope_T)::Zero();
+};
+
+class PenetrationQuery {
+ public:
+  explicit PenetrationQuery(std::shared_ptr<const InnerSpheres> spheres);
+
+  // Returns the penetration at a pose. finder: that of the tool from which the spheres were made. Does not
+  // allocate.
+  SpherePenetration penetration(const ToolPose& pose, const TouchFinder& finder);
+
+ private:
+  // The sums over the points in a sphere. Volumes are divided by that of the sphere, and areas by that of its
+  // largest cut, so that no term is larger than 1.
+  struct PointSums {
+    explicit PointSums(double grid)
+        : weight(grid), volume(grid), offset(grid), normal(grid), push(grid), squares(grid), products(grid) {}
+    void add(const Vec3& offset_of_point, const Vec3& n_T);
+
+    ExactSum weight, volume;        // w, w V
+    ExactVector offset, normal;     // w (p - c) / r, w n
+    ExactVector push;               // w V n
+    ExactVector squares, products;  // w A n n^T: xx, yy, zz, and yz, zx, xy
+    double spacing_m = 0;           // largest spacing of the points
+  };
+  // The contribution of a sphere.
+  struct Effect {
+    double volume_m3;
+    Vec3 push_T;            // f_i / k_V
+    Eigen::Matrix3d cut_T;  // A n n^T
+  };
+  struct Plane {
+    Vec3 a_T, n_T;
+    double spacing_m;      // largest spacing of its points
+    std::uint32_t sphere;  // the colliding sphere that it comes from
+  };
+
+  void gather(const ToolPose& pose, const TouchFinder& finder);
+  void fit_planes();
+  void spread();
+  double distance_beside_m(const Plane& plane, const Sphere& sphere) const;
+  bool is_inside(const Plane& plane, const Sphere& sphere, double beside_m) const;
+  Effect effect_of_points(std::uint32_t i) const;
+  Effect effect_of_plane(std::uint32_t i) const;
+  void reset();
+
+  static constexpr std::uint32_t kNoPlane = ~std::uint32_t{0};
+
+  const std::shared_ptr<const InnerSpheres> made_;
+  const SphereLocator locator_;
+  std::vector<PointSums> sums_;             // one for each sphere
+  std::vector<std::uint8_t> has_points_;    // one for each sphere
+  std::vector<std::uint32_t> with_points_;  // spheres that contain points
+  std::vector<Plane> planes_;               // the colliding spheres
+  std::vector<std::uint32_t> plane_of_;     // index of the plane of each sphere, or kNoPlane
+  std::vector<double> beside_m_;            // t - r_k of each sphere that took over a plane
+  std::vector<std::uint32_t> inside_;       // spheres that took over a plane
+  std::vector<std::uint32_t> queue_;        // ring of the spheres whose neighbours are to be visited
+  std::vector<std::uint8_t> is_queued_;
+};
 
 // The default k_V is this project's choice: a contact of 240 mm^2 is then as stiff as ten points of the
 // penalty methods, 24 kN/m.

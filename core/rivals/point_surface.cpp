@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/rivals/exact_sum.h"
-#include "core/rivals/thinnest_axis.h"
+#include "core/rivals/point_normals.h"
 
 namespace remote_touch {
 

@@ -5,13 +5,11 @@
 
 #include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
 #include "core/dissertation/proxy/proxy_parameters.h"
-#include "core/rivals/averaged_proxy_renderer.h"
-#include "core/rivals/density_proxy_renderer.h"
 #include "core/rivals/god_object_renderer.h"
 #include "core/rivals/implicit_surface_renderer.h"
 #include "core/rivals/mls_surface_renderer.h"
-#include "core/rivals/oracle_proxy_renderer.h"
 #include "core/rivals/penalty_renderer.h"
+#include "core/rivals/proxy_variants.h"
 #include "core/rivals/surfel_renderer.h"
 #include "runners/experiment/catalog/rendered_contact.h"
 

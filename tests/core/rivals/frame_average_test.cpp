@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
-#include "core/rivals/averaged_proxy_renderer.h"
+#include "core/rivals/proxy_variants.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::frame_average_test {

@@ -11,7 +11,6 @@
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/parameters/input_error.h"
-#include "core/rivals/sphere_locator.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 

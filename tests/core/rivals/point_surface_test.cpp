@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/rivals/thinnest_axis.h"
+#include "core/rivals/point_normals.h"
 #include "core/search/neighbourhood.h"
 #include "tests/support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "core/rivals/density_proxy_renderer.h"
+#include "core/rivals/proxy_variants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,25 @@
 #include <sstream>
 
 namespace remote_touch {
+
+Parameters parameters(AveragedProxyParameters& p) {
+  return appended(parameters(p.proxy), parameters(p.average));
+}
+
+std::string validate(const AveragedProxyParameters& p) {
+  const std::string average = validate(p.average);
+  return average.empty() ? validate(p.proxy) : average;
+}
+
+void AveragedProxyRenderer::reserve(std::size_t points) {
+  proxy_.reserve(points);
+  average_.reserve(points);
+}
+
+void AveragedProxyRenderer::on_frame(const Frame& frame) {
+  if (!proxy_.is_newer(frame)) return proxy_.on_frame(frame);
+  proxy_.on_frame({frame.index, frame.captured_s, frame.arrives_s, average_.next(*frame.points)});
+}
 
 Parameters parameters(DensityProxyParameters& p) {
   const Parameters own = {
@@ -82,6 +101,50 @@ RenderOutput DensityProxyRenderer::step(const DeviceState& device, double time_s
   if (out.state != ContactState::free || proxy_.in_contact())
     out.proxy_W += (p_.proxy.contact_radius_m() - radius_m_) * out.normal_W;
   return out;
+}
+
+namespace {
+
+// Returns the gradient of the distance as a unit vector; zero if it is not known.
+Vec3 true_normal(const TrueSurface& truth, const Vec3& p_W, double time_s) {
+  constexpr double kStep_m = 1e-6;
+  Vec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = kStep_m * Vec3::Unit(axis);
+    gradient[axis] = truth.signed_distance(p_W + step, time_s) - truth.signed_distance(p_W - step, time_s);
+  }
+  return gradient.allFinite() ? Vec3(gradient.normalized()) : Vec3::Zero();  // 0 stays 0
+}
+
+}  // namespace
+
+// The true motion is given, so there is no estimate.
+Parameters parameters(OracleProxyParameters& p) {
+  return without(parameters(p.proxy), {"velocity_estimate"});
+}
+
+Parameters OracleProxyRenderer::live_parameters() {
+  return without(proxy_.live_parameters(), {"velocity_estimate"});
+}
+
+SurfaceMotion true_motion(const TrueSurface& truth, const Vec3& p_W, double before_s, double now_s) {
+  SurfaceMotion motion;
+  const double moved_m = truth.signed_distance(p_W, before_s) - truth.signed_distance(p_W, now_s);
+  if (!std::isfinite(moved_m) || moved_m == 0) return motion;
+  motion.normal_W = true_normal(truth, p_W, now_s);
+  motion.displacement_m = moved_m * motion.normal_W;
+  motion.velocity_m_per_s = moved_m / (now_s - before_s);
+  return motion;
+}
+
+void OracleProxyRenderer::on_frame(const Frame& frame) {
+  SurfaceMotion motion;
+  if (proxy_.is_newer(frame)) {
+    if (has_frame_ && frame.truth)
+      motion = true_motion(*frame.truth, proxy_.proxy_W(), captured_s_, frame.captured_s);
+    captured_s_ = frame.captured_s, has_frame_ = true;
+  }
+  proxy_.on_frame(frame, motion);
 }
 
 }  // namespace remote_touch
