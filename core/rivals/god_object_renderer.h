@@ -33,7 +33,7 @@
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/rival_renderer.h"
-#include "core/search/gathered_points.h"
+#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 

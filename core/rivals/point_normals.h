@@ -9,7 +9,6 @@
 
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
-#include "core/search/gathered_points.h"
 #include "core/search/neighbour_search.h"
 
 namespace remote_touch {

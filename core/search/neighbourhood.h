@@ -4,7 +4,6 @@
 #include <array>
 #include <memory>
 
-#include "core/search/gathered_points.h"
 #include "core/search/neighbour_search.h"
 
 namespace remote_touch {

@@ -10,7 +10,7 @@
 #include "core/dissertation/proxy/proxy_parameters.h"
 #include "core/geometry/point_cloud.h"
 #include "core/rendering/renderer.h"
-#include "core/search/gathered_points.h"
+#include "core/search/neighbour_search.h"
 
 namespace remote_touch::naive {
 

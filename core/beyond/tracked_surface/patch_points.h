@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/search/gathered_points.h"
+#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/search/morton_order.h"
+#include "core/search/point_order.h"
 
 namespace remote_touch {
 namespace {

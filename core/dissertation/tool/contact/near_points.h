@@ -7,7 +7,7 @@
 
 #include "core/dissertation/tool/contact/touch_finder.h"
 #include "core/rendering/renderer.h"
-#include "core/search/gathered_points.h"
+#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 

@@ -8,8 +8,7 @@
 #include "core/dissertation/tool/contact/contact_thinning.h"
 #include "core/geometry/vector.h"
 #include "core/numeric/order_statistic.h"
-#include "core/search/compact_order.h"
-#include "core/search/morton_order.h"
+#include "core/search/point_order.h"
 
 namespace remote_touch {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/search/compact_order.h"
+#include "core/search/point_order.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "core/geometry/vector.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch::compact_order_test {
+namespace remote_touch::point_order_test {
 namespace {
 
 std::vector<Vec3> points_of(const PointCloud& cloud) {
@@ -45,4 +45,4 @@ TEST(CompactOrder, RunsOfAGridAreSquares) {
 }
 
 }  // namespace
-}  // namespace remote_touch::compact_order_test
+}  // namespace remote_touch::point_order_test
