@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/geometry/vector.h"
-#include "core/teleoperation/slave_drive.h"
+#include "core/teleoperation/slave.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/dissertation/guidance/guided_renderer.h"
-#include "core/teleoperation/frame_dead_band.h"
+#include "core/teleoperation/dead_band.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/catalog/renderer_changes.h"

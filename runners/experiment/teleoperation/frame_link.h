@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/rendering/renderer.h"
-#include "core/teleoperation/frame_dead_band.h"
+#include "core/teleoperation/dead_band.h"
 
 namespace remote_touch {
 

@@ -8,9 +8,8 @@
 #include "core/teleoperation/architecture.h"
 #include "core/teleoperation/channel.h"
 #include "core/teleoperation/dead_band.h"
-#include "core/teleoperation/registration_error.h"
 #include "core/teleoperation/slave.h"
-#include "core/teleoperation/slave_tool.h"
+#include "core/teleoperation/tool_slave.h"
 
 namespace remote_touch {
 
