@@ -4,7 +4,6 @@
 
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "runners/evaluation/figures/bound_agreement.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "analysis/statistics/curve_fits.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/theory/pop_through_limits.h"
 #include "runners/evaluation/figures/figures.h"
@@ -79,5 +81,78 @@ Table bound_table();  // printed_bound() over noise, named "bound"
 Panel map_panel(const std::string& title, std::vector<Curve> curves);
 // Returns a map of a table of survivors(), with the printed bound if `bound` is set.
 Panel survivor_panel(const std::string& title, const std::string& table, bool bound = true);
+
+// Measurements over lifts for the figure "bounds".
+
+using LiftUpdates = std::vector<LiftUpdate>;
+
+// (4.14): critical accelerations without noise, over 8 x 8 positions of the grid under the proxy, by
+// bisection between kSurvives and kPops; and the fractions of lifts that survived at these two.
+struct Phases {
+  static constexpr double kSurvives = 4.3, kPops = 4.6;  // m/s^2
+  Table table{"phases", "critical acceleration without noise, by position of the grid"};
+  double survived_low = 0, survived_high = 0;
+};
+Phases critical_over_phases(FigureContext& context);
+
+// (4.19) to (4.24): the effect of noise, from lifts without acceleration, and fits up to kFitted_m.
+inline constexpr double kFitted_m = 0.01;
+struct MeasuredNoise {
+  std::vector<double> sigma_m;
+  std::vector<NoiseEffect> effect;  // one for each of sigma_m
+  PolynomialFit thickness, normal_error;
+
+  NoiseEffect at(double noise_m) const;  // linear between the measured strengths
+};
+MeasuredNoise measured_noise(FigureContext& context);
+Table effect_table(const MeasuredNoise& noise);
+
+// The map of Fig 4.13 with the noise of another seed: every update of every lift, and which lifts survived.
+struct LiftMap {
+  Table map;  // noise, acceleration, survived
+  std::vector<LiftUpdates> updates;
+};
+LiftMap lift_map(FigureContext& context, int seed);
+
+// Agreement of the bounds of 4.4 with the simulated lifts.
+
+// Number of updates by whether (4.17) holds and by their outcome: the proxy stays above the plane, or pops
+// through. (4.18) is the same criterion, rewritten for a cloud that moves along its normal.
+struct Criterion {
+  double holds_stays = 0, holds_pops = 0, fails_stays = 0, fails_pops = 0;
+  double agreement() const {
+    return (holds_stays + fails_pops) / (holds_stays + holds_pops + fails_stays + fails_pops);
+  }
+};
+// Counts the updates during the acceleration, until the proxy is below the plane, in lifts with noise in
+// [low, high), r_c.
+Criterion criterion_of(const LiftMap& lifts, double low, double high);
+// The criterion for several ranges of noise.
+Table criterion_table(const LiftMap& lifts);
+
+// A bound as a function of the noise, m/s^2. It keeps a reference to the MeasuredNoise it was made from.
+struct AccelerationBound {
+  std::string name, meaning;
+  std::function<double(double noise_m)> at;
+  double max_noise_m = 1;  // the curve ends here: fits are not valid beyond it
+};
+std::vector<AccelerationBound> bounds(const MeasuredNoise& noise);
+
+// Agreement over the cells with noise up to a limit (r_c).
+struct Agreement {
+  int cells = 0, agree = 0;
+  double safe_popped = 0, unsafe_survived = 0;  // fractions of the bound's safe and unsafe cells
+  double fraction() const { return static_cast<double>(agree) / cells; }
+};
+Agreement agreement_of(const AccelerationBound& bound, const Table& map, double max_noise = 4);
+Table agreement_table(const std::vector<AccelerationBound>& bounds, const Table& map);
+
+// Predicted and observed survival, by ranges of both noise and prediction. Columns have the suffix of the
+// range of noise.
+Table calibration_table(const MeasuredNoise& noise, const Table& map);
+
+// The ranges of noise: suffix of the columns, words for readers.
+inline constexpr std::pair<const char*, const char*> kNoiseRanges[] = {
+    {"to_1_rc", "noise to r_c"}, {"to_2_rc", "r_c to 2 r_c"}, {"to_3_rc", "2 r_c to 3 r_c"}};
 
 }  // namespace remote_touch
