@@ -5,7 +5,7 @@
 
 #include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/sensors/sensor_tables.h"
+#include "runners/evaluation/figures/sensors/sensor_comparison.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {

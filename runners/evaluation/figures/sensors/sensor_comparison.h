@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/measures/image_measures.h"
+#include "analysis/trace/column.h"
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/figures/sensors/simulated_sensor.h"
 #include "scenarios/interface/scenario.h"
@@ -61,5 +62,69 @@ struct TrueObjectErrors {
 // published numbers. Throws InputError also if the recording has no true objects.
 TrueObjectErrors true_object_errors(const Scenario& scene, const ComparedSensor& sensor, int frame_step,
                                     const Kernels& kernels);
+
+// The tables of a comparison of simulated depth sensors with a real one.
+
+// The look of a comparison. The name is a part of the names of tables, and jumps are those of 1 / z.
+struct ShownSensor {
+  std::string name, title;
+  ComparedSensor compared;
+  std::vector<double> bounds_m;                        // bounds of the ranges of distance
+  double last_jump_per_m;                              // beyond it there are few edges
+  double edge_low_per_m = 0.4, edge_high_per_m = 0.7;  // jumps of the edges in the table of holes
+};
+
+// The recorded sensor or one of the simulated ones, with its names in columns and legends.
+struct SensorSource {
+  const char *column, *label;
+  SourceStatistics SensorComparison::*statistics;
+};
+inline constexpr SensorSource kRecordedSensor{"recorded", "recorded", &SensorComparison::recorded};
+inline constexpr SensorSource kSimulatedSensor{"simulated", "simulated", &SensorComparison::simulated};
+inline constexpr SensorSource kOwnFocalSensor{"own_focal", "simulated, own focal length",
+                                              &SensorComparison::own_focal};
+inline constexpr const SensorSource* kSensorSources[] = {&kRecordedSensor, &kSimulatedSensor,
+                                                         &kOwnFocalSensor};
+
+// A sensor and what was measured of it. A range is that between two of the bounds.
+struct MeasuredSensor {
+  ShownSensor shown;
+  SensorComparison comparison;
+
+  std::size_t ranges() const { return shown.bounds_m.size() - 1; }
+  std::string table(const char* what) const { return std::string(what) + "_" + shown.name; }
+  // Standard deviation of a pixel's depth over time which that share of the pixels does not exceed.
+  double over_time_m(const SensorSource& source, std::size_t range, double share = 0.5) const;
+  // rms about the plane of a window: the lower quartile over the windows. Windows on curved surfaces have
+  // larger residuals than noise alone.
+  DepthNoise about_planes(const SensorSource& source, std::size_t range) const;
+  double about_planes_m(const SensorSource& source, std::size_t range) const {
+    return about_planes(source, range).in_m();
+  }
+  // The edges of the table of holes.
+  std::vector<DepthEdge> shown_edges(const SensorSource& source, bool is_left_of_near) const;
+};
+
+// Returns "left" or "right", of near surfaces.
+std::string side_name(bool is_left_of_near);
+inline constexpr bool kEdgeSides[] = {true, false};
+
+inline constexpr double kLoudShare = 0.9;  // number of the pixels whose noise over time is in the tables
+
+// Table `noise_NAME` over the ranges of distance: noise over time (`time_SOURCE`, and its 90 % quantile
+// `loud_SOURCE`) if the scene is at rest, `planes_SOURCE`, `planes_px_SOURCE`, and the step of depth
+// `step_SOURCE`.
+Table noise_table(const MeasuredSensor& sensor);
+// Table `widths_NAME` over jumps: the medians of the widths of holes, `SIDE_SOURCE`.
+Table width_table(const MeasuredSensor& sensor);
+// Table `holes_NAME` over the distance from the last pixel of the near surface: fractions of holes,
+// `SIDE_SOURCE`.
+Table hole_table(const MeasuredSensor& sensor);
+// Table `truth` over frames: `median_`, `spread_` and `measured_` of OBJECT_SOURCE.
+Table truth_table(const TrueObjectErrors& errors);
+
+// Returns how fast the holes of a column of width_table() widen with the jump, as the length of a baseline.
+// NaN if fewer than four widths are known.
+double shadow_baseline_m(const Table& widths, const std::string& column, double focal_px);
 
 }  // namespace remote_touch
