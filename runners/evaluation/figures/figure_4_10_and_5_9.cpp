@@ -13,7 +13,7 @@
 #include "core/geometry/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/tool_picture.h"
+#include "runners/evaluation/figures/tools/figure_pictures.h"
 
 namespace remote_touch {
 

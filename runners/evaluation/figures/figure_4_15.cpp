@@ -6,7 +6,7 @@
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/tool_picture.h"
+#include "runners/evaluation/figures/tools/figure_pictures.h"
 #include "runners/evaluation/figures/truth/ball_gaps.h"
 #include "scenarios/camera/camera_scene.h"
 

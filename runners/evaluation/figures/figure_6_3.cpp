@@ -9,7 +9,7 @@
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/box_contacts.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/tool_picture.h"
+#include "runners/evaluation/figures/tools/figure_pictures.h"
 #include "runners/experiment/settings/second_implementation.h"
 
 namespace remote_touch {

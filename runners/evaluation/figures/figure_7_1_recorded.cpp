@@ -5,7 +5,7 @@
 #include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/hue_masks.h"
+#include "runners/evaluation/figures/tools/figure_pictures.h"
 
 namespace remote_touch {
 

@@ -3,7 +3,7 @@
 
 #include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/tool_picture.h"
+#include "runners/evaluation/figures/tools/figure_pictures.h"
 #include "runners/evaluation/figures/valve_task.h"
 
 namespace remote_touch {

@@ -11,7 +11,6 @@
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/carried_limits.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/shape_jumps.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/hue_masks.h"
+#include "runners/evaluation/figures/tools/figure_pictures.h"
 #include "scenarios/camera/valve_tank.h"
 
 namespace remote_touch {

@@ -11,7 +11,7 @@
 #include "analysis/trace/sequence_log.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/geometry/rotation.h"
-#include "runners/evaluation/figures/tools/tool_picture.h"
+#include "runners/evaluation/figures/tools/figure_pictures.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/evaluation/figures/tools/claims_file.h"
+#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/figure_runs.h"
 #include "runners/interfaces/cli/progress.h"

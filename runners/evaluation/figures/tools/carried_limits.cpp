@@ -1,6 +1,12 @@
 #include "runners/evaluation/figures/tools/carried_limits.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "analysis/theory/exact_contacts.h"
+#include "core/dissertation/tool/dynamics/tool_parameters.h"
+#include "core/geometry/rotation.h"
+#include "runners/experiment/tool_files/tool_loading.h"
 
 namespace remote_touch {
 
@@ -71,6 +77,105 @@ void add_limit_panel(Figure& figure, const Table& limits, const DerivedLimit& de
   }
   figure.tables.push_back(bounds);
   figure.panels.push_back(plot(limits.title, labels.x, labels.y, std::move(curves), frame));
+}
+
+namespace {
+
+constexpr double kSpacing_m = 0.0015;
+
+// The surface under a plate that reaches half_m to either side.
+using Under = std::function<UnderPlate(double half_m)>;
+
+// Returns the jump that a contact rule allows. The printed rule counts the interior of the plate, 6.2.4.
+// Look-ahead counts the whole plate. The continuous rule also counts the way out, along which the highest
+// position must become free.
+double jump_m(Carrier rule, double thickness_m, const UnderPlate& under) {
+  if (rule == Carrier::voxels) return thickness_m - 2 * ToolSettings{}.voxel_m + under.drop_m;
+  const double through_m = thickness_m + under.drop_m;
+  if (rule == Carrier::look_ahead) return through_m;
+  return std::max(through_m, ToolParameters{}.frame_reach_m - under.rise_m);
+}
+
+Jump derived(Carrier rule, double thickness_m, const Under& under) {
+  const double half_m = kHalfPlate_m - (rule == Carrier::voxels ? ToolSettings{}.voxel_m : 0);
+  const double disk_m =
+      rule == Carrier::voxels ? ToolSettings{}.voxel_m : ToolParameters{}.disk_radius_ratio * kSpacing_m;
+  const double jumps_m[] = {jump_m(rule, thickness_m, under(half_m - kSpacing_m)),
+                            jump_m(rule, thickness_m, under(half_m + disk_m))};
+  const double bound_m = jump_m(rule, thickness_m, under(half_m));
+  return {std::min({jumps_m[0], jumps_m[1], bound_m}), bound_m, std::max({jumps_m[0], jumps_m[1], bound_m})};
+}
+
+// Returns all points of the shape: their heights, and the probability that noise leaves or brings them under
+// the plate.
+std::vector<NoisyPoint> noisy_points(Shape::Kind kind, double half_m, double sigma_m) {
+  Shape::Settings settings;
+  settings.kind = kind, settings.slope_deg = kSlope_deg, settings.radius_m = kRadius_m;
+  const Grid grid{60, 60, kSpacing_m, 0, 0};
+  const Shape shape(settings, grid);
+  const auto below = [&](double x) { return 0.5 * std::erfc(-x / sigma_m * std::sqrt(0.5)); };
+  const auto within = [&](double x) { return below(half_m - x) - below(-half_m - x); };
+  std::vector<NoisyPoint> points;
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const Vec3 point = shape.point(grid.x(column), grid.z(row));
+      if (point.allFinite()) points.push_back({point.y(), within(point.x()) * within(point.z())});
+    }
+  return points;
+}
+
+// Returns the jump after which half of the runs are lost, of a plate whose half width is larger by wider_m.
+double noise_jump_m(Carrier rule, Shape::Kind kind, double sigma_m, double wider_m) {
+  const double shell_m = rule == Carrier::voxels ? ToolSettings{}.voxel_m : 0;
+  const double way_out_m = rule == Carrier::continuous ? ToolParameters{}.frame_reach_m : 0;
+  const double half_m = kHalfPlate_m - shell_m + wider_m;
+  return std::max(way_out_m,
+                  noisy_jump_m(kPlate_m - 2 * shell_m, noisy_points(kind, half_m, sigma_m), sigma_m));
+}
+
+}  // namespace
+
+Jump on_edge(Carrier rule, double thickness_m, double slope_deg, double turn_deg) {
+  return derived(rule, thickness_m, [&](double half_m) {
+    return under_edge(slope_deg * kRadiansPerDegree, half_m, turn_deg * kRadiansPerDegree);
+  });
+}
+
+// The contact that holds the plate may be one of the faces of a corner. The way out of the continuous rule is
+// then along that face's normal.
+Jump on_corner(Carrier rule, double thickness_m, double slope_deg) {
+  const double slope_rad = slope_deg * kRadiansPerDegree;
+  Jump jump = derived(rule, thickness_m, [&](double half_m) { return under_corner(slope_rad, half_m); });
+  if (rule == Carrier::continuous)
+    jump.least_m = std::max(on_corner(Carrier::look_ahead, thickness_m, slope_deg).least_m,
+                            ToolParameters{}.frame_reach_m * std::cos(slope_rad));
+  return jump;
+}
+
+// The lowest measured points may be a spacing away from the rim of the ball.
+Jump on_ball(Carrier rule, double thickness_m, double radius_m) {
+  return derived(rule, thickness_m, [&](double half_m) {
+    const double seen_m = std::sqrt(2.0) * half_m;
+    return under_ball(
+        radius_m, half_m < kHalfPlate_m - kSpacing_m / 2 ? std::min(seen_m, radius_m - kSpacing_m) : seen_m);
+  });
+}
+
+Jump on_plane(Carrier rule, double extent_m) {
+  return derived(rule, extent_m, [](double) { return UnderPlate{}; });
+}
+
+// The smallest and the largest jump are those of a plate that is narrower by a spacing, or wider by a disk,
+// as without noise.
+Jump on_noise(Carrier rule, Shape::Kind kind, double sigma_m) {
+  const double disk_m =
+      rule == Carrier::voxels ? ToolSettings{}.voxel_m : ToolParameters{}.disk_radius_ratio * kSpacing_m;
+  return {noise_jump_m(rule, kind, sigma_m, -kSpacing_m), noise_bound_m(rule, kind, sigma_m),
+          noise_jump_m(rule, kind, sigma_m, disk_m)};
+}
+
+double noise_bound_m(Carrier rule, Shape::Kind kind, double sigma_m) {
+  return noise_jump_m(rule, kind, sigma_m, 0);
 }
 
 }  // namespace remote_touch
