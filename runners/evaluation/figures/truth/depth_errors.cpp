@@ -6,7 +6,7 @@
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/geometry/rotation.h"
 #include "core/numeric/order_statistic.h"
-#include "runners/evaluation/figures/truth/recording_window.h"
+#include "runners/evaluation/figures/truth/true_contacts.h"
 #include "runners/experiment/hand/image_frames.h"
 
 namespace remote_touch {
