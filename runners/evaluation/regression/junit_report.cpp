@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "runners/evaluation/regression/comparison_text.h"
+#include "runners/evaluation/regression/comparison_report.h"
 
 namespace remote_touch {
 

@@ -4,15 +4,46 @@
 
 #include <atomic>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/trace/column.h"
-#include "runners/evaluation/regression/manifest.h"
+#include "runners/evaluation/regression/stored_result.h"
 
 namespace remote_touch {
+
+// A temporary folder for runs whose results are read and then deleted.
+
+// A new folder in TMPDIR. The destructor removes it with all its files; it must not contain folders. A
+// program that is killed, or runs out of memory inside a library, leaves its folder; the next program removes
+// it. A lock marks the folders that are in use, and a process loses its lock when it ends. Throws InputError
+// if no folder can be made.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::filesystem::path path() const { return path_; }
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+};
+
+// Runs this program, or another build of it, as a user would.
+
+std::string this_program();  // the path of the running program
+
+// Runs a program to its end, without output. environment: variables set in addition; errors: a file for its
+// stderr. Throws InputError, naming the program, with the last line of its errors, if it cannot be started,
+// or its exit code is not 0 or not known. When stop is set, ends it and throws Interrupted.
+void run_program(const std::string& program, const std::vector<std::string>& arguments,
+                 const std::map<std::string, std::string>& environment, const std::filesystem::path& errors,
+                 const std::atomic<bool>* stop);
 
 // The columns of a result that are judged: those of a trace except the running hash, or the measures of a
 // sweep.

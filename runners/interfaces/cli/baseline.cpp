@@ -2,10 +2,8 @@
 #include <cstdio>
 
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/regression/baseline_bless.h"
-#include "runners/evaluation/regression/baseline_check.h"
+#include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/comparison_report.h"
-#include "runners/evaluation/regression/comparison_text.h"
 #include "runners/evaluation/regression/junit_report.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"

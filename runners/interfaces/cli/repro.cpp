@@ -8,7 +8,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/hash64.h"
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/regression/comparison_text.h"
+#include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/maker.h"

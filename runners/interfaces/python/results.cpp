@@ -9,7 +9,6 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
-#include "runners/evaluation/regression/comparison_text.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/stored_configuration.h"

@@ -5,7 +5,6 @@
 
 #include "analysis/figures/result_file.h"
 #include "runners/evaluation/regression/comparison_report.h"
-#include "runners/evaluation/regression/comparison_text.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/evaluation/regression/compared_files.h"
 #include "tests/support/test_files.h"

@@ -1,5 +1,5 @@
 // The folder of runs whose results are thrown away.
-#include "runners/evaluation/regression/scratch_folder.h"
+#include "runners/evaluation/regression/spread.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch::scratch_folder_test {
+namespace remote_touch::spread_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ TEST_F(ScratchFolderTest, NeedsAWritableFolder) {
 }
 
 }  // namespace
-}  // namespace remote_touch::scratch_folder_test
+}  // namespace remote_touch::spread_test
