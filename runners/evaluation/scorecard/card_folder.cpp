@@ -1,16 +1,23 @@
 #include "runners/evaluation/scorecard/card_folder.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <stdexcept>
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
-#include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/trace/column.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/report_json.h"
-#include "runners/evaluation/scorecard/stored_card.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/stored_configuration.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
 
@@ -57,6 +64,217 @@ std::string write_scorecard(const std::filesystem::path& folder, const Benchmark
   const std::string text = to_json(report);
   write_file_atomically(folder / "scorecard.json", text.data(), text.size());
   return digest;
+}
+
+namespace {
+
+constexpr const char* kMadeBy = "a card that `remote-touch scorecard store` wrote";
+
+// Returns one table of the file with all its columns.
+Table table_in(const Hdf5Reader& file, const std::string& name) {
+  Table table{name, {}};
+  const std::string folder = "/tables/" + name + "/";
+  const bool is_earlier = is_earlier_schema(attribute(file.attributes(), "schema"));
+  const auto present_name = [&](const std::string& column) {
+    return is_earlier ? present_column(column) : column;
+  };
+  for (const std::string& path : file.datasets()) {
+    if (!path.starts_with(folder)) continue;
+    table.columns.push_back(file.column(path));
+    table.columns.back().name = present_name(path.substr(folder.size()));
+  }
+  if (table.columns.empty()) file.damaged("has no table " + name);
+  return table;
+}
+
+Hdf5Reader stored_card_file(const std::filesystem::path& file) {
+  Hdf5Reader hdf5(file);
+  hdf5.require_kind("figure", kMadeBy);
+  if (attribute(hdf5.attributes(), "figure") != kStoredCardFigure)
+    throw InputError(file.string(), std::string("not a stored card: expected ") + kMadeBy);
+  return hdf5;
+}
+
+// Returns a number with three digits; a dash for NaN.
+std::string digits(double value) {
+  if (std::isnan(value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string with_unit(double value, const std::string& units) {
+  const bool is_length = units == "m";
+  return digits(is_length ? 1e3 * value : value) + (units == "1" ? "" : is_length ? " mm" : " " + units);
+}
+
+std::string behind_text(const Table& behind, const std::string& own, bool is_significant) {
+  std::string rows;
+  for (std::size_t i = 0; i < values_of<std::vector<std::string>>(behind, "scene").size(); ++i) {
+    if ((values_of<std::vector<std::int32_t>>(behind, "significant")[i] != 0) != is_significant) continue;
+    const auto text = [&](const char* name) { return values_of<std::vector<std::string>>(behind, name)[i]; };
+    const auto number = [&](const char* name) { return values_of<std::vector<double>>(behind, name)[i]; };
+    rows += "| " + text("scene") + " | " + text("what") + " | " +
+            with_unit(number("own_mean"), text("units")) + " | " +
+            with_unit(number("other_mean"), text("units")) + " (" + text("other") + ") | " +
+            digits(number("p")) + " |\n";
+  }
+  if (rows.empty()) return "None.\n";
+  return "| scene | what | " + own + " | better | p, corrected |\n|---|---|---|---|---|\n" + rows;
+}
+
+// A threshold of perception, and the counts of each method as the text of two cells.
+struct ThresholdColumns {
+  std::string measure, value, meaning, source;
+  std::map<std::string, std::string> cells = {};  // the key is the method
+};
+
+// Returns the thresholds of a table "thresholds" in its order.
+std::vector<ThresholdColumns> threshold_columns(const Table& thresholds) {
+  std::vector<ThresholdColumns> list;
+  const auto& measures = values_of<std::vector<std::string>>(thresholds, "measure");
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    const auto text = [&](const char* name) {
+      return values_of<std::vector<std::string>>(thresholds, name)[i];
+    };
+    const auto share = [&](const char* below, const char* runs) {
+      const auto count = [&](const char* name) {
+        return values_of<std::vector<std::int32_t>>(thresholds, name)[i];
+      };
+      return count(runs) == 0 ? "-" : std::to_string(count(below)) + " of " + std::to_string(count(runs));
+    };
+    if (list.empty() || list.back().measure != measures[i])
+      list.push_back({measures[i],
+                      with_unit(values_of<std::vector<double>>(thresholds, "threshold")[i], text("units")),
+                      text("meaning"), text("source")});
+    list.back().cells[text("method")] =
+        share("below", "runs") + " | " + share("noise_free_below", "noise_free_runs") + " |";
+  }
+  return list;
+}
+
+std::string sources_text(const std::vector<ThresholdColumns>& thresholds) {
+  std::string text;
+  for (const ThresholdColumns& one : thresholds)
+    text += "- `" + one.measure + "`: " + one.value + " is " + one.meaning + " (" + one.source + ").\n";
+  return text.empty() ? text : "\nThresholds of perception:\n\n" + text;
+}
+
+std::string overview_text(const Table& overview, const std::vector<ThresholdColumns>& thresholds) {
+  std::string text =
+      "| method | successes with noise (95 %) | without noise | by the rule before "
+      "| best alone | worst alone |";
+  std::string line = "\n|---|---|---|---|---|---|";
+  for (const ThresholdColumns& one : thresholds) {
+    text += " " + one.measure + " below " + one.value + ", with noise | without |";
+    line += "---|---|";
+  }
+  text += line + "\n";
+  const auto& methods = values_of<std::vector<std::string>>(overview, "method");
+  const auto& success = values_of<std::vector<double>>(overview, "success");
+  std::vector<std::size_t> order(methods.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return success[a] > success[b]; });
+  for (const std::size_t i : order) {
+    const auto number = [&](const char* name) {
+      return digits(values_of<std::vector<double>>(overview, name)[i]);
+    };
+    const auto count = [&](const char* name) {
+      return std::to_string(values_of<std::vector<std::int32_t>>(overview, name)[i]);
+    };
+    text += "| " + methods[i] + " | " + number("success") + " (" + number("low") + " to " + number("high") +
+            ") | " + number("noise_free") + " | " + number("old_success") + " | " + count("best") + " | " +
+            count("worst") + " |";
+    for (const ThresholdColumns& one : thresholds) {
+      const auto found = one.cells.find(methods[i]);
+      text += " " + (found == one.cells.end() ? std::string("- | - |") : found->second);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::vector<std::string> names_in(const Json& configuration, const char* kind) {
+  std::vector<std::string> names;
+  for (const auto& item : configuration.at(kind).items()) names.push_back(item.key());
+  return names;
+}
+
+// Adds a sentence for each method or scene of `now` that the stored card lacks or has in another form.
+void compare_definitions(const Json& stored, const Json& now, const char* kind, const char* one,
+                         std::vector<std::string>& list) {
+  for (const auto& item : now.at(kind).items()) {
+    const auto found = stored.at(kind).find(item.key());
+    if (found == stored.at(kind).end())
+      list.push_back(std::string(one) + " " + item.key() + ": not in the stored card");
+    else if (*found != item.value())
+      list.push_back(std::string(one) + " " + item.key() + ": defined in another way in the stored card");
+  }
+}
+
+}  // namespace
+
+std::string configuration_of(const BenchmarkPlan& plan) {
+  std::vector<BenchmarkScene> scenes;
+  for (const ScenePlan& planned : plan.scenes) scenes.push_back(planned.scene);
+  return configuration(plan.benchmark.methods, scenes, plan.benchmark.replicates);
+}
+
+std::string write_stored_card(const std::filesystem::path& file, const Scorecard& card,
+                              const TextAttributes& provenance) {
+  const CardNumbers numbers = numbers_of(card, KeptMeasures::judged);
+  return write_figure(file,
+                      {kStoredCardFigure,
+                       "Stored scorecard",
+                       "Successes and means with their intervals, for remote-touch scorecard check.",
+                       {overview_table(card), behind_table(card), thresholds_table(card),
+                        counts_table(numbers), means_table(numbers)}},
+                      provenance);
+}
+
+StoredCard read_stored_card(const std::filesystem::path& file) {
+  const Hdf5Reader hdf5 = stored_card_file(file);
+  StoredCard stored{stored_configuration(attribute(hdf5.attributes(), "config")), 0, {}, {}, {}};
+  try {
+    const Json all = Json::parse(stored.configuration);
+    stored.replicates = all.at("replicates").get<int>();
+    stored.methods = names_in(all, "methods"), stored.scenes = names_in(all, "scenes");
+    stored.numbers = numbers_in(table_in(hdf5, "success"), table_in(hdf5, "measures"));
+  } catch (const nlohmann::json::exception&) {
+    hdf5.damaged("has no configuration of a scorecard");
+  } catch (const std::out_of_range& missing) {
+    hdf5.damaged(missing.what());
+  }
+  return stored;
+}
+
+std::string stored_summary(const std::filesystem::path& file) {
+  const Hdf5Reader hdf5 = stored_card_file(file);
+  try {
+    const Table overview = table_in(hdf5, "overview"), behind = table_in(hdf5, "behind");
+    std::vector<ThresholdColumns> thresholds;  // cards that earlier versions stored have none
+    if (hdf5.has("/tables/thresholds/measure")) thresholds = threshold_columns(table_in(hdf5, "thresholds"));
+    const std::string own = own_method(values_of<std::vector<std::string>>(overview, "method"));
+    return "Where " + own + " is not the best, by more than chance:\n\n" + behind_text(behind, own, true) +
+           "\nWhere others succeed more often, but not by more than chance, or without noise:\n\n" +
+           behind_text(behind, own, false) + "\nAll methods, means over " +
+           std::to_string(values_of<std::vector<std::int32_t>>(overview, "scenes").at(0)) + " scenes:\n\n" +
+           overview_text(overview, thresholds) + sources_text(thresholds);
+  } catch (const std::out_of_range& missing) {
+    hdf5.damaged(missing.what());
+  }
+}
+
+std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPlan& plan,
+                                     const Scorecard& now) {
+  std::vector<std::string> list;
+  const Json then = Json::parse(stored.configuration), here = Json::parse(configuration_of(plan));
+  compare_definitions(then, here, "methods", "method", list);
+  compare_definitions(then, here, "scenes", "scene", list);
+  const std::vector<std::string> numbers = differences(stored.numbers, numbers_of(now, KeptMeasures::judged));
+  list.insert(list.end(), numbers.begin(), numbers.end());
+  return list;
 }
 
 }  // namespace remote_touch

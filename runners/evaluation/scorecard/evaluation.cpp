@@ -2,12 +2,217 @@
 
 #include <omp.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/hdf5_reader.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/scorecard/passivity.h"
+#include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/json_number.h"
 #include "runners/experiment/catalog/random_streams.h"
 #include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/sweep_replay.h"
 
 namespace remote_touch {
+
+Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
+                   const Kernels& kernels, const std::atomic<bool>* stop) {
+  const std::size_t cell = std::min(kCostLevel, sweep.sweep.plan().cell_count() - 1);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Cost best{scene, method, kNone, kNone};
+  try {
+    for (int round = 0; round < 2; ++round) {
+      std::vector<double> ticks, frames;
+      SimulationOptions options;
+      options.kernels = &kernels, options.stop = stop, options.generate_all_points = true;
+      options.step_duration_s = &ticks, options.frame_duration_s = &frames;
+      simulate(sweep.sweep.experiment(cell, 0), options);
+      if (!(mean(ticks) >= best.tick_s)) best.tick_s = mean(ticks), best.frame_s = mean(frames);
+    }
+  } catch (const std::exception&) {
+    return {scene, method, kNone, kNone};  // the sweep's file contains the error
+  }
+  return best;
+}
+
+TextAttributes cost_origin(const Kernels& kernels) {
+  TextAttributes origin = provenance("", "", kernels.isa);
+  std::erase_if(origin, [](const auto& one) { return one.first == "config" || one.first == "command"; });
+  origin.emplace_back("cpu", cpu_name());
+  return origin;
+}
+
+void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
+                 const TextAttributes& origin) {
+  Json list = Json::array();
+  for (const Cost& cost : costs)
+    list.push_back({{"scene", cost.scene},
+                    {"method", cost.method},
+                    {"tick_s", number_or_null(cost.tick_s)},
+                    {"frame_s", number_or_null(cost.frame_s)}});
+  Json all = Json::object();
+  for (const auto& [name, value] : origin) all[name] = value;
+  all["costs"] = list;
+  const std::string text = all.dump(1) + "\n";
+  write_file_atomically(file, text.data(), text.size());
+}
+
+std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin) {
+  const Json all = json_in_file(file);
+  std::vector<Cost> costs;
+  if (!all.is_object() || !all.contains("costs") || !all["costs"].is_array()) return costs;
+  for (const char* name : {"source_digest", "isa", "cpu"})
+    if (all.value(name, Json()) != attribute(origin, name)) return costs;
+  const Json& list = all["costs"];
+  const auto seconds = [](const Json& value) {
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+  };
+  for (const Json& item : list) {
+    if (!item.is_object() || !item.value("scene", Json()).is_string() ||
+        !item.value("method", Json()).is_string())
+      return {};
+    const double tick_s = seconds(item.value("tick_s", Json()));
+    if (std::isnan(tick_s)) continue;  // the run ended with an error: it is measured again
+    costs.push_back({item["scene"].get<std::string>(), item["method"].get<std::string>(), tick_s,
+                     seconds(item.value("frame_s", Json()))});
+  }
+  return costs;
+}
+
+const Cost* find_cost(const std::vector<Cost>& costs, const std::string& scene, const std::string& method) {
+  for (const Cost& cost : costs)
+    if (cost.scene == scene && cost.method == method) return &cost;
+  return nullptr;
+}
+
+namespace {
+
+// Returns true if the file is the trace of this experiment, which an earlier call of the same build wrote.
+// Another build or another failure has another source digest or configuration.
+bool is_there(const std::filesystem::path& file, const Experiment& experiment, const StoredSweep& stored) {
+  std::error_code unreachable;
+  if (!std::filesystem::is_regular_file(file, unreachable)) return false;
+  try {
+    const Hdf5Reader reader(file);
+    const TextAttributes& attributes = reader.attributes();
+    return attribute(attributes, "config") == experiment.to_json() &&
+           attribute(attributes, "source_digest") == attribute(stored.attributes, "source_digest");
+  } catch (const InputError&) {
+    return false;  // a damaged file is replaced
+  }
+}
+
+}  // namespace
+
+std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const StoredSweep& stored,
+                                          const std::vector<Bound>& success,
+                                          const std::filesystem::path& folder, const Kernels& kernels,
+                                          const std::atomic<bool>* stop) {
+  const SweepResult& result = stored.result;
+  for (std::size_t level = 0; level < result.cell_count(); ++level) {
+    const long found = typical_failure(result, success, level);
+    if (found < 0) continue;
+    const auto run = static_cast<std::size_t>(found);
+    if (result.state[run] == RunState::failed)
+      return FailureTrace{level, result.replicate_of(run), {}, {}, result.error[run]};
+    FailureTrace failure{level, result.replicate_of(run), "traces/" + sweep.name + ".h5", {}};
+    failure.command = program_text() + " replay runs/" + sweep.name + ".h5 " + option_of_run(result, run) +
+                      " -o " + failure.file;
+    const std::filesystem::path file = folder / failure.file;
+    SimulationOptions options;
+    options.kernels = &kernels, options.stop = stop;
+    if (!is_there(file, sweep.sweep.experiment(level, failure.replicate), stored))
+      replay_run(stored, sweep.sweep, run, options, file);
+    return failure;
+  }
+  return {};
+}
+
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+// Adds the ratio and the method's own cost if both costs were measured. The lists are sorted later, so they
+// must not contain NaN.
+void add_cost(double own_s, double other_s, std::vector<double>& ratio, std::vector<double>& all_s) {
+  if (!(std::isfinite(own_s) && std::isfinite(other_s) && own_s > 0 && other_s > 0)) return;
+  ratio.push_back(own_s / other_s), all_s.push_back(own_s);
+}
+
+const JudgedMeasure* find_measure(const SceneScore& scene, const std::string& name) {
+  for (const JudgedMeasure& measure : scene.measures)
+    if (measure.name == name) return &measure;
+  return nullptr;
+}
+
+}  // namespace
+
+std::string verdict(const Scorecard& card, const SceneScore& scene) {
+  const Ranking& ranking = scene.ranking;
+  if (ranking.ranked < 2) return "";
+  std::string text;
+  if (ranking.has_best) {
+    text = "Best: " + card.methods[ranking.order.front()] + ".";
+  } else if (ranking.top_group.size() == ranking.ranked) {
+    text = "No difference between any.";
+  } else {
+    text = "No difference at the top:";
+    for (const std::size_t c : ranking.top_group)
+      text += (c == ranking.top_group.front() ? " " : ", ") + card.methods[c];
+    text += ".";
+  }
+  if (ranking.has_worst) text += " Worst: " + card.methods[ranking.order[ranking.ranked - 1]] + ".";
+  return text;
+}
+
+std::string cost_reference(const Scorecard& card) {
+  const auto proxy = std::find(card.methods.begin(), card.methods.end(), "proxy");
+  return proxy != card.methods.end() ? *proxy : card.methods.front();
+}
+
+std::vector<CostSummary> cost_summary(const Scorecard& card, const std::vector<Cost>& costs) {
+  std::vector<CostSummary> methods;
+  const std::string reference = cost_reference(card);
+  for (const std::string& method : card.methods) {
+    std::vector<double> tick_ratio, frame_ratio, tick_s, frame_s;
+    for (const SceneScore& scene : card.scenes) {
+      const Cost* own = find_cost(costs, scene.name, method);
+      const Cost* other = find_cost(costs, scene.name, reference);
+      if (!own || !other) continue;
+      add_cost(own->tick_s, other->tick_s, tick_ratio, tick_s);
+      add_cost(own->frame_s, other->frame_s, frame_ratio, frame_s);
+    }
+    methods.push_back({median(tick_ratio), median(frame_ratio), median(tick_s), median(frame_s)});
+  }
+  return methods;
+}
+
+std::optional<std::vector<std::vector<EnergySummary>>> energies(const SceneScore& scene) {
+  const JudgedMeasure* run = find_measure(scene, "energy_injected");
+  const JudgedMeasure* update = find_measure(scene, "mean_energy_per_update");
+  if (!run || !update) return {};
+  std::vector<std::vector<EnergySummary>> laws(run->at_level.size());
+  for (std::size_t c = 0; c < laws.size(); ++c)
+    for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
+      Estimate cycle = run->at_level[c][i];
+      for (double* energy : {&cycle.value, &cycle.low, &cycle.high}) *energy /= kPassivityCycles;
+      laws[c].push_back({cycle, update->at_level[c][i].value});
+    }
+  return laws;
+}
 
 namespace {
 

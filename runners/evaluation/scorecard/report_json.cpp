@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/evaluation/scorecard/json_number.h"
-#include "runners/evaluation/scorecard/summary.h"
 
 namespace remote_touch {
 

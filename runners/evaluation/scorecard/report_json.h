@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "runners/evaluation/scorecard/report.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 
 namespace remote_touch {
 

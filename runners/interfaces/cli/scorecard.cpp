@@ -6,7 +6,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/scorecard/benchmark_choice.h"
+#include "runners/evaluation/scorecard/benchmark_run.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/simulation/simulation.h"

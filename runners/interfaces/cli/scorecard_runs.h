@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runners/evaluation/scorecard/benchmark_run.h"
-#include "runners/evaluation/scorecard/report.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/interfaces/cli/commands.h"
 
 namespace remote_touch {

@@ -2,10 +2,9 @@
 #include <filesystem>
 
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/scorecard/benchmark_choice.h"
+#include "runners/evaluation/scorecard/benchmark_run.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
-#include "runners/evaluation/scorecard/stored_card.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/commands.h"

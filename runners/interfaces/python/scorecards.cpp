@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "runners/evaluation/scorecard/benchmark_choice.h"
+#include "runners/evaluation/scorecard/benchmark_run.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/simulation/simulation.h"

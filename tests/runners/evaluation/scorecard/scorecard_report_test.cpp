@@ -1,4 +1,4 @@
-#include "runners/evaluation/scorecard/report.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "runners/evaluation/scorecard/report_json.h"
-#include "runners/evaluation/scorecard/summary.h"
 #include "scenarios/text_files/json_text.h"
 #include "tests/support/test_files.h"
 

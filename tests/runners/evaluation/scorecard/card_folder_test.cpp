@@ -1,4 +1,4 @@
-#include "runners/evaluation/scorecard/stored_card.h"
+#include "runners/evaluation/scorecard/card_folder.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -12,7 +12,7 @@
 #include "scenarios/text_files/json_text.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::stored_card_test {
+namespace remote_touch::card_folder_test {
 namespace {
 
 // Two methods in a scene of a few ticks.
@@ -173,4 +173,4 @@ TEST_F(StoredCards, OtherFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch::stored_card_test
+}  // namespace remote_touch::card_folder_test

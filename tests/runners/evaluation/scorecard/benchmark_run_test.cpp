@@ -1,5 +1,5 @@
 // The scorecard's scenes and methods as they are in data/: each runs with each, over the same noise.
-#include "runners/evaluation/scorecard/benchmark.h"
+#include "runners/evaluation/scorecard/benchmark_run.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/trace/trace.h"
-#include "runners/evaluation/scorecard/benchmark_choice.h"
-#include "runners/evaluation/scorecard/benchmark_plan.h"
-#include "runners/evaluation/scorecard/passivity.h"
+#include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/recordings/recording_part.h"
@@ -21,7 +19,7 @@
 #include "tests/support/test_files.h"
 #include "tests/support/test_name.h"
 
-namespace remote_touch::benchmark_plan_test {
+namespace remote_touch::benchmark_run_test {
 
 // gtest prints a scene as its name.
 void PrintTo(const BenchmarkScene& scene, std::ostream* out) {
@@ -372,4 +370,4 @@ TEST(ForceLaws, AreTheSameForMethodsThatDifferInTheirLaw) {
 }
 
 }  // namespace
-}  // namespace remote_touch::benchmark_plan_test
+}  // namespace remote_touch::benchmark_run_test
