@@ -7,7 +7,6 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/verification/metamorphic_relation.h"
-#include "runners/evaluation/verification/tool_scenes.h"
 #include "runners/evaluation/verification/verification_scenes.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "runners/evaluation/verification/metamorphic_scene.h"
-#include "runners/evaluation/verification/output_comparison.h"
+#include "runners/evaluation/verification/metamorphic_relation.h"
+#include "runners/evaluation/verification/verification_scenes.h"
 #include "runners/experiment/catalog/factory.h"
 
 namespace remote_touch {
@@ -30,7 +30,7 @@ struct CheckResult {
 // exerts a force in most ticks, or in some ticks if its contact model may lose contact. Without it the other
 // checks would mean little. assignments: "r1_m=0.004"; a renderer of a tool has kVerifiedTool unless they
 // name another. Throws InputError for an assignment that the renderer refuses, and for a parameter whose
-// units cannot be changed (see dimension.h). stop: when set, ends between two scenes with Interrupted.
+// units cannot be changed (see variation.h). stop: when set, ends between two scenes with Interrupted.
 // Without scenes: verification_scenes(), or tool_scenes() for a renderer of six degrees of freedom.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
                                          const std::vector<std::string>& assignments, const Kernels& kernels,

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/verification/dimension.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
+#include "runners/evaluation/verification/variation.h"
 #include "runners/evaluation/verification/verification_scenes.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "tests/runners/evaluation/verification/wrong_renderers.h"
