@@ -8,7 +8,6 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/catalog/random_streams.h"
 #include "runners/sweep/sweep_reading.h"
 #include "scenarios/text_files/json_text.h"
 

@@ -9,7 +9,7 @@
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/evaluation/contract/checks.h"
 #include "runners/evaluation/contract/flat_scene.h"
-#include "runners/experiment/catalog/renderer_changes.h"
+#include "runners/experiment/catalog/configuration.h"
 
 namespace remote_touch {
 

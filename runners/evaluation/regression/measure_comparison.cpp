@@ -9,7 +9,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/catalog/random_streams.h"
 #include "runners/experiment/settings/stored_configuration.h"
 
 namespace remote_touch {

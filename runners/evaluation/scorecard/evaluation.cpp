@@ -14,7 +14,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"
 #include "runners/evaluation/scorecard/json_number.h"
-#include "runners/experiment/catalog/random_streams.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -12,13 +12,50 @@
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/settings/changed_settings.h"
-#include "runners/experiment/settings/embedded_data.h"
 #include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/tool_files/tool_loading.h"
+#include "scenarios/camera/depth_sensor.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
+namespace {
+
+// Adds a phase for each pair of successive rows between which the fraction changes. rows: times and
+// fractions, see scheduled().
+void add_schedule(const std::string& name, const std::vector<double>& rows, std::vector<Phase>& phases) {
+  for (std::size_t i = 2; i < rows.size(); i += 2)
+    if (rows[i + 1] != rows[i - 1]) phases.push_back({"the change of " + name, rows[i - 2], rows[i]});
+}
+
+}  // namespace
+
+std::vector<Phase> setting_phases(const ExperimentConfiguration& configuration) {
+  std::vector<Phase> phases;
+  for (const RendererChange& change : configuration.changes)
+    phases.push_back({"the change of " + change.parameter, change.time_s});
+  const std::vector<FixtureValues> fixtures = configuration.fixture_values();
+  for (std::size_t i = 0; i < fixtures.size(); ++i)
+    add_schedule("the strength of fixtures." + std::to_string(i), fixtures[i].schedule, phases);
+  for (std::size_t i = 0; i < configuration.sequence.size(); ++i) {
+    const SequenceStep& step = configuration.sequence[i];
+    if (step.not_before_s > 0)
+      phases.push_back({"sequence." + std::to_string(i) + " (" + name_of(step) + ")", step.not_before_s});
+  }
+  return phases;
+}
+
+std::vector<Phase> operator_phases(const ExperimentConfiguration& configuration) {
+  std::vector<Phase> phases;
+  if (!configuration.operator_settings) return phases;
+  const OperatorSettings& hand = *configuration.operator_settings;
+  for (std::size_t i = 0; i + 2 < hand.presses.size(); i += 3)
+    phases.push_back({"the press of button " + std::to_string(static_cast<int>(hand.presses[i + 1])),
+                      hand.presses[i], hand.presses[i] + hand.presses[i + 2]});
+  add_schedule("operator.grip", hand.grip, phases);
+  return phases;
+}
 
 namespace {
 
@@ -287,6 +324,85 @@ double Experiment::max_stiffness_N_per_m() const {
       pulls += v.stiffness_N_per_m < 0 ? configuration_.guidance->stiffness_N_per_m : v.stiffness_N_per_m;
   }
   return holds + pulls;
+}
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+// The deviations, jitters and probabilities, by section; the first is the level of the sections.
+const Names kOfRun = {"frame_jitter_s", "frame_drop_probability"};
+const Names kOfScene = {"noise_sigma_m", "noise_per_m", "colour_noise", "dropout_probability",
+                        "turbidity_per_m"};
+const Names kOfSensor = {"name", "sensor", "noise_px", "disparity_step_px", "lateral_noise_px"};
+const Names kOfFaults = {"repeat_probability",  "ray_noise_m",   "flying_probability",
+                         "outlier_probability", "hole_fraction", "dropout_probability",
+                         "late_probability"};
+const Names kOfLink = {"jitter_s", "loss_probability"};
+const Names kOfRegistration = {"offset_m", "rotation_deg"};
+
+bool has(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_any_above_0(const Json& section, const Names& parameters) {
+  for (const std::string& name : parameters)
+    if (const auto found = section.find(name);
+        found != section.end() && found->is_number() && found->get<double>() > 0)
+      return true;
+  return false;
+}
+
+// True if a triangulating sensor may draw. The rounding of active stereo may be all of its noise; structured
+// light has more where it meets a surface at an angle.
+bool triangulation_draws(const Json& scene) {
+  const bool is_structured = scene["sensor"] == "structured-light";
+  DepthSensorSettings settings;
+  settings.sensor = is_structured ? DepthSensorKind::structured_light : DepthSensorKind::active_stereo;
+  settings.noise_px = scene.value("noise_px", -1.0);
+  settings.disparity_step_px = scene.value("disparity_step_px", -1.0);
+  settings.lateral_noise_px = scene.value("lateral_noise_px", -1.0);
+  const Triangulation t = triangulation(settings);
+  const double rounding = is_structured ? 0 : t.step_px * t.step_px / 12;
+  return t.lateral_noise_px > 0 || t.noise_px * t.noise_px > rounding;
+}
+
+bool scene_draws(const Json& scene) {
+  static const Names known = {"flat-grid",    "moving-lift", "moving-shape",  "plates",       "triangle-wave",
+                              "camera-scene", "points",      "beating-heart", "valve-tank",   "box",
+                              "slot",         "wedge",       "panel",         "moving-plane", "recording",
+                              "mesh-scene",   "live-session"};
+  if (!has(known, scene.value("name", ""))) return true;
+  if (scene.contains("sensor") && scene["sensor"] != "simple") return triangulation_draws(scene);
+  return is_any_above_0(scene, kOfScene);
+}
+
+}  // namespace
+
+RandomStreams random_streams(const Experiment& experiment) {
+  const Json json = parse_json(experiment.to_json(), "an experiment");
+  const auto section = [&](const char* name) {
+    const Json found = json.value(name, Json::object());
+    return found.is_object() ? found : Json::object();
+  };
+  RandomStreams streams;
+  streams.of_cell = is_any_above_0(json, kOfRun) || scene_draws(section("scenario")) ||
+                    is_any_above_0(section("faults"), kOfFaults) ||
+                    is_any_above_0(section("command_link"), kOfLink) ||
+                    is_any_above_0(section("force_link"), kOfLink);
+  streams.of_replicate = is_any_above_0(section("registration"), kOfRegistration);
+  return streams;
+}
+
+bool may_change_streams(const std::string& path) {
+  const std::vector<std::string> keys = path_keys(path);
+  const std::string& section = keys.front();
+  if (has(kOfRun, section)) return true;
+  const auto names_one = [&](const Names& names) { return keys.size() == 1 || has(names, keys[1]); };
+  if (section == "scenario") return names_one(kOfScene) || names_one(kOfSensor);
+  if (section == "faults") return names_one(kOfFaults);
+  if (section == "command_link" || section == "force_link") return names_one(kOfLink);
+  return section == "registration" && names_one(kOfRegistration);
 }
 
 }  // namespace remote_touch

@@ -8,12 +8,23 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/sweeps/sweep_result.h"
 #include "runners/experiment/catalog/configuration.h"
-#include "runners/experiment/catalog/scheduled_phases.h"
 #include "runners/experiment/settings/embedded_data.h"
 #include "runners/experiment/teleoperation/teleoperation.h"
+#include "scenarios/interface/note.h"
 
 namespace remote_touch {
+
+// The parts of an experiment that begin at a set time, apart from the motions of the scene and of the hand.
+
+// Returns a phase for each change of the renderer, for each part of a fixture's schedule in which the
+// strength changes, and for each step of the sequence with a not_before_s above 0.
+std::vector<Phase> setting_phases(const ExperimentConfiguration& configuration);
+
+// Returns a phase for each button press of the simulated operator, and for each part of the schedule in which
+// the grip changes. Returns none if there is no operator.
+std::vector<Phase> operator_phases(const ExperimentConfiguration& configuration);
 
 // A setting that may change while the experiment runs live.
 struct LiveParameter {
@@ -119,5 +130,16 @@ class Experiment {
 
   ExperimentConfiguration configuration_;
 };
+
+// The random numbers that a run draws, by its configuration.
+
+// Returns the streams from which runs of the experiment draw: those of their cell if a deviation, jitter or
+// probability of the scene, the sensor, the frames or the links is above 0; that of their replicate if the
+// slave has a registration error. A scenario of a plug-in, of Python or of a program's own catalog counts as
+// one that draws: it may use the noise key as it likes. The motion `random-motion` has a seed of its own, so
+// it is the same in all replicates and draws nothing here.
+RandomStreams random_streams(const Experiment& experiment);
+// True if a change of the setting at this path, as for --set, may change the streams.
+bool may_change_streams(const std::string& path);
 
 }  // namespace remote_touch

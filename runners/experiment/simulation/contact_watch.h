@@ -11,7 +11,7 @@
 #include "analysis/measures/run_events.h"
 #include "core/kernels/kernels.h"
 #include "core/rendering/renderer.h"
-#include "runners/experiment/catalog/rendered_contact.h"
+#include "runners/experiment/catalog/factory.h"
 #include "scenarios/interface/note.h"
 #include "scenarios/interface/scenario.h"
 

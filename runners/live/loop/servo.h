@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/rendering/renderer.h"
-#include "runners/experiment/catalog/renderer_changes.h"
+#include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/teleoperation/teleoperation.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/heartbeat.h"

@@ -10,8 +10,8 @@
 
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/kernels/isa.h"
+#include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/factory.h"
-#include "runners/experiment/catalog/renderer_contacts.h"
 #include "runners/experiment/tool_files/loaded_tool.h"
 
 namespace remote_touch {

@@ -12,7 +12,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/catalog/random_streams.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"

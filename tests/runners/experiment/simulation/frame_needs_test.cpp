@@ -1,6 +1,6 @@
 // Every renderer on every kind of cloud. Either the run is refused in one line that states what to add, or
 // there is a force. There is no third outcome, such as a tool that feels nothing.
-#include "runners/experiment/catalog/frame_needs.h"
+#include "runners/experiment/catalog/frame_stream.h"
 
 #include <gtest/gtest.h>
 

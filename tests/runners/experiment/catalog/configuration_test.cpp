@@ -1,5 +1,5 @@
 // Settings of a renderer that change during a run.
-#include "runners/experiment/catalog/renderer_changes.h"
+#include "runners/experiment/catalog/configuration.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::renderer_changes_test {
+namespace remote_touch::configuration_test {
 namespace {
 
 // A renderer that states any stiffness as its largest: NaN for the setting 0, infinity for a large one, and
@@ -223,4 +223,4 @@ TEST(RendererChanges, MakingThemAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace remote_touch::renderer_changes_test
+}  // namespace remote_touch::configuration_test
