@@ -16,22 +16,52 @@
 // smooth: F / k is then less than the radius of curvature of its convex parts. At an edge the expected force
 // turns from one row to the next. In free motion F = 0, and the HIP is r farther from the surface than p.
 //
-// The contact comes from a file (force_trace_file.h), or it is generated: a path over the true surface of the
+// The contact comes from a file (read_force_trace()), or it is generated: a path over the true surface of the
 // scenario with a stated force. In both cases it is stored as rows of time, HIP and force; between two rows
 // HIP and force are linear in time. Before the first row and after the last one the device rests. A file
 // should begin in free motion, with the HIP farther from the surface than the contact radius of the renderer:
 // a proxy that starts in contact may be on the wrong side.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording_part.h"
 
 namespace remote_touch {
+
+// Files of measured contacts: time, position of the contact and force, sample by sample.
+//
+// .csv: the first line names the columns, separated by commas. .traj: columns separated by blanks or tabs and
+// no names; the caller states them. Blank lines, and lines that begin with # or %, are skipped in both.
+//
+// Names of columns, in small or capital letters: time or t; x y z or px py pz, the position of the contact;
+// fx fy fz, the force. A name may end in its unit: _s or _ms, _m or _mm, _N. Without a unit the numbers are
+// seconds, metres and newtons. Columns of other names, such as torques and orientations, are not used.
+
+struct ForceTraceRow {
+  double time_s = 0;
+  Vec3 contact_m = Vec3::Zero();  // position of the contact, in the frame of the file
+  Vec3 force_N = Vec3::Zero();    // force as the file has it: its sign and its frame
+};
+
+struct ForceTrace {
+  std::vector<ForceTraceRow> rows;  // two or more, in order of time
+  std::vector<std::string> unused;  // names of the columns that are not used; "column 9" if it has none
+  bool states_length = false;       // the name of the column of x states its unit
+};
+
+// traj_columns: the names of the columns of a .traj file, in their order, separated by blanks. Further
+// columns of the file are not used. Throws InputError, with the file and the line, if the file cannot be read
+// or has another ending, if a column is missing or named twice, if a value is not a finite number, if a time
+// is not later than that of the row before, or if a position is more than 100 m from the origin along an axis
+// (are these millimetres?).
+ForceTrace read_force_trace(const std::filesystem::path& file, const std::string& traj_columns);
 
 class ContactReplay final : public Trajectory {
  public:

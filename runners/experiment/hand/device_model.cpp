@@ -5,8 +5,73 @@
 #include <numbers>
 
 #include "core/geometry/rotation.h"
+#include "core/geometry/vector.h"
 
 namespace remote_touch {
+namespace {
+
+Vec3 with_motors(const Vec3& v, bool x, bool y, bool z) {
+  return {x ? v.x() : 0, y ? v.y() : 0, z ? v.z() : 0};
+}
+
+Vec3 cut(const Vec3& v, double max_length) {
+  return max_length > 0 ? limited_length(v, max_length) : v;
+}
+
+}  // namespace
+
+Parameters parameters(MotorSettings& s) {
+  return {
+      {"force_x", &s.force_x, 0, 0, "the device can exert a force along x of the base frame"},
+      {"force_y", &s.force_y, 0, 0, "the device can exert a force along y"},
+      {"force_z", &s.force_z, 0, 0, "the device can exert a force along z"},
+      {"torque_x", &s.torque_x, 0, 0,
+       "the device can exert a torque about x of the handle, which is that of the tool"},
+      {"torque_y", &s.torque_y, 0, 0, "the device can exert a torque about y of the handle"},
+      {"torque_z", &s.torque_z, 0, 0, "the device can exert a torque about z of the handle"},
+      {"max_force_N", &s.max_force_N, 0, 1000, "maximum force of the device; 0: no limit"},
+      {"max_torque_Nm", &s.max_torque_Nm, 0, 100, "maximum torque of the device; 0: no limit"},
+  };
+}
+
+Wrench exerted(const MotorSettings& m, const Eigen::Quaterniond& handle_W, const Wrench& commanded) {
+  const Vec3 torque_T = handle_W.conjugate() * commanded.torque_Nm;
+  return {cut(with_motors(commanded.force_N, m.force_x, m.force_y, m.force_z), m.max_force_N),
+          handle_W * cut(with_motors(torque_T, m.torque_x, m.torque_y, m.torque_z), m.max_torque_Nm)};
+}
+
+Parameters parameters(DeviceSettings& s) {
+  Parameters all = parameters(s.motors);
+  const Parameters more{
+      {"friction_N", &s.resistance.friction_N, 0, 100,
+       "dry (Coulomb) friction along each axis of the base frame; needs an operator"},
+      {"friction_torque_Nm", &s.resistance.friction_torque_Nm, 0, 10,
+       "dry friction of turns about each axis; needs an operator"},
+      {"damping_Ns_per_m", &s.resistance.damping_Ns_per_m, 0, 1000,
+       "viscous friction of the device; needs an operator"},
+      {"rotational_damping_Nms_per_rad", &s.resistance.rotational_damping_Nms_per_rad, 0, 100,
+       "viscous friction of turns; needs an operator"},
+      {"position_resolution_m", &s.position_resolution_m, 0, 0.01,
+       "step of the measured position along each axis; 0: exact"},
+      {"angle_resolution_deg", &s.angle_resolution_deg, 0, 10,
+       "step of the measured rotation vector along each axis; 0: exact"},
+      {"delay_ticks", &s.delay_ticks, 0, 1000,
+       "ticks from a measured pose to the wrench that is computed for it"},
+      {"contact_damping_Ns_per_m", &s.contact_damping_Ns_per_m, -1000, 1000,
+       "damping that the device adds while the renderer commands a force, from measured positions; negative: the device drives the hand"},
+      {"velocity_ticks", &s.velocity_ticks, 1, 1000,
+       "ticks between the two positions whose difference is the measured velocity"},
+  };
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+std::string validate(const DeviceSettings& s) {
+  if (s.velocity_ticks != 1 && s.contact_damping_Ns_per_m == 0)
+    return "velocity_ticks = " + std::to_string(s.velocity_ticks) +
+           ": expected 1 without contact_damping_Ns_per_m, because nothing else uses the velocity";
+  return {};
+}
 
 namespace {
 

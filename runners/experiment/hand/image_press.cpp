@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/hand/image_frames.h"
+#include "runners/experiment/hand/image_surface.h"
 
 namespace remote_touch {
 

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "runners/experiment/hand/nearest_object.h"
-#include "runners/experiment/hand/surface_support.h"
+#include "runners/experiment/hand/image_surface.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
 

@@ -1,16 +1,89 @@
-// The hand that moves the device of a run: a script alone, or a simulated operator who follows it and feels
-// the device's motors.
+// A simulated hand: an operator who follows a script and feels the device, or the script alone.
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "analysis/trace/hand_and_slave_state.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
+#include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/hand/device_model.h"
-#include "runners/experiment/hand/operator_model.h"
+#include "runners/experiment/hand/held_motion.h"
 
 namespace remote_touch {
+
+// A simulated operator: the hand is a mass that springs and dampers pull to the intended path, and that the
+// device's force moves. The dissertation does not have this model, because its operators were people.
+
+struct OperatorSettings {
+  double mass_kg = 0.5;
+  double inertia_kg_m2 = 1e-3;
+  double stiffness_N_per_m = 300;
+  double damping_Ns_per_m = 15;
+  double rotational_stiffness_Nm_per_rad = 1;
+  double rotational_damping_Nms_per_rad = 0.05;
+  std::vector<double> grip{};
+  std::vector<double> presses{};
+};
+
+Parameters parameters(OperatorSettings& s);
+std::string validate(const OperatorSettings& s);
+
+// m x'' = f + g k (x_i - x) + c (g x_i' - x') - b x' - F_c sign(x'), with f the device's force, x_i the
+// intended position, g the grip, and b and F_c the damping and the dry friction of the device. The hand's
+// spring and damper to the intended position are g k and g c, and (1 - g) c damps the motion of a hand that
+// opens. Rotations have the same form. They are rotation vectors in world axes relative to the
+// pose at the beginning of the tick, and the inertia is inertia_kg_m2 about every axis.
+//
+// f and g are constant in a tick, and x_i is linear in time. The solution is exact (HeldForceStep, and
+// DryFrictionStep with friction; friction acts along every axis by itself). The
+// device is a zero-order hold, which adds energy to a hand that a spring pushes. So a stiff device can make
+// the hand unstable.
+class OperatorModel {
+ public:
+  // pre: validate(settings) is empty.
+  OperatorModel(const OperatorSettings& settings, double tick_s, const DeviceResistance& device = {});
+
+  // Returns the hand's pose at time_s. intended: the path's pose at time_s. device_wrench: the wrench that
+  // the device has exerted since the last call. If the last call was n ticks ago, the hand makes one step of
+  // n ticks. The first call puts the hand onto the path, at rest. Buttons come from the settings.
+  DeviceState move(const DeviceState& intended, double time_s, const Wrench& device_wrench);
+
+  // Returns the energies of the last step, translation plus rotation; zero before the second call. A change
+  // of the grip between two ticks adds energy to the springs: half the change of the stiffness times the
+  // squared distance. This energy is not included.
+  StepEnergy last_energy() const;
+
+ private:
+  // The step of the translation, or of the rotation, with the friction of the device.
+  struct Step {
+    Step(const MassOnSpring& system, double friction, double duration_s);
+    HeldForceStep::Motion motion(const HeldForceStep::Start& start) const;
+    StepEnergy energy(const HeldForceStep::Start& start) const;
+    HeldForceStep without_friction;
+    std::optional<DryFrictionStep> with_friction;  // none: the device has no dry friction
+  };
+  void prepare(double grip, double duration_s);
+  std::uint32_t buttons(double time_s) const;
+
+  const OperatorSettings s_;
+  const DeviceResistance device_;
+  const double tick_s_;
+  ToolPose pose_, intended_;  // poses at the last call
+  Vec3 velocity_ = Vec3::Zero(), angular_velocity_ = Vec3::Zero();
+  std::optional<double> last_time_s_;
+
+  // The last step, for translation and rotation, and the grip, duration and start for which it was computed.
+  std::optional<Step> step_, turning_step_;
+  double grip_ = 0, duration_s_ = 0;
+  HeldForceStep::Start start_, turning_start_;
+};
+
+// The hand that moves the device of a run: a script alone, or a simulated operator who follows it and feels
+// the device's motors.
 
 class SimulatedHand {
  public:

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "analysis/statistics/means_and_extremes.h"
-#include "runners/experiment/hand/device_motors.h"
+#include "runners/experiment/hand/device_model.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/hand/press.h"
+#include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/synthetic/moving_lift.h"
 #include "scenarios/synthetic/noisy_grid_search.h"

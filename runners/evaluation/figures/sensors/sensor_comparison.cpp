@@ -7,7 +7,7 @@
 #include "analysis/statistics/means_and_extremes.h"
 #include "core/numeric/order_statistic.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/hand/image_frames.h"
+#include "runners/experiment/hand/image_surface.h"
 #include "scenarios/recordings/recorded_scene.h"
 
 namespace remote_touch {

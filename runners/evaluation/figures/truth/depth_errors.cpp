@@ -7,7 +7,7 @@
 #include "core/geometry/rotation.h"
 #include "core/numeric/order_statistic.h"
 #include "runners/evaluation/figures/truth/true_contacts.h"
-#include "runners/experiment/hand/image_frames.h"
+#include "runners/experiment/hand/image_surface.h"
 
 namespace remote_touch {
 

@@ -9,8 +9,7 @@
 
 #include "core/search/neighbour_search.h"
 #include "runners/experiment/catalog/frame_stream.h"
-#include "runners/experiment/hand/image_frames.h"
-#include "runners/experiment/hand/surface_support.h"
+#include "runners/experiment/hand/image_surface.h"
 #include "scenarios/recordings/measured_surface.h"
 
 namespace remote_touch {

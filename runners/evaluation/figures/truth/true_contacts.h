@@ -41,7 +41,7 @@ struct TouchedPoint {
 
 // Returns the touched points of at most `most` objects, those first that fill the most pixels. The camera has
 // measured a point within 30 mm of the true depth there, at least 10 mm from holes and depth edges
-// (surface_support.h), and sees the mesh at 60 degrees or less from its normal. Points whose surroundings are
+// (image_surface.h), and sees the mesh at 60 degrees or less from its normal. Points whose surroundings are
 // flat, within 3 mm up to a distance of 15 mm, are preferred. An object without such a pixel is left out.
 // Throws InputError if the frame is not an image. Pre: scene.truth() is not null.
 std::vector<TouchedPoint> touched_points(const RecordedScene& scene, int frame, std::size_t most);

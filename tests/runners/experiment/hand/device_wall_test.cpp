@@ -8,7 +8,7 @@
 #include <random>
 
 #include "runners/experiment/hand/device_model.h"
-#include "runners/experiment/hand/operator_model.h"
+#include "runners/experiment/hand/simulated_hand.h"
 #include "tests/runners/experiment/hand/held_motion_oracle.h"
 
 namespace remote_touch::device_wall_test {

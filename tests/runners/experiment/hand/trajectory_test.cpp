@@ -7,11 +7,8 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/hand/follow_surface.h"
 #include "runners/experiment/hand/image_scan.h"
-#include "runners/experiment/hand/polyline_path.h"
-#include "runners/experiment/hand/press.h"
-#include "runners/experiment/hand/waypoints.h"
+#include "runners/experiment/hand/scripted_motions.h"
 #include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/camera_scene.h"
 #include "scenarios/synthetic/flat_grid.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "runners/experiment/hand/held_force_step.h"
-#include "runners/experiment/hand/operator_model.h"
+#include "runners/experiment/hand/held_motion.h"
+#include "runners/experiment/hand/simulated_hand.h"
 #include "tests/runners/experiment/hand/held_motion_oracle.h"
 
 namespace remote_touch::virtual_wall_test {

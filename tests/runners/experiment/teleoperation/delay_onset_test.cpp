@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "analysis/theory/haptic_loops.h"
-#include "runners/experiment/hand/operator_model.h"
+#include "runners/experiment/hand/simulated_hand.h"
 #include "runners/experiment/teleoperation/teleoperation.h"
 
 namespace remote_touch::delay_onset_test {

@@ -1,11 +1,14 @@
-// The exact motion of a mass on a spring and dampers during one tick. The force on the mass is held, and the
-// path that the mass follows moves at constant velocity. This models a hand whose device holds its force for
-// a tick.
+// The exact motion of a hand during one tick, in which its device holds the force: without and with dry
+// friction.
 #pragma once
 
 #include "core/geometry/vector.h"
 
 namespace remote_touch {
+
+// The exact motion of a mass on a spring and dampers during one tick. The force on the mass is held, and the
+// path that the mass follows moves at constant velocity. This models a hand whose device holds its force for
+// a tick.
 
 // m x'' = F + k (p - x) + c_p (p' - x') - c_g x' along every axis; p is the path. SI units. For rotations x
 // and p are rotation vectors, m is the moment of inertia, F is the torque, and k, c_p and c_g are the
@@ -42,7 +45,7 @@ struct StepEnergy {
 //   phi' = 1 - w psi - d phi,   r = (F + k (p(0) - x(0)) + c_p p') / m.
 //
 // The errors of phi, psi and chi, relative to their largest values in [0, T], and the error of phi', relative
-// to 1, are below 1e-13 for sqrt(w) T <= 32 and (d + sqrt(w)) T < 2^18. held_force_step.cpp has the
+// to 1, are below 1e-13 for sqrt(w) T <= 32 and (d + sqrt(w)) T < 2^18. held_motion.cpp has the
 // derivation. One tick of every hand that the settings accept is within these limits.
 class HeldForceStep {
  public:
@@ -74,6 +77,36 @@ class HeldForceStep {
   double w_, d_;
   double phi_, psi_, chi_;
   double slope_;  // phi'(T)
+};
+
+// The exact motion of a mass on a spring and dampers with dry (Coulomb) friction during one tick. Like
+// HeldForceStep, this models a hand whose device holds its force for a tick; the joints of the device rub.
+
+// m x'' = F + k (p - x) + c_p (p' - x') - c_g x' - F_c sign(x') along every axis, each axis by itself. A mass
+// at rest stays at rest while the other forces on an axis are at most F_c. For rotations F_c is a torque.
+class DryFrictionStep {
+ public:
+  // pre: as for HeldForceStep; friction >= 0.
+  DryFrictionStep(const MassOnSpring& system, double friction, double duration_s);
+
+  // A tick is divided at every time at which the velocity of an axis becomes 0 or a mass at rest starts to
+  // move. Between them the motion is that of HeldForceStep. The times are found by bisection, down to the
+  // resolution of a double. The velocity is exactly 0 after a stop.
+  HeldForceStep::Motion motion(const HeldForceStep::Start& start) const;
+  // Returns the energies of the step. Gained plus dissipated energy is the supplied energy, within rounding.
+  StepEnergy energy(const HeldForceStep::Start& start) const;
+
+ private:
+  struct Axis;
+  void advance(Axis& axis, StepEnergy* energy) const;
+  void rest(Axis& axis, double duration_s, StepEnergy* energy) const;
+  void slide(Axis& axis, double direction, double duration_s, StepEnergy* energy) const;
+  Axis after(const Axis& axis, double direction, double duration_s) const;
+  double acceleration(const Axis& axis, double direction) const;
+  double sliding_time(const Axis& axis, double direction, double longest_s) const;
+
+  MassOnSpring system_;
+  double friction_, duration_s_;
 };
 
 }  // namespace remote_touch
