@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/geometry/rotation.h"
-#include "runners/experiment/mesh_files/recording_with_truth.h"
+#include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "scenarios/meshes/mesh_scene.h"
 #include "tests/core/mesh/mesh_shapes.h"
 #include "tests/support/meshes.h"

@@ -1,6 +1,6 @@
 // The counts that the header of a PLY file claims are checked against the size of the file before any library
 // reads it.
-#include "runners/experiment/mesh_files/ply_header.h"
+#include "runners/experiment/mesh_files/ply_file.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch::ply_header_test {
+namespace remote_touch::ply_file_test {
 namespace {
 
 std::string header(const std::string& format, const std::string& vertices, const std::string& faces) {
@@ -61,4 +61,4 @@ TEST_F(PlyHeader, InvalidCountsAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch::ply_header_test
+}  // namespace remote_touch::ply_file_test

@@ -1,4 +1,4 @@
-// The header of a PLY file. Checks that it ends, and that the file is long enough for its counts.
+// Checks of PLY files, whose data the library that reads them does not compare with the header.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace remote_touch {
+
+// The header of a PLY file. Checks that it ends, and that the file is long enough for its counts.
 
 // The property as written in the file: types may be unknown.
 struct PlyProperty {
@@ -41,5 +43,14 @@ std::size_t size_of_ply(std::string_view type);
 
 // Returns the problem of the header in one line; empty if there is none.
 std::string ply_problem(const std::filesystem::path& file);
+
+// The data of a PLY file, which the library that reads it does not compare with the header.
+
+// Returns the file with the vertices first, as the library needs them, and without empty lines. The other
+// elements keep their order. pre: ply_problem() finds none. Throws std::runtime_error for a format or a type
+// that is unknown, for data that end before the last element, and for anything but blanks after it. Each
+// element of a text must be a line with all its values and no others, and with integers if the type is an
+// integer type; the message then has the number of the line.
+std::string with_vertices_first(const std::string& ply);
 
 }  // namespace remote_touch
