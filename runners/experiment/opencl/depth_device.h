@@ -9,7 +9,7 @@
 
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
-#include "runners/experiment/opencl/device_trial.h"
+#include "runners/experiment/opencl/device_pipeline.h"
 
 namespace remote_touch {
 

@@ -1,12 +1,99 @@
 #include "runners/experiment/opencl/opencl_devices.h"
 
 #include <atomic>
-#include <memory>
-#include <mutex>
-
-#include "runners/experiment/opencl/deadline_thread.h"
+#include <thread>
 
 namespace remote_touch {
+namespace {
+
+const SharedLibrary::Lookup kOpenClLibrary{
+    {"libOpenCL.so.1"},
+    "REMOTE_TOUCH_LIBOPENCL",
+    "the OpenCL loader (Debian: ocl-icd-libopencl1); a device comes with its driver (Debian: "
+    "pocl-opencl-icd for the processor)"};
+
+struct NamedCode {
+  cl_int code;
+  const char* name;
+};
+constexpr NamedCode kCodes[] = {
+    {CL_DEVICE_NOT_FOUND, "CL_DEVICE_NOT_FOUND"},
+    {CL_DEVICE_NOT_AVAILABLE, "CL_DEVICE_NOT_AVAILABLE"},
+    {CL_COMPILER_NOT_AVAILABLE, "CL_COMPILER_NOT_AVAILABLE"},
+    {CL_MEM_OBJECT_ALLOCATION_FAILURE, "CL_MEM_OBJECT_ALLOCATION_FAILURE"},
+    {CL_OUT_OF_RESOURCES, "CL_OUT_OF_RESOURCES"},
+    {CL_OUT_OF_HOST_MEMORY, "CL_OUT_OF_HOST_MEMORY"},
+    {CL_BUILD_PROGRAM_FAILURE, "CL_BUILD_PROGRAM_FAILURE"},
+    {CL_INVALID_VALUE, "CL_INVALID_VALUE"},
+    {CL_INVALID_COMMAND_QUEUE, "CL_INVALID_COMMAND_QUEUE"},
+    {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},  // the loader returns it if no driver is installed
+};
+
+}  // namespace
+
+OpenClLibrary::OpenClLibrary() : library_(kOpenClLibrary) {
+#define REMOTE_TOUCH_FIND(name) library_.find("cl" #name, name);
+  REMOTE_TOUCH_OPENCL_FUNCTIONS(REMOTE_TOUCH_FIND)
+#undef REMOTE_TOUCH_FIND
+}
+
+const OpenClLibrary& opencl_library() {
+  // The library is never freed, because drivers leave threads behind, and objects may be released late.
+  static std::mutex mutex;
+  static const OpenClLibrary* one = nullptr;
+  const std::lock_guard lock(mutex);
+  if (one == nullptr) one = new OpenClLibrary;
+  return *one;
+}
+
+void require(cl_int code, const char* function) {
+  if (code == CL_SUCCESS) return;
+  const char* name = "OpenCL error";
+  for (const NamedCode& each : kCodes)
+    if (each.code == code) name = each.name;
+  throw OpenClError(std::string(function) + ": " + name + " (" + std::to_string(code) + ")");
+}
+
+DeadlineThread::DeadlineThread() : shared_(std::make_shared<Shared>()) {
+  // The thread is detached, because a thread that hangs can never be joined.
+  std::thread([shared = shared_] { serve(shared); }).detach();
+}
+
+DeadlineThread::~DeadlineThread() {
+  const std::lock_guard lock(shared_->mutex);
+  shared_->is_over = true;
+  shared_->changed.notify_all();
+}
+
+void DeadlineThread::serve(const std::shared_ptr<Shared>& shared) {
+  std::unique_lock lock(shared->mutex);
+  for (;;) {
+    shared->changed.wait(lock, [&] { return shared->work || shared->is_over; });
+    if (!shared->work) return;
+    const std::function<void()> work = shared->work;
+    lock.unlock();
+    std::exception_ptr thrown;
+    try {
+      work();
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    lock.lock();
+    shared->thrown = thrown;
+    shared->work = nullptr;
+    shared->changed.notify_all();
+  }
+}
+
+bool DeadlineThread::run(std::function<void()> work, std::chrono::milliseconds limit) {
+  std::unique_lock lock(shared_->mutex);
+  shared_->work = std::move(work);
+  shared_->changed.notify_all();
+  if (!shared_->changed.wait_for(lock, limit, [&] { return !shared_->work; })) return false;
+  if (const std::exception_ptr thrown = std::exchange(shared_->thrown, nullptr))
+    std::rethrow_exception(thrown);
+  return true;
+}
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/opencl/built_kernels.h"
 #include "runners/experiment/opencl/depth_device.h"
+#include "runners/experiment/opencl/device_frames.h"
 #include "runners/experiment/opencl/device_pipeline.h"
 #include "runners/experiment/opencl/opencl_devices.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
