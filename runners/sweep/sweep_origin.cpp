@@ -4,8 +4,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/input_hashes.h"
-#include "runners/experiment/provenance/recipe.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/configuration_difference.h"
 
 namespace remote_touch {

@@ -3,7 +3,6 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
 #include "core/kernels/isa.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/sweep_notes.h"

@@ -7,7 +7,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_origin.h"
 

@@ -19,7 +19,6 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/spread.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/configuration_difference.h"
 #include "runners/experiment/settings/json_parameters.h"

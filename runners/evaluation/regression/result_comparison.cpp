@@ -13,7 +13,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/measure_comparison.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/configuration_difference.h"
 #include "runners/experiment/settings/renamed_names.h"
 #include "runners/experiment/settings/stored_configuration.h"

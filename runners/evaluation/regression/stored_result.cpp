@@ -5,9 +5,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/result_comparison.h"
-#include "runners/experiment/provenance/maker.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/provenance/shell_command.h"
 #include "runners/experiment/settings/configuration_difference.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"

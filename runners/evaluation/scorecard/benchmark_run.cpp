@@ -7,7 +7,6 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"

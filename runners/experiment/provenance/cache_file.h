@@ -1,7 +1,7 @@
-// Cache files of objects that take long to make: a line with their kind, the key that they were made for,
-// their fields as in memory (a cache never leaves its machine), and the SHA-256 of all that.
+// Cache files of objects that take long to make, their folder, and its size.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -10,6 +10,37 @@
 #include "analysis/storage/packed_values.h"
 
 namespace remote_touch {
+
+// The folder of the cache.
+
+// Returns the folder that the environment variable REMOTE_TOUCH_CACHE names. If it is not set, returns the
+// folder remote-touch in XDG_CACHE_HOME, or in .cache of HOME. The path is empty if none of these variables
+// is set.
+std::filesystem::path cache_folder();
+
+// The size of the cache folder, which is bounded: tools of many variants of a mesh would fill the disk.
+
+struct CacheSize {
+  std::size_t files = 0;
+  std::uintmax_t bytes = 0;
+};
+
+// Returns the maximum size of the cache folder: the environment variable REMOTE_TOUCH_CACHE_MB, or 512 MB if
+// it is not set. Throws InputError if it is not a number of megabytes.
+std::uintmax_t max_cache_bytes();
+
+CacheSize cache_size(const std::filesystem::path& folder);
+
+// Removes temporary files of programs that were killed while they wrote them, if they were not used for an
+// hour.
+void remove_abandoned(const std::filesystem::path& folder);
+
+// Removes these temporary files, and then the cache files that were used longest ago, until their size is at
+// most max_bytes. Other files are kept. Returns the number and size of the cache files that are left.
+CacheSize shrink_cache(const std::filesystem::path& folder, std::uintmax_t max_bytes);
+
+// Cache files of objects that take long to make: a line with their kind, the key that they were made for,
+// their fields as in memory (a cache never leaves its machine), and the SHA-256 of all that.
 
 // Packs into a hash, and into a file if one is given.
 class CacheWriter final : public Packer {

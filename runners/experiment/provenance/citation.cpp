@@ -7,7 +7,6 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/provenance/shell_command.h"
 
 namespace remote_touch {
 

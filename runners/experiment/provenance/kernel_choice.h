@@ -5,12 +5,46 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/kernels/kernels.h"
-#include "runners/experiment/provenance/level_timing.h"
 
 namespace remote_touch {
+
+// The speeds of the kernel levels on this processor, and the choice of a level. A higher level is not always
+// faster: AVX-512 makes some processors no faster, or even slower.
+
+// Some ten microseconds of work with given kernels.
+struct KernelTask {
+  std::string name;
+  std::function<void(const Kernels&)> run;
+};
+
+// One time for each level, in rising order of the levels, s: the geometric mean, over the tasks, of the
+// shortest time of a task.
+using LevelTimes = std::vector<double>;
+
+// Measures the tasks with all levels until max_s have passed; each is run three times at least, 20 times at
+// most. Levels and tasks take turns, so that a disturbance of the machine affects all of them. now_s: a
+// clock, in s, that does not go back.
+LevelTimes time_levels(std::span<const Kernels* const> levels, std::span<const KernelTask> tasks,
+                       const std::function<double()>& now_s, double max_s);
+
+// The factor by which a higher level must be faster to be preferred to a lower one: about the scatter of the
+// measurement. At equal times the lower one is better, because wide vectors can slow down the code around
+// them.
+inline constexpr double kClearlyFaster = 1.03;
+
+// Returns the index of the level to use. pre: times is not empty.
+std::size_t fastest_level(const LevelTimes& times);
+
+// Small pieces of the work that takes most time: steps of the proxy, noise, disks of a tool, and two rows of
+// the depth pipeline.
+
+// Returns the tasks. Their inputs are made once. The tasks share nothing and write to memory of their own.
+std::vector<KernelTask> representative_tasks();
 
 // Measures all levels that this machine has. This takes about 6 ms, and 10 ms on a slow machine.
 LevelTimes time_supported_levels();

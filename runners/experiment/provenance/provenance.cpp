@@ -1,12 +1,37 @@
 #include "runners/experiment/provenance/provenance.h"
 
+#include <algorithm>
 #include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "analysis/storage/digest.h"
 #include "build_info.h"  // written by the build: version, commit, compiler, flags
-#include "runners/experiment/provenance/input_hashes.h"
-#include "runners/experiment/provenance/shell_command.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
+namespace {
+
+bool is_plain(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) ||
+         std::string("_-./=,:+%@").find(c) != std::string::npos;
+}
+
+std::string quoted(const std::string& word) {
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
+  std::string safe = "'";
+  for (const char c : word) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return safe + "'";
+}
+
+}  // namespace
+
+std::string shell_command(const std::vector<std::string>& words) {
+  std::string command;
+  for (const std::string& word : words) command.append(command.empty() ? "" : " ").append(quoted(word));
+  return command;
+}
 
 namespace {
 
@@ -88,6 +113,227 @@ TextAttributes provenance(const std::string& config, const Recipe& recipe, const
   TextAttributes list = provenance(config, command_text(recipe), isa, inputs);
   list.insert(list.begin() + 2, {kRecipe, to_json(recipe)});
   return list;
+}
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+void add_options(Words& words, const char* option, const Words& values) {
+  for (const std::string& value : values) words.insert(words.end(), {option, value});
+}
+
+std::string cell_text(const Recipe& recipe) {
+  std::string text;
+  for (const std::size_t place : recipe.cell)
+    text.append(text.empty() ? "" : ",").append(std::to_string(place));
+  return text;
+}
+
+// Accepts integers only. The library would convert any number.
+void take_integer(const Json& json, const char* name, int& value) {
+  const auto found = json.find(name);
+  if (found == json.end()) return;
+  const auto number = found->is_number_integer() ? found->get<std::int64_t>() : -1;
+  if (number < 0 || number > std::numeric_limits<int>::max())
+    throw InputError(std::string(kRecipe) + "." + name, "expected an integer");
+  value = static_cast<int>(number);
+}
+
+void take_cell(const Json& json, std::vector<std::size_t>& cell) {
+  const auto found = json.find("cell");
+  if (found == json.end()) return;
+  for (const Json& place : found->get_ref<const Json::array_t&>()) {
+    if (!place.is_number_unsigned()) throw InputError(std::string(kRecipe) + ".cell", "expected integers");
+    cell.push_back(place.get<std::size_t>());
+  }
+}
+
+Recipe recipe_in(const Json& json) {
+  Recipe recipe{json.at("action").get<std::string>(), json.at("subject").get<std::string>()};
+  recipe.overrides = json.value("set", Words()), recipe.tolerances = json.value("tolerances", Words());
+  recipe.candidate = json.value("candidate", std::string());
+  take_cell(json, recipe.cell);
+  take_integer(json, "replicate", recipe.replicate), take_integer(json, "coarse", recipe.coarse);
+  return recipe;
+}
+
+bool is_known(const std::string& action) {
+  constexpr const char* kActions[] = {"run", "sweep", "replay", "figure", "compare"};
+  return std::find(std::begin(kActions), std::end(kActions), action) != std::end(kActions);
+}
+
+}  // namespace
+
+std::vector<Words> commands(const Recipe& recipe) {
+  const bool is_replay = recipe.action == "replay";
+  Words words = program_words();
+  words.insert(words.end(), {is_replay ? "sweep" : recipe.action, recipe.subject});
+  if (recipe.action == "compare") words.push_back(recipe.candidate);
+  add_options(words, "--set", recipe.overrides);
+  add_options(words, "--tolerance", recipe.tolerances);
+  if (recipe.coarse != 1) add_options(words, "--coarse", {std::to_string(recipe.coarse)});
+  if (!is_replay) return {words};
+  Words again = program_words();
+  again.insert(again.end(),
+               {"replay", "--cell", cell_text(recipe), "--replicate", std::to_string(recipe.replicate)});
+  return {words, again};
+}
+
+std::string command_text(const Recipe& recipe) {
+  std::string text;
+  for (const Words& words : commands(recipe))
+    text.append(text.empty() ? "" : "; ").append(shell_command(words));
+  return text;
+}
+
+std::string to_json(const Recipe& recipe) {
+  Json json = {{"action", recipe.action}, {"subject", recipe.subject}};
+  if (!recipe.overrides.empty()) json["set"] = recipe.overrides;
+  if (recipe.action == "replay") json["cell"] = recipe.cell, json["replicate"] = recipe.replicate;
+  if (recipe.coarse != 1) json["coarse"] = recipe.coarse;
+  if (recipe.action == "compare") json["candidate"] = recipe.candidate;
+  if (!recipe.tolerances.empty()) json["tolerances"] = recipe.tolerances;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // names of files need not be UTF-8
+}
+
+std::optional<Recipe> recipe_of(const TextAttributes& attributes) {
+  try {
+    const Json json = json_or_none(attribute(attributes, kRecipe), kRecipe).value_or(Json());
+    Recipe recipe = recipe_in(json);
+    if (is_known(recipe.action)) return recipe;
+  } catch (const Json::exception&) {  // a field is missing, or of another kind
+  } catch (const InputError&) {
+  }
+  return {};
+}
+
+namespace {
+
+bool is_loaded(const std::string& sha256) {
+  const std::vector<ProgramIdentity::Plugin>& loaded = program_identity().plugins;
+  return std::any_of(loaded.begin(), loaded.end(),
+                     [&](const ProgramIdentity::Plugin& plugin) { return plugin.sha256 == sha256; });
+}
+
+// plugins: a line "FILE: sha256 HASH" for each.
+bool are_loaded(const std::string& plugins) {
+  std::istringstream lines(plugins);
+  for (std::string line; std::getline(lines, line);)
+    if (!is_loaded(line.substr(line.rfind(' ') + 1))) return false;
+  return true;
+}
+
+}  // namespace
+
+std::string other_maker(const TextAttributes& result) {
+  const std::string program = attribute(result, "program"), plugins = attribute(result, "plugins");
+  if (!program.empty() && program != program_identity().name)
+    return "was made by " + program + ", which has entries of its own: expected that program";
+  if (!are_loaded(plugins)) return "was made with plug-ins: expected --plugin for each of\n" + plugins;
+  return {};
+}
+
+void InputHashes::add(const std::vector<RecordingPart>& parts) {
+  for (const RecordingPart& part : parts)
+    if (parts_.count(part) == 0) read(part);
+}
+
+void InputHashes::read(const RecordingPart& part) {
+  const std::vector<InputFile> files = files_of(part);  // throws before anything is stored
+  auto& known = recordings_[part.path];
+  for (const auto& [name, file] : files) {
+    if (known.count(name) > 0) continue;
+    const std::string sum = sha256_of_file(file);
+    std::error_code failure;
+    const std::uintmax_t size = std::filesystem::file_size(file, failure);
+    if (failure) throw InputError(file.string(), "cannot be read (" + failure.message() + ")");
+    known[name] = {sum, size};
+  }
+  parts_.insert(part);
+}
+
+std::string InputHashes::text() const {
+  std::string text;
+  for (const auto& [path, files] : recordings_) {
+    std::vector<std::string> lines;
+    std::uintmax_t bytes = 0;
+    for (const auto& [name, file] : files) {
+      const std::string plain = in_one_line(name);
+      // sha256sum puts a backslash in front of a line whose file name it has changed.
+      lines.push_back((plain == name ? "" : "\\") + file.sha256 + "  " + plain);
+      bytes += file.size;
+    }
+    std::sort(lines.begin(), lines.end());
+    Sha256 hash;
+    for (const std::string& line : lines) hash.add((line + "\n").data(), line.size() + 1);
+    if (!text.empty()) text += '\n';
+    text += in_one_line(path) + ": " + std::to_string(files.size()) + " file(s), " + std::to_string(bytes) +
+            " bytes, sha256 " + hash.hex();
+  }
+  return text;
+}
+
+std::string input_hashes(const std::vector<RecordingPart>& parts) {
+  InputHashes hashes;
+  hashes.add(parts);
+  return hashes.text();
+}
+
+std::string in_one_line(const std::string& name) {
+  std::string line;
+  for (const char c : name) {
+    if (c == '\\')
+      line += "\\\\";
+    else if (c == '\n')
+      line += "\\n";
+    else if (c == '\r')
+      line += "\\r";
+    else
+      line += c;
+  }
+  return line;
+}
+
+namespace {
+
+// Returns a map from the path in each line to the rest of the line.
+std::map<std::string, std::string> by_path(const std::string& text) {
+  std::map<std::string, std::string> lines;
+  std::istringstream stream(text);
+  stream.exceptions(std::ios::badbit);  // throws if memory runs out, which would look like the end
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t end = std::min(line.rfind(": "), line.size());
+    lines[line.substr(0, end)] = line.substr(std::min(end + 2, line.size()));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<ChangedInput> changed_inputs(const std::string& before, const std::string& now) {
+  const auto then = by_path(before), later = by_path(now);
+  std::vector<ChangedInput> changed;
+  for (const auto& [path, line] : then) {
+    const auto same = later.find(path);
+    if (same == later.end() || same->second != line)
+      changed.push_back({path, line, same == later.end() ? "absent" : same->second});
+  }
+  for (const auto& [path, line] : later)
+    if (then.count(path) == 0) changed.push_back({path, "absent", line});
+  return changed;
+}
+
+void InputHashes::require_unchanged() const {
+  remote_touch::require_unchanged({parts_.begin(), parts_.end()}, text());
+}
+
+void require_unchanged(const std::vector<RecordingPart>& parts, const std::string& before) {
+  const std::vector<ChangedInput> changed = changed_inputs(before, input_hashes(parts));
+  if (changed.empty()) return;
+  const ChangedInput& first = changed.front();
+  throw InputError(first.path, "changed while it was read (" + first.before + "; now " + first.now +
+                                   "): expected files that no program writes during the run");
 }
 
 }  // namespace remote_touch

@@ -5,7 +5,7 @@
 #include "analysis/storage/digest.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
-#include "runners/experiment/provenance/cache_folder.h"
+#include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/tool_files/spheres_cache.h"
 #include "runners/experiment/tool_files/tool_cache.h"
 

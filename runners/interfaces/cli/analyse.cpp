@@ -6,7 +6,6 @@
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/provenance/shell_command.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/presentation/export/csv_files.h"

@@ -2,8 +2,7 @@
 
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/cache_folder.h"
-#include "runners/experiment/provenance/cache_size.h"
+#include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/provenance/kernel_choice.h"
 #include "runners/interfaces/cli/commands.h"
 

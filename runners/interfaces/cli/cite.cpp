@@ -8,7 +8,6 @@
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/experiment/provenance/citation.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/provenance/shell_command.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
 #include "scenarios/text_files/json_text.h"

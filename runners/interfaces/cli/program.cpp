@@ -15,7 +15,7 @@
 
 #include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/cache_folder.h"
+#include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/provenance/kernel_choice.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"

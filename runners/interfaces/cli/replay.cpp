@@ -7,8 +7,6 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/input_hashes.h"
-#include "runners/experiment/provenance/maker.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"

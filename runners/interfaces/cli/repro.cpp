@@ -10,8 +10,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/stored_result.h"
-#include "runners/experiment/provenance/input_hashes.h"
-#include "runners/experiment/provenance/maker.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/figure_runs.h"

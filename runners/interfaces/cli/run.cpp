@@ -7,7 +7,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/main_measures.h"
 #include "runners/experiment/simulation/simulation.h"

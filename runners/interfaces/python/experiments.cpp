@@ -13,7 +13,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -8,7 +8,6 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"

@@ -11,7 +11,6 @@
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/recipe.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

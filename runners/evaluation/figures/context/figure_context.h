@@ -8,7 +8,7 @@
 #include "analysis/figures/figure.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/provenance/input_hashes.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_notes.h"
@@ -81,7 +81,7 @@ class FigureContext {
   // Returns the resolved configuration of every run(), uses() and sweep, and of the first experiment of every
   // measure() of experiments, as a JSON list.
   std::string configurations() const;
-  // Returns the hashes of the recordings that all of them read, see input_hashes.h.
+  // Returns the hashes of the recordings that all of them read, see provenance.h.
   std::string inputs() const { return inputs_.text(); }
   void require_unchanged_inputs() const { inputs_.require_unchanged(); }
   // Returns the counts of the notes on all runs, one line for each kind.

@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "runners/experiment/provenance/cache_file.h"
-#include "runners/experiment/provenance/input_hashes.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 #include "scenarios/recordings/recording_part.h"

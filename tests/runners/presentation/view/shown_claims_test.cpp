@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runners/experiment/provenance/recipe.h"
+#include "runners/experiment/provenance/provenance.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::shown_claims_test {

@@ -1,5 +1,4 @@
-// The folder of the cache is bounded: what was used longest ago goes first.
-#include "runners/experiment/provenance/cache_size.h"
+#include "runners/experiment/provenance/cache_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -10,11 +9,27 @@
 #include <new>
 #include <string>
 
-#include "runners/experiment/provenance/cache_file.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::cache_size_test {
+namespace remote_touch::cache_file_test {
 namespace {
+
+TEST(CacheFolder, IsTakenFromTheEnvironment) {
+  ::setenv("REMOTE_TOUCH_CACHE", "/c", 1);
+  EXPECT_EQ(cache_folder(), "/c");
+  ::unsetenv("REMOTE_TOUCH_CACHE");
+  const char* home = std::getenv("HOME");
+  const std::string kept = home != nullptr ? home : "";
+  ::unsetenv("XDG_CACHE_HOME"), ::setenv("HOME", "/h", 1);
+  EXPECT_EQ(cache_folder(), "/h/.cache/remote-touch");
+  ::setenv("XDG_CACHE_HOME", "/x", 1);
+  EXPECT_EQ(cache_folder(), "/x/remote-touch");
+  ::unsetenv("XDG_CACHE_HOME"), ::unsetenv("HOME");
+  EXPECT_EQ(cache_folder(), "");
+  if (home != nullptr) ::setenv("HOME", kept.c_str(), 1);
+}
+
+// The folder of the cache is bounded: what was used longest ago goes first.
 
 void take(Unpacker& unpack) {
   std::string text;
@@ -127,4 +142,4 @@ TEST_F(CacheSizeTest, TheMaximumIsTakenFromTheEnvironment) {
 }
 
 }  // namespace
-}  // namespace remote_touch::cache_size_test
+}  // namespace remote_touch::cache_file_test
