@@ -15,7 +15,6 @@
 #include "runners/experiment/hand/simulated_hand.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/sessions/live_settings.h"
-#include "runners/experiment/sessions/safety_limits.h"
 #include "runners/experiment/teleoperation/teleoperation_settings.h"
 #include "scenarios/camera/sensor_faults.h"
 

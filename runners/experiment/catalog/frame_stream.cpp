@@ -9,7 +9,7 @@
 #include "analysis/trace/hash64.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/configuration.h"
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/text_files/json_text.h"

@@ -6,7 +6,7 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "runners/experiment/sessions/sensed_points.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording_part.h"

@@ -13,7 +13,7 @@
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/column.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/sessions/unfinished_session.h"
+#include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/sessions/unfinished_session.h"
+#include "runners/experiment/sessions/session_recorder.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 

@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "runners/experiment/sessions/safety_limits.h"
+#include "runners/experiment/sessions/live_settings.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

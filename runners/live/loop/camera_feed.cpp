@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "runners/experiment/catalog/frame_stream.h"
-#include "runners/experiment/sessions/sensed_points.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/live/loop/servo.h"
 #include "runners/live/sensors/depth_source.h"
 

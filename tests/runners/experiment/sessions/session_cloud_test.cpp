@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "tests/support/test_files.h"
 

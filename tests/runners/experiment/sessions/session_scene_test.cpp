@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "tests/runners/experiment/sessions/small_session.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "tests/doubles/depth_libraries.h"
 #include "tests/support/test_files.h"
 

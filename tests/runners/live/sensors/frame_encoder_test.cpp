@@ -11,7 +11,7 @@
 #include "core/geometry/colour.h"
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::frame_encoder_test {

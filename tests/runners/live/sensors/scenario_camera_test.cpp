@@ -5,7 +5,7 @@
 
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/live/sensors/replaceable_scenario.h"
 #include "scenarios/camera/sensor_faults.h"
 #include "tests/doubles/simulated_clock.h"

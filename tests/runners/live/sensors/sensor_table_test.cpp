@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "runners/experiment/sessions/sensor_cloud.h"
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
