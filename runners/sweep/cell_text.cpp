@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/settings/renamed_names.h"
+#include "runners/experiment/settings/stored_configuration.h"
 
 namespace remote_touch {
 

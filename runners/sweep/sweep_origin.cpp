@@ -5,7 +5,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/settings/configuration_difference.h"
+#include "runners/experiment/settings/changed_settings.h"
 
 namespace remote_touch {
 

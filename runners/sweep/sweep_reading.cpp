@@ -6,7 +6,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/settings/renamed_names.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {

@@ -1,7 +1,7 @@
 // Fig 4.12: a noisy cloud is lifted with acceleration.
 
 #include "runners/evaluation/figures/pop_through_map.h"
-#include "runners/experiment/settings/second_implementation.h"
+#include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {
 

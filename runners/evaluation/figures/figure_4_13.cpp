@@ -6,7 +6,7 @@
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/limit.h"
 #include "runners/evaluation/figures/pop_through_map.h"
-#include "runners/experiment/settings/second_implementation.h"
+#include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {
 

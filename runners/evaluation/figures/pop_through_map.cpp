@@ -10,7 +10,7 @@
 #include "analysis/statistics/interval_estimates.h"
 #include "analysis/statistics/means_and_extremes.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/settings/second_implementation.h"
+#include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {
 

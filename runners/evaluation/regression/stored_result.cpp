@@ -6,7 +6,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/settings/configuration_difference.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/sweep_answer.h"

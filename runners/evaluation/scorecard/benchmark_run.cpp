@@ -8,7 +8,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/settings/file_refusal.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/sweep/sweep_session.h"
 #include "scenarios/recordings/recording_part.h"

@@ -22,7 +22,7 @@
 #include "core/rivals/proxy_variants.h"
 #include "core/rivals/surfel_renderer.h"
 #include "runners/experiment/catalog/factory.h"
-#include "runners/experiment/settings/renamed_names.h"
+#include "runners/experiment/settings/stored_configuration.h"
 
 namespace remote_touch {
 

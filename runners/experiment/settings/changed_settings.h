@@ -1,4 +1,4 @@
-// Settings on top of a configuration: those of --set, of a sweep's `set`, and of a cell.
+// Settings on top of a configuration, and the differences between two configurations.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,8 @@
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
+
+// Settings on top of a configuration: those of --set, of a sweep's `set`, and of a cell.
 
 // Path and value.
 using ChangedSetting = std::pair<std::string, Json>;
@@ -40,5 +42,13 @@ std::vector<ChangedSetting> changes_of(const Json& before, const std::vector<std
 
 // Applies the assignments to a configuration and names them in its title. Throws InputError.
 void apply_overrides(Json& configuration, const std::vector<std::string>& assignments);
+
+// Differences between two resolved configurations.
+
+// Returns one text for each difference, such as "renderer.r3_m 0.0075 against 0.007575". Titles are not
+// compared, nor are those of the experiments of two sweeps. A long value is shortened, but the first place
+// at which it differs is shown. first and second are JSON texts. Throws InputError for a text that is not
+// JSON.
+std::vector<std::string> configuration_differences(const std::string& first, const std::string& second);
 
 }  // namespace remote_touch

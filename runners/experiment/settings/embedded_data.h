@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace remote_touch {
 
@@ -26,5 +27,14 @@ bool is_stored(std::span<const EmbeddedText> stored, const std::string& name);
 // kind: words for its message, such as "an experiment's".
 std::string embedded_or_file(std::span<const EmbeddedText> stored, const std::string& name_or_file,
                              const std::string& kind);
+
+// Numbers that the second implementation (tests/second_implementation) computes from the equations, for
+// claims to compare with. Its tables are data/second_implementation/*.json, so no number is copied by hand.
+
+// Returns a number by the name of the table and its path in it: ("chapter_5", "/crossing/max_force_N").
+double second_number(const std::string& table, const std::string& place);
+// Returns the same column of every row of a list.
+std::vector<double> second_column(const std::string& table, const std::string& list,
+                                  const std::string& column);
 
 }  // namespace remote_touch

@@ -8,10 +8,14 @@
 #include <numeric>
 #include <sstream>
 
-#include "core/parameters/input_error.h"
-#include "runners/experiment/settings/renamed_names.h"
+#include "runners/experiment/settings/stored_configuration.h"
 
 namespace remote_touch {
+
+std::string without_subject(const std::string& subject, const std::string& line) {
+  const std::string begin = InputError(subject, "").what();
+  return line.starts_with(begin) ? line.substr(begin.size()) : line;
+}
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/settings/configuration_difference.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/presentation/view/frames_again.h"
 #include "runners/presentation/view/shown_frames.h"

@@ -11,7 +11,7 @@
 #include "analysis/measures/measures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/renamed_names.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sections_test {

@@ -1,4 +1,3 @@
-// Changes that --set and the like make to a configuration: refused, named, and stated in the title.
 #include "runners/experiment/settings/changed_settings.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +10,8 @@
 
 namespace remote_touch::changed_settings_test {
 namespace {
+
+// Changes that --set and the like make to a configuration: refused, named, and stated in the title.
 
 using Texts = std::vector<std::string>;
 
@@ -99,6 +100,50 @@ TEST(Titles, AreUtf8) {
     const std::string title = changed_title("a", {{"scenario.path", path}, {"list", Json::array({path})}});
     EXPECT_NO_THROW(static_cast<void>(Json(title).dump())) << more;  // throws for what is not UTF-8
   }
+}
+
+// Differences between configurations: by path, without titles.
+
+TEST(ConfigurationDifferences, AreOneTextEach) {
+  EXPECT_EQ(
+      configuration_differences(R"({"seed": 1, "renderer": {"r1_m": 1}})", R"({"renderer": {"r1_m": 2}})"),
+      (Texts{"seed 1 against absent", "renderer.r1_m 1 against 2"}));
+}
+
+// A title describes a configuration and does not change what it does.
+TEST(ConfigurationDifferences, LeaveOutTitles) {
+  EXPECT_TRUE(configuration_differences(R"({"title": "a"})", R"({"title": "b"})").empty());
+  EXPECT_TRUE(configuration_differences(R"({"title": "a", "experiment": {"title": "c", "seed": 1}})",
+                                        R"({"title": "b", "experiment": {"title": "d", "seed": 1}})")
+                  .empty());
+  EXPECT_EQ(
+      configuration_differences(R"({"scenario": {"title": "a"}})", R"({"scenario": {"title": "b"}})").size(),
+      1u);
+}
+
+// The limit of 57 bytes is in the middle of the 28th of these characters, behind a quotation mark and a
+// letter.
+TEST(ConfigurationDifferences, DoNotCutACharacter) {
+  std::string umlauts;
+  for (int i = 0; i < 40; ++i) umlauts += "\xc3\xa4";
+  const Texts found = configuration_differences(R"({"path": "x)" + umlauts + R"("})", R"({"path": 1})");
+  EXPECT_EQ(found, (Texts{"path \"x" + umlauts.substr(0, 54) + "... against 1"}));
+}
+
+// Long values that differ only after their beginning are shown from shortly before the difference on.
+TEST(ConfigurationDifferences, ShowThePartThatDiffers) {
+  const std::string folder(100, 'a');
+  EXPECT_EQ(
+      configuration_differences(R"({"path": ")" + folder + R"(/one"})", R"({"path": ")" + folder + R"("})"),
+      (Texts{"path \"..." + std::string(20, 'a') + "/one\" against \"..." + std::string(20, 'a') + "\""}));
+  std::string count =
+      R"({"axes": [{"from": 0, "parameter": "scenario.acceleration_m_per_s2", "to": 1, "count": 3}]})";
+  std::string other = count;
+  other.replace(other.find("\"to\": 1"), 7, "\"to\": 2");
+  EXPECT_EQ(
+      configuration_differences(count, other),
+      (Texts{
+          "axes [...tion_m_per_s2\",\"to\":1,\"count\":3}] against [...tion_m_per_s2\",\"to\":2,\"count\":3}]"}));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "runners/experiment/settings/second_implementation.h"
+#include "runners/experiment/settings/embedded_data.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Reads the stored table without second_number().
@@ -48,5 +47,4 @@ TEST(SecondImplementation, RefusesWhatIsNotThere) {
 }
 
 }  // namespace
-
 }  // namespace remote_touch
