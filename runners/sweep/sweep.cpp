@@ -15,7 +15,7 @@
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
-#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/sweep/refine_settings.h"
 #include "runners/sweep/sweep_axis.h"
 #include "runners/sweep/sweep_cells.h"

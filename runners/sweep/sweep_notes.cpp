@@ -7,7 +7,7 @@
 #include "analysis/measures/run_events.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/tally_outline.h"
 

@@ -8,7 +8,7 @@
 
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_cells.h"
 #include "runners/sweep/sweep_notes.h"

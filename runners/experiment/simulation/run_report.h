@@ -1,9 +1,11 @@
-// The report of a run: what it read, and notes on what did not happen. It is stored with the result.
+// The report of a run, and the few measures that answer what a user asks first.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
+#include "analysis/measures/measures.h"
 #include "analysis/storage/hdf5_file.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
@@ -11,6 +13,8 @@
 namespace remote_touch {
 
 struct Trace;
+
+// The report of a run: what it read, and notes on what did not happen. It is stored with the result.
 
 struct RunReport {
   std::vector<std::string> inputs;  // one line for each recording, see Scenario::input()
@@ -37,5 +41,24 @@ void add_report(TextAttributes& attributes, const RunReport& report);
 
 // Throws InputError with kind and text of every note, for --strict. Does nothing without a note.
 void refuse_notes(const RunReport& report);
+
+// The few measures that answer what a user asks first about a run.
+
+// The fixtures of an experiment decide which measures matter: a region keeps the proxy away from the surface.
+enum class Fixtures { none, some };
+
+struct MeasuredValue {
+  const Measure* measure = nullptr;
+  double value = 0;
+};
+// Returns the measures of a list that apply to the trace, with their values, in the order of the list. The
+// pointers are valid as long as the list.
+std::vector<MeasuredValue> measured_values(std::span<const Measure> list, const Trace& trace);
+// Returns at most five built-in measures from `all`, those that matter most and have a value, and then all
+// measures that are not built in, because their author wants to see them.
+std::vector<MeasuredValue> main_measures(const std::vector<MeasuredValue>& all, Fixtures fixtures);
+
+// Returns "metres" for "m". Empty for pure numbers ("1"); an unknown unit is returned as it is.
+std::string unit_in_words(const std::string& unit);
 
 }  // namespace remote_touch

@@ -9,9 +9,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/simulation/contact_watch.h"
-#include "runners/experiment/simulation/fixture_notes.h"
-#include "runners/experiment/simulation/slave_notes.h"
-#include "runners/experiment/simulation/surface_watch.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/teleoperation/frame_link.h"
 
 namespace remote_touch {

@@ -18,7 +18,7 @@
 #include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/simulation/slave_notes.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/live/loop/live_inputs.h"

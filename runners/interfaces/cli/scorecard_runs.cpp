@@ -7,7 +7,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/presentation/view/trace_page.h"
 #include "runners/sweep/sweep_notes.h"

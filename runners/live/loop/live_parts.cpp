@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "runners/experiment/simulation/slave_notes.h"
+#include "runners/experiment/simulation/run_notes.h"
 
 namespace remote_touch {
 

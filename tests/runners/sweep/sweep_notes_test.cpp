@@ -5,7 +5,7 @@
 
 #include "analysis/measures/no_value.h"
 #include "analysis/trace/trace.h"
-#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_notes_test {

@@ -14,7 +14,7 @@
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/simulation/note_kinds.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_replay.h"
 #include "runners/sweep/sweep_session.h"
