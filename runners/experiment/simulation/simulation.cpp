@@ -10,7 +10,7 @@
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/simulation/contact_watch.h"
 #include "runners/experiment/simulation/run_notes.h"
-#include "runners/experiment/teleoperation/frame_link.h"
+#include "runners/experiment/teleoperation/teleoperation.h"
 
 namespace remote_touch {
 

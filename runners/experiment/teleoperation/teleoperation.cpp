@@ -3,11 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "analysis/statistics/means_and_extremes.h"
 
 namespace remote_touch {
+
+Parameters parameters(LinkSettings& s) {
+  return appended(parameters(s.channel), parameters(s.dead_band));
+}
+
+std::string validate(const LinkSettings& s) {
+  const std::string problem = validate(s.channel);
+  return problem.empty() ? validate(s.dead_band) : problem;
+}
 
 namespace {
 
@@ -193,6 +201,13 @@ Wrench commanded_wrench(Teleoperation* remote, const DeviceState& device, Render
   if (!remote) return rendered_wrench(out);
   out.slave_W = remote->command(device, out);
   return remote->tick(device, out, time_s);
+}
+
+// Forgets older positions: a frame that is older than another one is dropped, so they are not asked for.
+std::optional<Vec3> FrameSender::slave_at(double time_s) {
+  while (slave_.size() > 1 && slave_[1].first <= time_s + kSameArrival_s) slave_.pop_front();
+  if (slave_.empty() || slave_.front().first > time_s + kSameArrival_s) return {};
+  return slave_.front().second;
 }
 
 }  // namespace remote_touch

@@ -1,15 +1,44 @@
 // The remote side of a run: commands travel to a slave robot, and its forces travel back.
 #pragma once
 
+#include <deque>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "analysis/trace/hand_and_slave_state.h"
 #include "core/numeric/noise.h"
+#include "core/parameters/parameter.h"
 #include "core/rendering/renderer.h"
+#include "core/teleoperation/architecture.h"
+#include "core/teleoperation/channel.h"
+#include "core/teleoperation/dead_band.h"
+#include "core/teleoperation/slave.h"
 #include "core/teleoperation/tool_slave.h"
-#include "runners/experiment/teleoperation/teleoperation_settings.h"
 
 namespace remote_touch {
+
+// The settings of a run with teleoperation: the slave, the links to it and back, and what the hand feels.
+
+// One direction of the connection: which samples are sent, and how they travel.
+struct LinkSettings {
+  ChannelSettings channel;
+  DeadBandSettings dead_band;
+};
+
+Parameters parameters(LinkSettings& s);
+std::string validate(const LinkSettings& s);
+
+struct TeleoperationSettings {
+  SlaveSettings slave;
+  LinkSettings commands, forces;
+  FeedbackSettings feedback;
+  RegistrationError registration;
+  // Mass of hand and device, with which passivity control and waves predict the motion of the hand; 0: not
+  // known.
+  double hand_mass_kg = 0;
+  std::optional<SlaveTool> tool;  // tool of the slave; none: it is a ball
+};
 
 class Teleoperation {
  public:
@@ -107,5 +136,60 @@ class Teleoperation {
 // wrench that the device is commanded to exert. remote: null without a slave; then this is the wrench of the
 // renderer.
 Wrench commanded_wrench(Teleoperation* remote, const DeviceState& device, RenderOutput& out, double time_s);
+
+// The frames that travel from the slave's camera to the operator: those that the dead-band lets pass.
+
+// Decides which frames are sent. The dead-band compares a frame near the position that the slave had when the
+// frame was captured.
+class FrameSender {
+ public:
+  // pre: validate(settings) is empty. The kernels must outlive it.
+  FrameSender(const FrameDeadBandSettings& settings, const Kernels& kernels)
+      : dead_band_(settings), kernels_(kernels) {}
+
+  // Returns true if the frame has to be sent, and then keeps its points until the next one has to.
+  bool sends(const Frame& frame) { return dead_band_.sends(frame, slave_at(frame.captured_s), kernels_); }
+  // Must be called once per tick, after the slave has moved, with increasing times. slave_W: NaN before the
+  // slave has started, as in a trace.
+  void observe_slave(const Vec3& slave_W, double time_s) {
+    if (slave_W.allFinite()) slave_.emplace_back(time_s, slave_W);
+  }
+  // Forgets where the slave was. Until it is observed again, every frame is sent.
+  void lose_slave() { slave_.clear(); }
+  // Returns the number of frames that had to be sent.
+  int sent() const { return dead_band_.sent(); }
+
+ private:
+  // Returns nothing if the position at that time is not known.
+  std::optional<Vec3> slave_at(double time_s);
+
+  FrameDeadBand dead_band_;
+  const Kernels& kernels_;
+  std::deque<std::pair<double, Vec3>> slave_;  // times and positions since the newest frame was captured
+};
+
+// Passes the frames that are sent on to a renderer, which must outlive it. Latency, jitter and loss of the
+// frames are those of the run. A frame that is lost on its way does not reach the dead-band, so the next one
+// is compared with the last frame that was passed on.
+class FrameLink final : public Renderer {
+ public:
+  // pre: validate(settings) is empty.
+  FrameLink(const FrameDeadBandSettings& settings, Renderer& renderer, const Kernels& kernels)
+      : sender_(settings, kernels), renderer_(renderer) {}
+
+  void on_frame(const Frame& frame) override {
+    if (sender_.sends(frame)) renderer_.on_frame(frame);
+  }
+  RenderOutput step(const DeviceState& device, double time_s) override {
+    return renderer_.step(device, time_s);
+  }
+  // See FrameSender.
+  void observe_slave(const Vec3& slave_W, double time_s) { sender_.observe_slave(slave_W, time_s); }
+  int sent() const { return sender_.sent(); }
+
+ private:
+  FrameSender sender_;
+  Renderer& renderer_;
+};
 
 }  // namespace remote_touch

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/teleoperation/frame_link.h"
 #include "runners/experiment/teleoperation/teleoperation.h"
 #include "runners/live/loop/servo.h"
 
