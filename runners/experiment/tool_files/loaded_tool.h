@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/beyond/tracked_surface/tracked_tool_renderer.h"
+#include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
 #include "core/dissertation/tool/motion/god_object_motion.h"
 #include "core/dissertation/tool/motion/penalty_motion.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
@@ -68,6 +69,44 @@ std::vector<RecordingPart> input_files(const MovedToolSettings<MotionSettings>& 
 }
 template <class MotionSettings>
 double max_stiffness_N_per_m(const MovedToolSettings<MotionSettings>& s) {
+  return max_stiffness_N_per_m(s.motion);
+}
+
+// The 6-DOF fixture renderer for experiments, chapter 7: a tool of spheres made from a mesh, and its motion.
+
+class LoadedSpheres final : public Renderer {
+ public:
+  struct Settings {
+    ToolSettings tool{.mesh = "key"};
+    int leaves = 112;
+    // Regions are round, so each step of the motion covers only a fraction of the way to its end. A tick ends
+    // when a step is shorter than a hundredth of a millimetre, which is less than a hand can feel. When a
+    // frame has enclosed the tool, about ten detections lead out. Ticks that need many more slide along
+    // creases, and the motion can continue in the next tick.
+    ToolParameters motion{.detections_per_tick = 30, .rest_threshold_m = 1e-5};
+  };
+
+  // Throws InputError when the tool cannot be made.
+  LoadedSpheres(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
+  void prepare(Frame& frame) const override { renderer_.prepare(frame); }
+  void reserve(std::size_t points) override { renderer_.reserve(points); }
+  void on_frame(const Frame& frame) override { renderer_.on_frame(frame); }
+  Parameters live_parameters() override { return renderer_.live_parameters(); }
+  void parameters_changed() override { renderer_.parameters_changed(); }
+  RenderOutput step(const DeviceState& device, double time_s) override {
+    return renderer_.step(device, time_s);
+  }
+
+ private:
+  LoadedSpheres(const ToolOfSpheres& loaded, const ToolParameters& motion, const Kernels& kernels);
+
+  SphereTreeRenderer renderer_;
+};
+
+Parameters parameters(LoadedSpheres::Settings& s);
+std::string validate(const LoadedSpheres::Settings& s);
+std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s);
+inline double max_stiffness_N_per_m(const LoadedSpheres::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }
 

@@ -1,17 +1,143 @@
 #include "runners/experiment/tool_files/tool_loading.h"
 
-#include <filesystem>
+#include <cmath>
 
 #include "analysis/storage/digest.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/provenance/cache_file.h"
-#include "runners/experiment/tool_files/spheres_cache.h"
-#include "runners/experiment/tool_files/tool_cache.h"
 
 namespace remote_touch {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+const CacheKind kToolKind{"tool", kToolFormat};
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double));  // lists of vectors are lists of numbers
+
+// Packs or unpacks every field, in the same order.
+template <class Direction, class Stored>
+void visit(Direction& pack, Stored& stored) {
+  auto& tool = stored.tool;
+  pack.list(tool.mesh.vertices);
+  pack.list(tool.mesh.triangles);
+  for (int i = 0; i < 3; ++i) pack.value(tool.grid.origin_T[i]), pack.value(tool.grid.cells[i]);
+  pack.value(tool.grid.size_m);
+  pack.list(tool.voxels);
+  pack.list(tool.distance_m);
+  pack.value(tool.volume_m3);
+  for (int i = 0; i < 9; ++i) pack.value(tool.inertia_m2(i / 3, i % 3));
+  pack.value(tool.reach_m);
+  pack.text(stored.report);
+}
+
+// Returns false for a tool that no program that makes tools can have written, even if the hash of the file is
+// right.
+bool is_sound(const VoxelTool& tool) {
+  std::size_t cells = 1, nodes = 1;
+  for (const int along : tool.grid.cells)
+    if (along < 1 || __builtin_mul_overflow(cells, static_cast<std::size_t>(along), &cells) ||
+        __builtin_mul_overflow(nodes, static_cast<std::size_t>(along) + 1, &nodes))
+      return false;
+  return tool.voxels.size() == cells && tool.distance_m.size() == nodes && has_its_vertices(tool.mesh) &&
+         tool.grid.origin_T.allFinite() && tool.grid.size_m > 0 && std::isfinite(tool.grid.size_m);
+}
+
+}  // namespace
+
+std::string sha256_of_mesh(const TriangleMesh& mesh) {
+  CacheWriter pack;
+  pack.list(mesh.vertices);
+  pack.list(mesh.triangles);
+  return pack.hex();
+}
+
+std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings) {
+  CacheWriter pack;
+  pack.text(build_for_keys());
+  pack.text(mesh_sha256);
+  pack.value(settings.voxel_m), pack.value(settings.size_m), pack.value(settings.repair);
+  if (settings.outer_field) pack.text("outer field");
+  return pack.hex();
+}
+
+std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& key) {
+  StoredTool stored;
+  if (!read_cache_file(folder, kToolKind, key, [&](Unpacker& unpack) { visit(unpack, stored); })) return {};
+  if (!is_sound(stored.tool)) return {};
+  return stored;
+}
+
+bool write_tool(const fs::path& folder, const std::string& key, const StoredTool& stored) {
+  return write_cache_file(folder, kToolKind, key, [&](CacheWriter& pack) { visit(pack, stored); });
+}
+
+namespace {
+
+const CacheKind kSpheresKind{"spheres", kSpheresFormat};
+
+// A tree as lists. It can be built again from its leaves and the number of leaves of each node of the lowest
+// level.
+struct FlatTree {
+  std::vector<double> leaves;  // x, y, z, radius
+  std::vector<std::uint32_t> counts;
+};
+
+FlatTree flat(const SphereTree& tree) {
+  FlatTree all;
+  for (const Sphere& leaf : tree.leaves())
+    all.leaves.insert(all.leaves.end(), {leaf.centre.x(), leaf.centre.y(), leaf.centre.z(), leaf.radius_m});
+  if (!tree.empty())
+    for (const SphereNode& node : tree.level(0)) all.counts.push_back(node.count);
+  return all;
+}
+
+// Builds the tree. Returns false if the counts do not fit the number of leaves, or if there are none.
+bool grow(const FlatTree& flat, SphereTree& tree) {
+  std::size_t at = 0;
+  for (const std::size_t count : flat.counts) {
+    if (count == 0 || 4 * count > flat.leaves.size() - at) return false;
+    std::vector<Sphere> node;
+    for (std::size_t i = 0; i < count; ++i, at += 4)
+      node.push_back({{flat.leaves[at], flat.leaves[at + 1], flat.leaves[at + 2]}, flat.leaves[at + 3]});
+    tree.add(node);
+  }
+  if (tree.empty() || at != flat.leaves.size()) return false;
+  tree.finish();
+  return true;
+}
+
+// Packs or unpacks every field, in the same order.
+template <class Direction, class Tree, class Spheres>
+void visit(Direction& pack, Tree& tree, Spheres& spheres) {
+  pack.list(tree.leaves), pack.list(tree.counts);
+  pack.value(spheres.inflation_m), pack.value(spheres.outside_m), pack.value(spheres.surface_outside_m);
+}
+
+}  // namespace
+
+std::string spheres_key(const std::string& tool_key, int max_leaves) {
+  CacheWriter pack;
+  pack.text(tool_key);
+  pack.value(max_leaves);
+  return pack.hex();
+}
+
+std::optional<ToolSpheres> read_spheres(const fs::path& folder, const std::string& key) {
+  ToolSpheres spheres;
+  FlatTree tree;
+  const auto take = [&](Unpacker& unpack) { visit(unpack, tree, spheres); };
+  if (!read_cache_file(folder, kSpheresKind, key, take) || !grow(tree, spheres.spheres)) return {};
+  return spheres;
+}
+
+bool write_spheres(const fs::path& folder, const std::string& key, const ToolSpheres& spheres) {
+  const FlatTree tree = flat(spheres.spheres);
+  return write_cache_file(folder, kSpheresKind, key, [&](CacheWriter& pack) { visit(pack, tree, spheres); });
+}
 
 Parameters parameters(ToolSettings& s) {
   return {

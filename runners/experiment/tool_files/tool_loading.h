@@ -1,7 +1,9 @@
 // The tool that an experiment names: a built-in one or a mesh file, made once and then read from the cache.
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,42 @@
 #include "scenarios/recordings/recording_part.h"
 
 namespace remote_touch {
+
+// The cache of tools on disk, so that the runs of a sweep do not make their tool again.
+
+// Version of the layout of the file, in its first line.
+inline constexpr int kToolFormat = 2;
+
+// Returns the key of the tool in the cache: a hash of all that the tool depends on. This is the build of the
+// program, a SHA-256 of the mesh (or of the file from which it is read), and the settings, to the last bit.
+std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings);
+std::string sha256_of_mesh(const TriangleMesh& mesh);
+
+// The content that is stored under a key: the tool, bit for bit, and the report from when it was made.
+struct StoredTool {
+  VoxelTool tool;
+  std::string report;
+};
+
+// Returns nothing if there is no such file, or if it is damaged, cut off, or of another key. The SHA-256 of
+// the file is verified.
+std::optional<StoredTool> read_tool(const std::filesystem::path& folder, const std::string& key);
+
+// Writes the file under a temporary name and renames it, so that other processes see the whole file or none.
+// Creates the folder. Returns false if the file cannot be written, which is not an error.
+bool write_tool(const std::filesystem::path& folder, const std::string& key, const StoredTool& stored);
+
+// The cache of the tools' sphere trees on disk, in the folder of the tools' cache.
+
+// Version of the layout of the file, in its first line.
+inline constexpr int kSpheresFormat = 1;
+
+// Returns the key of the spheres, from the key of the tool in its cache, which has the build, and max_leaves.
+std::string spheres_key(const std::string& tool_key, int max_leaves);
+
+// These functions do for spheres what read_tool() and write_tool() do for tools.
+std::optional<ToolSpheres> read_spheres(const std::filesystem::path& folder, const std::string& key);
+bool write_spheres(const std::filesystem::path& folder, const std::string& key, const ToolSpheres& spheres);
 
 struct ToolSettings {
   std::string mesh = "husky";

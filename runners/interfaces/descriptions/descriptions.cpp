@@ -15,7 +15,7 @@
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
-#include "runners/experiment/tool_files/loaded_spheres.h"
+#include "runners/experiment/tool_files/loaded_tool.h"
 #include "runners/interfaces/descriptions/parameter_description.h"
 #include "runners/sweep/sweep.h"
 
