@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "runners/interfaces/cli/command_line.h"
+#include "runners/interfaces/cli/program.h"
 
 namespace remote_touch {
 

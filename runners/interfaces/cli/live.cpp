@@ -1,8 +1,8 @@
-#include "runners/live/loop/live_run.h"
-
+// The commands about this machine and live runs: `live`, `devices` and `jitter`.
 #include <spawn.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -17,16 +17,22 @@
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
+#include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
+#include "runners/live/devices/device_table.h"
+#include "runners/live/devices/steady_clock.h"
+#include "runners/live/loop/jitter.h"
 #include "runners/live/loop/live_inputs.h"
+#include "runners/live/loop/live_report.h"
+#include "runners/live/loop/live_run.h"
+#include "runners/live/sensors/sensor_table.h"
 #include "runners/live/view/live_view.h"
 #include "runners/live/view/redirect_page.h"
 
 namespace remote_touch {
-
 namespace {
 
 std::string device_of(const LiveRequest& request) {
@@ -236,6 +242,61 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   if (!lost.empty()) throw std::runtime_error(lost);
   if (request.strict) refuse_notes(result.report);
   return result.failed ? kCheckFailed : kDone;
+}
+
+namespace {
+
+template <class Entry>
+void print_entry(const Entry& entry) {
+  const Availability availability = entry.availability();
+  std::printf("  %-28s %s\n  %-28s %s%s%s\n", entry.example, entry.summary, "",
+              availability.compiled_in ? "" : "not compiled in: ",
+              !availability.compiled_in || availability.found ? ""
+              : availability.was_searched                     ? "not found: "
+                                                              : "unknown: ",
+              availability.detail.c_str());
+}
+
+std::string verdict(const FoundDepthDevice& device) {
+  if (!device.trial.failure.empty()) return "cannot be used: " + device.trial.failure;
+  char times[120];
+  std::snprintf(times, sizeof times, "320 x 240 pixels in %.1f ms, on the CPU in %.1f ms: %s",
+                device.trial.device_ms, device.trial.cpu_ms,
+                device.trial.device_ms < device.trial.cpu_ms ? "faster" : "not faster");
+  return (device.inexact_because.empty() ? "the bits of the CPU; "
+                                         : "only with exact = false: it " + device.inexact_because + "; ") +
+         times;
+}
+
+void print_depth_devices(const Kernels& kernels) {
+  std::puts("depth_pipeline.device: OpenCL devices");
+  std::string why_none;
+  for (const FoundDepthDevice& device : try_depth_devices(kernels, why_none))
+    std::printf("  %-28s %s\n  %-28s %s\n", device.address.c_str(), device.name.c_str(), "",
+                verdict(device).c_str());
+  if (!why_none.empty()) std::printf("  none: %s\n", why_none.c_str());
+}
+
+}  // namespace
+
+int command_devices(const CommandLine& line, const DevicesRequest&) {
+  std::puts("--device: haptic devices");
+  for (const DeviceEntry& entry : devices()) print_entry(entry);
+  std::puts("--depth: depth sensors");
+  for (const SensorEntry& entry : sensors()) print_entry(entry);
+  print_depth_devices(*line.kernels);
+  return kDone;
+}
+
+int command_jitter(const CommandLine& line, const JitterRequest& request) {
+  Jitter jitter = measure_jitter(request.duration_s, request.rate_hz, line.stop, steady_clock());
+  std::printf("%zu ticks at %g Hz: %s\n", jitter.late_s.size(), request.rate_hz, jitter.real_time.c_str());
+  std::fputs(histogram(jitter.late_s).c_str(), stdout);
+  std::sort(jitter.late_s.begin(), jitter.late_s.end());
+  const auto us = [&](double fraction) { return 1e6 * quantile(jitter.late_s, fraction); };
+  std::printf("  late by p50 %.1f, p99 %.1f, p99.9 %.1f, at most %.1f us; missed %lld\n", us(0.5), us(0.99),
+              us(0.999), us(1), jitter.missed);
+  return kDone;
 }
 
 }  // namespace remote_touch

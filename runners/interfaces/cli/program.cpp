@@ -1,7 +1,9 @@
 #include "runners/interfaces/cli/program.h"
 
 #include <malloc.h>
+#include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -11,19 +13,170 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "analysis/storage/digest.h"
+#include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/provenance/kernel_choice.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/interfaces/cli/command_line.h"
-#include "runners/interfaces/cli/last_resorts.h"
+#include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/plugins/plugin_library.h"
+#include "runners/sweep/threads/enough_threads.h"
 #include "scenarios/recordings/recording_part.h"
 
 namespace remote_touch {
+namespace {
+
+// Prints one clear line when a program cannot continue: it has no memory in a thread or before main() begins,
+// or it crashes or exits inside the HDF5 library, which does not always survive a lack of memory or a damaged
+// file. A crash after a failed allocation counts as a lack of memory, because not every library handles one
+// well.
+
+int exit_code_of_last_resorts = EXIT_FAILURE;
+std::terminate_handler without_last_resorts = std::abort;
+volatile std::sig_atomic_t found_no_memory = 0;
+
+constexpr std::string_view kNoMemory = "remote-touch: out of memory\n";
+constexpr std::string_view kHdf5Failed =
+    "remote-touch: the HDF5 library failed: out of memory, or a damaged file\n";
+
+[[noreturn]] void end_at_once(std::string_view why) {
+  static_cast<void>(!::write(Hdf5Work::messages(), why.data(), why.size()));
+  ::_exit(exit_code_of_last_resorts);
+}
+
+// Handles an exception that no caller can catch: one in a thread, or one before main() begins.
+[[noreturn]] void on_terminate() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    end_at_once(kNoMemory);
+  } catch (...) {
+  }
+  std::signal(SIGABRT, SIG_DFL);
+  without_last_resorts();  // says what was thrown
+  std::abort();
+}
+
+void on_crash(int signal) {
+  if (Hdf5Work::is_on()) end_at_once(kHdf5Failed);
+  if (found_no_memory) end_at_once(kNoMemory);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void on_exit_by_a_library() {
+  if (Hdf5Work::is_on()) end_at_once(kHdf5Failed);
+}
+
+[[noreturn]] void note_that_memory_ran_out() {
+  found_no_memory = 1;
+  throw std::bad_alloc();
+}
+
+void take_if_free(int signal) {
+  struct sigaction now {};
+  if (::sigaction(signal, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) return;
+  now.sa_handler = on_crash;
+  now.sa_flags = SA_ONSTACK;
+  ::sigaction(signal, &now, nullptr);
+}
+
+// The HDF5 library may use up the stack: it calls itself endlessly if its first call finds no memory. The
+// signal handlers therefore run on a stack of their own.
+void use_own_stack() {
+  static char room[1 << 16];
+  stack_t own{};
+  own.ss_sp = room, own.ss_size = sizeof room;
+  ::sigaltstack(&own, nullptr);
+}
+
+// Installs handlers that write this line to standard error, without allocating memory, and exit with this
+// code. Results are written whole or not at all, so none is lost. Signal handlers of a sanitizer or a
+// debugger stay in place. Any other crash and any other exception that nothing catches ends the process as
+// without this call.
+void install_last_resorts(int exit_code) {
+  exit_code_of_last_resorts = exit_code;
+  without_last_resorts = std::set_terminate(on_terminate);
+  std::set_new_handler(note_that_memory_ran_out);
+  std::atexit(on_exit_by_a_library);
+  use_own_stack();
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT}) take_if_free(signal);
+}
+
+// Adds the renderers of the plug-ins to the catalog. Results record the plug-ins and their hashes.
+void load_plugins(const std::vector<std::string>& files) {
+  if (files.empty()) return;
+  Catalog catalog = catalog_in_use();
+  ProgramIdentity program = program_identity();
+  for (const std::string& file : files) {
+    for (RendererEntry& entry : load_plugin(file)) catalog.add(std::move(entry));
+    program.plugins.push_back({file, sha256_of_file(file)});
+  }
+  use_catalog(std::move(catalog));
+  identify_program(std::move(program));
+}
+
+// Returns an error that names an unknown command, because CLI11's own error does not.
+InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> left = app.remaining(true);
+  CLI::App* place = &app;
+  std::string called = "remote-touch";
+  while (!place->get_subcommands().empty()) {
+    place = place->get_subcommands().front();
+    called += " " + place->get_name();
+  }
+  if (place->get_subcommands(nullptr).empty() || left.empty())
+    return InputError(error.what(), "see " + called + " --help");
+  std::string known;
+  for (const CLI::App* command : place->get_subcommands(nullptr))
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  return InputError(left.front(), "unknown: expected " + known);
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)()) {
+  CLI::App app{"Haptic rendering of streaming point clouds: simulate, evaluate, reproduce figures."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", [] {
+    return "remote-touch " + version() + ", " + commit_text(provenance({}, std::string(), {}));
+  });
+  app.fallthrough();
+  app.add_flag("-q,--quiet", line.quiet, "do not show progress");
+  app.add_flag_callback("--progress-json", Progress::use_json,
+                        "show progress as JSON for other programs, one object in a line");
+  app.add_flag(
+      "--force", line.force,
+      "also overwrite files that are not results of this program; an input file is never overwritten");
+  app.add_option(
+         "--plugin", line.plugins,
+         "a shared library with renderers, one for each --plugin; see runners/interfaces/plugins/README.md")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  std::function<int()> act;
+  int threads = -1;
+  Subcommands commands{app, line, act, threads};
+  // The commands are added in the order of --help.
+  add_commands_of_experiments(commands);
+  add_commands_of_comparisons(commands);
+  add_commands_of_machines(commands);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw usage_error(app, error);
+  }
+  if (threads >= 0) use_threads(threads);
+  line.kernels = &choose_kernels();
+  load_plugins(line.plugins);
+  return act();
+}
 
 namespace {
 

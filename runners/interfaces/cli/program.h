@@ -11,9 +11,17 @@
 
 #include <functional>
 
+#include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/catalog.h"
+#include "runners/interfaces/cli/commands.h"
 
 namespace remote_touch {
+
+// The command line: options, help, and which command they select.
+
+// Parses the arguments and runs the command. Returns the exit code; throws InputError for arguments that are
+// not understood. choose_kernels is called once, before a command runs.
+int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)());
 
 // Executes the command line and returns the exit code: 0 done, 1 a check failed, 2 an input that cannot be
 // used, 3 interrupted, 4 `compare` found differences and nothing got worse. Prints errors as one line on

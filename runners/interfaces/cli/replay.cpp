@@ -1,25 +1,38 @@
+// The commands that make something again: `replay`, `repro` and `recover`.
+#include <algorithm>
 #include <bit>
+#include <cinttypes>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 
+#include "analysis/comparison/compared_columns.h"
+#include "analysis/figures/result_file.h"
+#include "analysis/scorecard/scorecard.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
+#include "analysis/trace/hash64.h"
 #include "core/parameters/input_error.h"
+#include "runners/evaluation/regression/comparison_report.h"
+#include "runners/evaluation/regression/stored_result.h"
 #include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/sweep/cell_text.h"
 #include "runners/sweep/shards/recheck.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_origin.h"
 #include "runners/sweep/sweep_replay.h"
+#include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Prints each measure beside the stored one. Returns true if they agree bit for bit, or nothing is stored.
@@ -149,6 +162,161 @@ int command_recheck(const CommandLine& line, const RecheckRequest& request) {
     print_distrust(attributes);
   }
   return code;
+}
+
+namespace {
+
+// Prints the text as comments of a shell script. Every line begins with '#', so a shell executes none.
+void comment(const std::string& text) {
+  std::string lines = "# ";
+  for (const char c : text) lines += c == '\n' ? std::string("\n# ") : std::string(1, c);
+  std::printf("%s\n", lines.c_str());
+}
+
+// Makes a stored result again with this program.
+class Repro {
+ public:
+  Repro(const CommandLine& line, const std::string& file) : line_(line), result_(file) {
+    if (result_.kind() == "figure" && of("figure") == kScorecardFigure)
+      throw InputError(file, "is a scorecard, which " + of("command") +
+                                 " -o FOLDER makes again: expected a file of its runs/");
+  }
+
+  // Prints comments about the build, and then the commands to type.
+  void print() const {
+    comment(result_.file() + ": version " + of("version") + ", " + commit_text(result_.attributes()) + ", " +
+            of("compiler") + ", " + of("flags") + (of("isa").empty() ? "" : ", " + of("isa")));
+    for (const auto& [name, value] : provenance("", "", line_.kernels->isa))
+      if (name != "config" && name != "command" && !of(name.c_str()).empty() && of(name.c_str()) != value)
+        comment("this program has another " + name + ": " + value);
+    const std::string maker = other_maker(result_.attributes());
+    if (!maker.empty()) comment("it " + maker);
+    if (!of("input_digests").empty()) comment("it read:\n" + of("input_digests"));
+    const Remaking again = result_.remaking();
+    if (!again.reason.empty() && again.reason != maker) comment(again.reason);
+    for (const std::string& command : again.commands) std::printf("%s\n", command.c_str());
+  }
+
+  void write_config(const std::string& target) const {
+    if (result_.kind() == "figure")
+      throw InputError("--config",
+                       "a figure has no single configuration: expected a trace, a sweep or hashes");
+    const std::string text = result_.config() + "\n";
+    require_text(line_, target, {result_.file()}, text);
+    write_file_atomically(target, text.data(), text.size());
+    std::printf("# configuration written to %s\n", target.c_str());
+  }
+
+  // Makes it again from its configuration and compares every number.
+  ResultComparison again() const {
+    Progress progress("repro", line_.quiet);
+    const std::string& kind = result_.kind();
+    ResultComparison result = kind == "trace"    ? trace_again(progress)
+                              : kind == "hashes" ? hashes_again(progress)
+                              : kind == "sweep"  ? sweep_again()
+                                                 : figure_again(progress);
+    result.baseline = result_.file(), result.candidate = "this program";
+    return result;
+  }
+
+ private:
+  std::string of(const char* name) const { return result_.of(name); }
+
+  std::vector<Column> columns_again(const Experiment& experiment, Progress& progress) const {
+    SimulationOptions options;
+    options.kernels = line_.kernels, options.stop = line_.stop, options.hash_frames = true;
+    options.progress = [&](double fraction) { progress.update(fraction); };
+    return simulate(experiment, options).columns();
+  }
+  TextAttributes ours(const std::string& config, const std::string& inputs) const {
+    return provenance(config, of("command"), of("isa").empty() ? "" : line_.kernels->isa, inputs);
+  }
+
+  ResultComparison trace_again(Progress& progress) const {
+    const Experiment experiment = result_.experiment();
+    const ColumnsInMemory made(columns_again(experiment, progress));
+    const StoredTrace stored(result_.file());
+    return compare_trace(stored, result_.attributes(), made,
+                         ours(experiment.to_json(), input_hashes(experiment.inputs())), {});
+  }
+  ResultComparison hashes_again(Progress& progress) const {
+    const Experiment experiment = result_.experiment();
+    const Column all = columns_again(experiment, progress).back();
+    TickHashes made;
+    for (const std::uint64_t hash : std::get<std::vector<std::uint64_t>>(all.values)) {
+      made.tick.push_back(static_cast<std::int32_t>(made.tick.size()));
+      made.hash.push_back(hash);
+    }
+    return compare_hashes(read_hashes(result_.file()),
+                          {made, ours(experiment.to_json(), input_hashes(experiment.inputs()))});
+  }
+  ResultComparison sweep_again() const {
+    const StoredSweep stored = read_stored_sweep(result_.file());
+    if (!of("shard").empty() || stored.in_progress)
+      throw InputError(result_.file(), "is a part of a sweep: expected a finished one, whole or merged");
+    const Sweep sweep = result_.sweep();
+    SweepRunOptions options;
+    options.kernels = line_.kernels, options.stop = line_.stop;
+    return compare_sweep(stored.result, stored.attributes, run_sweep(sweep, options),
+                         ours(sweep.to_json(), input_hashes(sweep.inputs())), {});
+  }
+  ResultComparison figure_again(Progress& progress) const {
+    if (of("figure") == kAnswerName)
+      throw InputError(result_.file(),
+                       "is an answer about a sweep: expected its own command, which `repro` "
+                       "prints without --run");
+    const auto is_it = [&](const FigureEntry& entry) { return entry.name == of("figure"); };
+    const auto entry = std::find_if(figures().begin(), figures().end(), is_it);
+    if (entry == figures().end())
+      throw InputError(result_.file(), "is figure " + of("figure") + ", which this program does not know");
+    const std::vector<FigureRun> runs = {
+        {&*entry, result_.recipe() ? std::max(1, result_.recipe()->coarse) : 1,
+         result_.recipe() ? result_.recipe()->overrides : std::vector<std::string>()}};
+    std::vector<Column> columns;
+    make_figures(
+        line_, runs, [](const FigureEntry& made, FigureContext& context) { return made.make(context); },
+        [&](std::size_t, const FigureContext&, Figure figure) {
+          for (Table& table : figure.tables)
+            for (Column& column : table.columns) {
+              column.name = table.name + "/" + column.name;
+              columns.push_back(std::move(column));
+            }
+        },
+        [&](const FigureProgress& made) { progress.update(progress_text(runs, made)); });
+    return compare_figure(StoredFigure(Hdf5Reader(result_.file())), ColumnsInMemory(std::move(columns)), {},
+                          true);
+  }
+
+  const CommandLine& line_;
+  const StoredResult result_;
+};
+
+}  // namespace
+
+int command_repro(const CommandLine& line, const ReproRequest& request) {
+  const Repro repro(line, request.file);
+  repro.print();
+  if (!request.config.empty()) repro.write_config(request.config);
+  if (!request.run) return kDone;
+  std::fflush(stdout);
+  const ResultComparison comparison = repro.again();
+  print_comparison(comparison);
+  return comparison.outcome == Outcome::same             ? kDone
+         : comparison.outcome == Outcome::not_comparable ? kBadInput
+                                                         : kCheckFailed;
+}
+
+int command_recover(const CommandLine& line, const RecoverRequest& request) {
+  const FileLock lock = lock_output(line, request.output, {request.file});
+  const UnfinishedSession made = recover_session(request.file, request.output);
+  std::printf("%s: %" PRIu64 " ticks and %" PRIu64 " frames%s\n", printable(request.output).c_str(),
+              made.ticks, made.frames, made.has_end ? "" : "; the recording was interrupted");
+  if (made.left_out_bytes > 0)
+    std::printf("  note: the last %" PRIu64
+                " bytes of %s are left out, from the first damaged or incomplete block on\n",
+                made.left_out_bytes, printable(request.file).c_str());
+  std::printf("  %s is unchanged; remove it when you no longer need it\n", printable(request.file).c_str());
+  return kDone;
 }
 
 }  // namespace remote_touch

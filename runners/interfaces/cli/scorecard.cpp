@@ -3,21 +3,103 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/interfaces/cli/scorecard_runs.h"
+#include "runners/presentation/view/trace_page.h"
+#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
-
 namespace {
+
+// Steps that the commands of a scorecard share: doing its runs, and reporting on them.
+
+constexpr std::size_t kPageOfFailure = 3'000'000;  // bytes of one page; there may be hundreds of pages
+
+struct NoteOfRuns {
+  std::string kind, first;  // first: a run that has it, as arguments of `replay`
+  std::size_t runs;
+};
+
+void add_notes(const SweepResult& result, const std::string& file, std::vector<NoteOfRuns>& notes) {
+  for (const NoteCount& count : note_counts(result)) {
+    const auto found = std::find_if(notes.begin(), notes.end(),
+                                    [&](const NoteOfRuns& note) { return note.kind == count.kind; });
+    if (found != notes.end())
+      found->runs += count.runs;
+    else
+      notes.push_back({count.kind, file + " " + option_of_run(result, count.first), count.runs});
+  }
+}
+
+// Does the runs that are left, with a line of progress. Throws Interrupted.
+void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep>& sweeps) {
+  Progress progress("scorecard", line.quiet);
+  do_sweeps(sweeps, *line.kernels, line.stop, [&](std::size_t done, std::size_t all, double fraction) {
+    progress.update((static_cast<double>(done) + fraction) / static_cast<double>(all));
+  });
+}
+
+// Makes a page beside the trace of each failure, and notes it in the report. Throws Interrupted, and
+// InputError in a program without the viewer.
+void make_failure_pages(const CommandLine& line, const std::string& folder, ScorecardReport& report) {
+  std::vector<FailureTrace*> failures;
+  for (auto& of_scene : report.failures)
+    for (auto& one : of_scene)
+      if (one && !one->file.empty()) failures.push_back(&*one);
+  Progress progress("pages", line.quiet);
+  ViewOptions options;
+  options.max_bytes = kPageOfFailure;
+  options.kernels = line.kernels, options.stop = line.stop;
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    std::filesystem::path page = failures[i]->file;
+    page.replace_extension(".html");
+    const std::string html = trace_page({folder / std::filesystem::path(failures[i]->file)}, options).html;
+    write_file_atomically(folder / page, html.data(), html.size());
+    failures[i]->page = page.string();
+    progress.update(i + 1, failures.size(), 0, "pages");
+  }
+}
+
+// Prints for each kind of note how many runs have it, and the command that shows the first run. Prints how
+// many runs ended with an error, and the first one; they count as no success. Returns kDone, or kCheckFailed
+// if runs ended with an error.
+int report_runs(const std::vector<BenchmarkSweep>& sweeps) {
+  std::vector<NoteOfRuns> notes;
+  std::size_t done = 0, failed = 0;
+  std::string first_error;
+  for (const BenchmarkSweep& sweep : sweeps) {
+    const SweepResult result = read_sweep(sweep.file).result;
+    done += result.runs_in(RunState::done).size();
+    add_notes(result, sweep.file.string(), notes);
+    const auto runs = result.runs_in(RunState::failed);
+    if (!runs.empty() && first_error.empty()) first_error = sweep.name + ": " + result.error[runs.front()];
+    failed += runs.size();
+  }
+  for (const NoteOfRuns& note : notes)
+    std::printf("note: %zu of %zu runs: %s (the first: replay %s)\n", note.runs, done,
+                text_of_kind(note.kind).c_str(), printable(note.first).c_str());
+  if (failed == 0) return kDone;
+  std::printf("%zu runs failed; the first: %s\n", failed, first_error.c_str());
+  return kCheckFailed;
+}
+
+// Prints that the runs are kept. Returns kInterrupted.
+int report_interrupted(const std::string& folder) {
+  std::fprintf(stderr, "%s: interrupted; finished runs are kept in %s, and the same command continues\n",
+               program_identity().name.c_str(), folder.c_str());
+  return kInterrupted;
+}
 
 // Throws InputError if a method or a scene is one of the files that are written to the folder. It may be any
 // other file there.
@@ -96,6 +178,78 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
   } catch (const Interrupted&) {
     return report_interrupted(request.folder);
   }
+}
+
+namespace {
+
+// Does the runs of the plan, without the audit, in its folder. Returns their scores.
+Scorecard scored(const CommandLine& line, const BenchmarkPlan& plan) {
+  std::vector<BenchmarkSweep> sweeps;
+  for (const ScenePlan& one : plan.scenes) sweeps.insert(sweeps.end(), one.sweeps.begin(), one.sweeps.end());
+  require_same_benchmark(sweeps);
+  make_scorecard_folder(plan.benchmark.folder.string());
+  do_scorecard_runs(line, sweeps);
+  for (const auto& [name, why] : plan.skipped) std::printf("skipped: %s: %s\n", name.c_str(), why.c_str());
+  if (report_runs(sweeps) != kDone) std::printf("runs that failed count as no success\n");
+  return scores_of(plan);
+}
+
+// Returns the requested names, or all stored names if none was requested.
+std::vector<std::string> wanted(const std::vector<std::string>& names,
+                                const std::vector<std::string>& stored) {
+  return names.empty() ? stored : names;
+}
+
+void require_folder(const std::string& folder) {
+  if (folder.empty())
+    throw InputError("--output", "is missing: expected a folder for the runs, as of remote-touch scorecard");
+}
+
+}  // namespace
+
+int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest& request) {
+  require_folder(request.folder);
+  const BenchmarkPlan plan =
+      plan_of(chosen_benchmark(request.methods, request.scenes, request.seeds, request.folder));
+  std::vector<std::string> files = request.methods;  // each is a name or a file
+  files.insert(files.end(), request.scenes.begin(), request.scenes.end());
+  for (const BenchmarkSweep& sweep : plan.sweeps())
+    require_distinct({{"--output", sweep.file.string()}, {"--stored", request.file}});
+  const FileLock lock = lock_output(line, request.file, files);
+  try {
+    const Scorecard card = scored(line, plan);
+    const std::string config = configuration_of(plan);
+    const std::string card_digest =
+        write_stored_card(request.file, card, provenance(config, program_text() + " scorecard store", ""));
+    std::printf("%s: %zu scenes, %zu methods, digest %s\n", printable(request.file).c_str(),
+                card.scenes.size(), card.methods.size(), card_digest.c_str());
+    return kDone;
+  } catch (const Interrupted&) {
+    return report_interrupted(request.folder);
+  }
+}
+
+int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest& request) {
+  require_folder(request.folder);
+  const StoredCard stored = read_stored_card(request.file);
+  const BenchmarkPlan plan =
+      plan_of(chosen_benchmark(wanted(request.methods, stored.methods), wanted(request.scenes, stored.scenes),
+                               stored.replicates, request.folder));
+  try {
+    const Scorecard card = scored(line, plan);
+    const std::vector<std::string> list = differences(stored, plan, card);
+    for (const std::string& difference : list) std::printf("differs: %s\n", difference.c_str());
+    std::printf("%s: %zu scenes and %zu methods compared, %zu differences\n", printable(request.file).c_str(),
+                card.scenes.size(), card.methods.size(), list.size());
+    return list.empty() ? kDone : kCheckFailed;
+  } catch (const Interrupted&) {
+    return report_interrupted(request.folder);
+  }
+}
+
+int command_scorecard_summary(const CommandLine&, const ScorecardSummaryRequest& request) {
+  std::fputs(stored_summary(request.file).c_str(), stdout);
+  return kDone;
 }
 
 }  // namespace remote_touch

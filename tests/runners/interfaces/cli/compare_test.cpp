@@ -5,7 +5,7 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::hashes_test {
+namespace remote_touch::compare_test {
 namespace {
 
 std::string printed(int ticks) {
@@ -25,4 +25,4 @@ TEST(Hashes, NameTheirLastTickIfThereIsOne) {
 }
 
 }  // namespace
-}  // namespace remote_touch::hashes_test
+}  // namespace remote_touch::compare_test

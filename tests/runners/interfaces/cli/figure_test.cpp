@@ -1,5 +1,5 @@
 // The output and the exit code of the command `figure` for figures that are made side by side.
-#include "runners/interfaces/cli/figure_folder.h"
+#include "runners/interfaces/cli/figure.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::figure_folder_test {
+namespace remote_touch::figure_test {
 namespace {
 
 Figure nothing(FigureContext&) {
@@ -139,4 +139,4 @@ TEST(FigureFolder, ExitCodeIsBadInputIfNoFigureWasMade) {
 }
 
 }  // namespace
-}  // namespace remote_touch::figure_folder_test
+}  // namespace remote_touch::figure_test

@@ -8,7 +8,7 @@
 #include "runners/interfaces/cli/commands.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::merge_test {
+namespace remote_touch::sweep_test {
 namespace {
 
 // A run takes a millisecond.
@@ -116,4 +116,4 @@ TEST_F(Merge, OfAnEmptyShardStatesTheSweep) {
 }
 
 }  // namespace
-}  // namespace remote_touch::merge_test
+}  // namespace remote_touch::sweep_test
