@@ -1,14 +1,13 @@
-#include "runners/interfaces/descriptions/parameter_description.h"
+#include "runners/interfaces/descriptions/descriptions.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdio>
 
-#include "runners/interfaces/descriptions/descriptions.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::parameter_description_test {
+namespace remote_touch::descriptions_test {
 namespace {
 
 std::string described(const std::string& name) {
@@ -79,4 +78,4 @@ TEST(NamedKind, IsRefusedWithAllKinds) {
 }
 
 }  // namespace
-}  // namespace remote_touch::parameter_description_test
+}  // namespace remote_touch::descriptions_test
