@@ -14,7 +14,6 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/plugins/plugin_library.h"
-#include "runners/interfaces/plugins/plugin_renderer.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
