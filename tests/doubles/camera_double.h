@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/live/devices/steady_clock.h"
+#include "runners/live/devices/clock.h"
 #include "tests/doubles/camera_lens.h"
 #include "tests/doubles/simulated_clock.h"
 

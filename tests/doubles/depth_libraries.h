@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "runners/live/devices/availability.h"
+#include "runners/live/devices/haptic_device.h"
 #include "runners/live/sensors/depth_source.h"
 #include "tests/doubles/camera_double.h"
 #include "tests/doubles/installed_double.h"

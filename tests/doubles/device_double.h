@@ -13,7 +13,7 @@
 #include <mutex>
 #include <vector>
 
-#include "runners/live/devices/steady_clock.h"
+#include "runners/live/devices/clock.h"
 #include "tests/doubles/simulated_clock.h"
 
 namespace remote_touch {

@@ -6,7 +6,6 @@
 #include <ostream>
 #include <string>
 
-#include "runners/live/devices/availability.h"
 #include "runners/live/devices/haptic_device.h"
 #include "tests/doubles/device_double.h"
 #include "tests/doubles/installed_double.h"

@@ -2,7 +2,6 @@
 #include "runners/live/devices/device_address.h"
 
 #include "runners/live/devices/haply_place.h"
-#include "runners/live/devices/uri.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::device_address {

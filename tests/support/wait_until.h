@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "runners/live/devices/steady_clock.h"
+#include "runners/live/devices/clock.h"
 
 namespace remote_touch {
 

@@ -1,6 +1,9 @@
 // The clock of a live run: sensors, devices and the loop between them read the time from it and wait on it.
 #pragma once
 
+#include <time.h>
+
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 
@@ -18,5 +21,29 @@ class Clock {
   double now_s() const noexcept { return 1e-9 * static_cast<double>(now_ns()); }
   void sleep_s(double time_s) noexcept { sleep_until_ns(now_ns() + std::llround(1e9 * time_s)); }
 };
+
+// The clock of a live run.
+
+// CLOCK_MONOTONIC.
+class SteadyClock final : public Clock {
+ public:
+  std::int64_t now_ns() const noexcept override {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return kNsPerS * now.tv_sec + now.tv_nsec;
+  }
+  void sleep_until_ns(std::int64_t moment_ns) noexcept override {
+    const timespec moment{moment_ns / kNsPerS, moment_ns % kNsPerS};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &moment, nullptr) == EINTR) continue;
+  }
+
+ private:
+  static constexpr std::int64_t kNsPerS = 1'000'000'000;
+};
+
+inline Clock& steady_clock() {
+  static SteadyClock clock;
+  return clock;
+}
 
 }  // namespace remote_touch

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/live/devices/availability.h"
 #include "runners/live/devices/browser_device.h"
 #include "runners/live/devices/haptic_device.h"
 

@@ -4,9 +4,7 @@
 #include <atomic>
 
 #include "core/parameters/input_error.h"
-#include "runners/live/devices/gated_device.h"
-#include "runners/live/devices/known_fault.h"
-#include "runners/live/devices/vendor_axes.h"
+#include "runners/live/devices/haptic_device.h"
 #include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {

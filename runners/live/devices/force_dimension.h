@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "runners/live/devices/availability.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

@@ -23,7 +23,6 @@
 #include <memory>
 #include <string>
 
-#include "runners/live/devices/availability.h"
 #include "runners/live/devices/haply_link.h"
 #include "runners/live/devices/haptic_device.h"
 

@@ -17,4 +17,62 @@ void HapticDevice::run(DeviceCycle& cycle) {
   }
 }
 
+namespace {
+
+constexpr std::int64_t kMaxCallWait_ns = 5'000'000, kCallPollPeriod_ns = 100'000;
+
+}  // namespace
+
+// If a call and release() overlap, release() sees that a call is in progress and waits for it, or the call
+// sees at its end that it must switch the motors off, or both happen. Every order leaves the motors off,
+// because a force is written only after they are on.
+void GatedDevice::end_call() noexcept {
+  if (released_) switch_off();
+  is_call_in_progress_ = false;
+}
+
+DeviceFault GatedDevice::read(DeviceReading& reading) noexcept {
+  is_call_in_progress_ = true;
+  DeviceFault fault = sense(reading);
+  end_call();
+  if (!fault && !reading.is_finite()) fault = {"the device reports a state that is not finite", 0};
+  return fault;
+}
+
+DeviceFault GatedDevice::write(const Wrench& wrench) noexcept {
+  if (!wrench.force_N.allFinite() || !wrench.torque_Nm.allFinite())
+    return {"the force or torque for the device is not finite", 0};
+  is_call_in_progress_ = true;
+  const DeviceFault fault = exert_if_on(wrench);
+  end_call();
+  return fault;
+}
+
+DeviceFault GatedDevice::exert_if_on(const Wrench& wrench) noexcept {
+  if (released_) return kReleased;
+  if (!is_on_) {
+    if (const DeviceFault fault = switch_on()) return fault;
+    is_on_ = true;
+    if (released_) return kReleased;  // release() came during switch_on(); end_call() switches them off
+  }
+  return exert(wrench);
+}
+
+// Waits for a call in progress before the motors are switched off, because few vendors' functions allow calls
+// from two threads. It waits at most kMaxCallWait_ns, which is longer than a call should take.
+void GatedDevice::release() noexcept {
+  released_ = true;
+  const std::int64_t until_ns = clock().now_ns() + kMaxCallWait_ns;
+  while (is_call_in_progress_ && clock().now_ns() < until_ns)
+    clock().sleep_until_ns(clock().now_ns() + kCallPollPeriod_ns);
+  switch_off();
+}
+
+// The next write switches the motors on, as the first one did.
+bool GatedDevice::rearm() noexcept {
+  is_on_ = false;
+  released_ = false;
+  return true;
+}
+
 }  // namespace remote_touch

@@ -3,11 +3,13 @@
 // the user; DevicePlacement converts to the world.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <utility>
 
 #include "core/geometry/vector.h"
+#include "core/parameters/input_error.h"
 #include "core/rendering/renderer.h"
 #include "runners/live/devices/clock.h"
 
@@ -93,6 +95,63 @@ class HapticDevice {
 
  private:
   Clock& clock_;
+};
+
+// The availability of a device, as `remote-touch devices` prints it.
+
+struct Availability {
+  bool compiled_in = true;
+  bool found = false;  // a device that can be opened is present now
+  std::string detail;  // the device found, or the reason why there is none and what would help; one line
+  bool was_searched = true;  // false: only opening tells whether there is a device; found is then false
+};
+
+inline Availability always(const char* what) {
+  return {true, true, what};
+}
+
+// Returns what look() finds, or the reason if it throws InputError.
+template <class Look>
+Availability availability_of(Look look) {
+  try {
+    return look();
+  } catch (const InputError& error) {
+    return {.detail = error.what()};
+  }
+}
+
+// Common part of the adapters of vendors' libraries: the force is off until the first write() and after
+// release(), and no value that is not finite passes in either direction.
+
+// An adapter's destructor calls release() before it closes.
+class GatedDevice : public HapticDevice {
+ public:
+  using HapticDevice::HapticDevice;
+  DeviceFault read(DeviceReading& reading) noexcept final;
+  DeviceFault write(const Wrench& wrench) noexcept final;
+  void release() noexcept final;
+  bool rearm() noexcept final;
+
+ protected:
+  bool is_released() const { return released_; }
+
+ private:
+  // Stores everything that the vendor reports. The caller checks that the values are finite. Called in the
+  // thread of the ticks.
+  virtual DeviceFault sense(DeviceReading& reading) noexcept = 0;
+  // write() calls it before the first force command, and again after each rearm(). If it fails, the next
+  // write() calls it again.
+  virtual DeviceFault switch_on() noexcept = 0;
+  virtual DeviceFault exert(const Wrench& wrench) noexcept = 0;
+  // Switches the motors off. Any thread may call it, more than once, even while another thread hangs in one
+  // of the functions above.
+  virtual void switch_off() noexcept = 0;
+
+  DeviceFault exert_if_on(const Wrench& wrench) noexcept;
+  void end_call() noexcept;
+
+  std::atomic<bool> released_{false}, is_call_in_progress_{false};
+  bool is_on_ = false;
 };
 
 }  // namespace remote_touch

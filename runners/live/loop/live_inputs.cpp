@@ -1,7 +1,7 @@
 #include "runners/live/loop/live_inputs.h"
 
+#include "runners/live/devices/device_address.h"
 #include "runners/live/devices/device_table.h"
-#include "runners/live/devices/uri.h"
 #include "runners/live/sensors/sensor_table.h"
 
 namespace remote_touch {

@@ -12,7 +12,6 @@
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/teleoperation/teleoperation.h"
 #include "runners/live/devices/device_placement.h"
-#include "runners/live/devices/heartbeat.h"
 #include "runners/live/devices/safety_gate.h"
 #include "runners/live/devices/triple_buffer.h"
 #include "runners/live/loop/parameter_changes.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "runners/live/devices/availability.h"
+#include "runners/live/devices/haptic_device.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runners/experiment/sessions/session_scene.h"
-#include "runners/live/devices/uri.h"
+#include "runners/live/devices/device_address.h"
 #include "runners/live/sensors/freenect_camera.h"
 #include "runners/live/sensors/k4a_camera.h"
 #include "runners/live/sensors/openni2_camera.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/live/devices/availability.h"
+#include "runners/live/devices/haptic_device.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/live/devices/steady_clock.h"
+#include "runners/live/devices/clock.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::deadline_socket_test {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "runners/evaluation/contract/allocation_counter.h"
-#include "runners/live/devices/steady_clock.h"
+#include "runners/live/devices/clock.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/doubles/spacenav_daemon.h"
 #include "tests/doubles/spacenav_socket.h"

@@ -1,7 +1,7 @@
 // The adapter on the real libfreenect without a Kinect plugged in.
 #include <gtest/gtest.h>
 
-#include "runners/live/devices/steady_clock.h"
+#include "runners/live/devices/clock.h"
 #include "runners/live/sensors/freenect_camera.h"
 #include "tests/support/test_files.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "runners/live/devices/steady_clock.h"
+#include "runners/live/devices/clock.h"
 #include "tests/support/start_with_libraries.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"

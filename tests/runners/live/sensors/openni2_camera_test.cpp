@@ -12,7 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "runners/live/devices/steady_clock.h"
+#include "runners/live/devices/clock.h"
 #include "tests/doubles/virtual_openni2/pattern.h"
 #include "tests/doubles/virtual_openni2/recording.h"
 #include "tests/doubles/virtual_openni2/virtual_camera.h"
