@@ -11,7 +11,7 @@
 
 #include "runners/live/loop/camera_feed.h"
 #include "runners/live/loop/live_contact.h"
-#include "runners/live/loop/live_logger.h"
+#include "runners/live/loop/live_log.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/loop/live_slave.h"
 

@@ -1,13 +1,52 @@
-// Timing of a live run: a text table and a figure.
+// The report of a live run: its inputs, its timing as a table and a figure, and notes.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "analysis/figures/figure.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/run_report.h"
 #include "runners/live/loop/live_log.h"
 
 namespace remote_touch {
+
+// The recordings that a live run reads, for the hashes in its results.
+
+// Returns the recordings, sessions and meshes that run_live() opens with this device and this sensor:
+// - the files of --depth and of --device replay:;
+// - the recording of the scenario, if the scenario is the sensor (sim:), or if a hand is simulated (sim:,
+//   browser:, replay:), because its motion is planned in the scenario. has_view: the page of --view shows
+//   where that motion begins, so the recording is read too;
+// - the file of the trajectory, if the device is sim: or browser:, or there is a page;
+// - the files of all other sections of the experiment.
+// Throws InputError for an address without a known scheme.
+std::vector<RecordingPart> live_inputs(const Experiment& experiment, const std::string& device,
+                                       const std::string& depth, bool has_view);
+
+// The report of a live session: its inputs, and notes on what the user may not have intended.
+
+// Returns the phases of a live session: those of Experiment::phases(); those of the scene if the sensor is
+// simulated (depth "sim:..."); and those of the hand and the operator if the device is simulated (device
+// "sim:...").
+std::vector<Phase> simulated_phases(const Experiment& experiment, const std::string& device,
+                                    const std::string& depth, const Kernels& kernels);
+
+struct LiveFacts {
+  std::string depth;  // the address of the sensor, such as "sim:"
+  const SensorView& view;
+  const SensedPoints& sensed;  // the frames that were sent to the renderer
+  const CameraCounts& camera;
+  const LiveLog& log;
+  double haptic_rate_hz = 0;
+  const std::vector<Phase>& phases;  // see simulated_phases()
+};
+
+// Returns one input line, on the frames, and these notes: no frame; no contact; frames unused, if more than a
+// tenth of all frames were not used; phase not reached.
+RunReport report_of(const LiveFacts& facts);
+
+// Timing of a live run: a text table and a figure.
 
 struct LiveReport {
   struct Times {

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <functional>
 #include <future>
 #include <new>
 #include <stdexcept>
@@ -19,7 +18,6 @@
 #include "runners/live/sensors/sensor_table.h"
 
 namespace remote_touch {
-
 namespace {
 
 constexpr double kPatience_s = 0.05;         // the camera's thread notices an end within this time

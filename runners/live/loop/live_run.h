@@ -12,11 +12,19 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/live/devices/browser_device.h"
 #include "runners/live/loop/live_controls.h"
-#include "runners/live/loop/live_notes.h"
 #include "runners/live/loop/live_report.h"
-#include "runners/live/loop/live_trouble.h"
 
 namespace remote_touch {
+
+// The parts of a running live session that do not work at the moment, as texts for the user.
+
+// Each text is a statement that is true now; it is empty if there is nothing to report.
+struct LiveTrouble {
+  std::string camera;  // why the scene does not change
+  std::string force;   // why the device gets no force, and what the user can do
+
+  bool operator==(const LiveTrouble&) const = default;
+};
 
 struct LiveOptions {
   std::string device = "sim:", depth = "sim:";

@@ -14,8 +14,7 @@
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/safety_gate.h"
 #include "runners/live/devices/triple_buffer.h"
-#include "runners/live/loop/parameter_changes.h"
-#include "runners/live/loop/ring.h"
+#include "runners/live/loop/live_controls.h"
 
 namespace remote_touch {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "runners/live/loop/live_trouble.h"
+#include "runners/live/loop/live_run.h"
 #include "runners/live/view/live_channel.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "runners/live/devices/browser_device.h"
-#include "runners/live/loop/parameter_changes.h"
+#include "runners/live/loop/live_controls.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include "analysis/trace/column.h"
 #include "core/geometry/point_cloud.h"
 #include "runners/live/loop/live_controls.h"
-#include "runners/live/loop/live_trouble.h"
+#include "runners/live/loop/live_run.h"
 
 namespace remote_touch {
 

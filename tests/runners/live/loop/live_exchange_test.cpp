@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "runners/live/devices/triple_buffer.h"
-#include "runners/live/loop/ring.h"
+#include "runners/live/loop/live_controls.h"
 
 namespace remote_touch::live_exchange_test {
 namespace {
