@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/live/sensors/replaceable_scenario.h"
+#include "runners/live/sensors/scenario_camera.h"
 
 namespace remote_touch {
 

@@ -14,8 +14,7 @@
 #include <thread>
 
 #include "core/parameters/input_error.h"
-#include "runners/live/sensors/pixel_rows.h"
-#include "runners/live/sensors/sensor_clock.h"
+#include "runners/live/sensors/driver_frames.h"
 
 namespace remote_touch {
 

@@ -7,10 +7,8 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "runners/live/sensors/frame_numbers.h"
+#include "runners/live/sensors/driver_frames.h"
 #include "runners/live/sensors/k4a_library.h"
-#include "runners/live/sensors/pixel_rows.h"
-#include "runners/live/sensors/sensor_clock.h"
 #include "runners/live/sensors/undistortion.h"
 
 namespace remote_touch {

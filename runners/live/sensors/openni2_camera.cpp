@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
+#include "runners/live/sensors/driver_frames.h"
 #include "runners/live/sensors/lasting_threads.h"
 #include "runners/live/sensors/openni2_library.h"
-#include "runners/live/sensors/pixel_rows.h"
-#include "runners/live/sensors/sensor_clock.h"
 
 namespace remote_touch {
 

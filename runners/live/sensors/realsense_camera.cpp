@@ -7,10 +7,8 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/live/devices/device_address.h"
-#include "runners/live/sensors/frame_numbers.h"
-#include "runners/live/sensors/pixel_rows.h"
+#include "runners/live/sensors/driver_frames.h"
 #include "runners/live/sensors/realsense_lens.h"
-#include "runners/live/sensors/sensor_clock.h"
 
 namespace remote_touch {
 

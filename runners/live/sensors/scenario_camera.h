@@ -1,13 +1,141 @@
 // A scenario played in real time: a simulated camera, or a recording on disk.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
 
+#include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/live/sensors/depth_source.h"
-#include "runners/live/sensors/frame_encoder.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
+
+// Encodes the frames of a scenario as the frames of one sensor.
+
+// A live run has one view: one camera at one pose, or clouds of one layout (see CloudLayout). Encoded frames
+// are decoded by cloud_of().
+class FrameEncoder {
+ public:
+  struct Settings {
+    std::string name = "--depth";  // name of the source, for messages
+    // Maximum depth along the optical axis, in metres; 0: not known.
+    double max_depth_m = 0;
+    // Unit of the depths, in metres. 0: the least of 0.1, 0.2, 0.5, 1 and 2 mm with which 16 bits reach
+    // max_depth_m and every point of the first frame; the last of these reaches 131.07 m.
+    double unit_m = 0;
+    // Checks every frame that has points. Throws InputError for a frame to which the rules of the run cannot
+    // be applied, such as one without colours. Empty: no check.
+    std::function<void(const PointCloud&)> require = {};
+  };
+
+  // The view is that of the first frame. Frames are sent as points, in the world frame, if the first frame is
+  // no depth image, or if a pinhole camera with 16 bits of depth cannot show it: a lens bends its rays by
+  // more than 1 px, or points are behind the camera or deeper than 65535 units.
+  FrameEncoder(const Settings& settings, const PointCloud& first);
+
+  SensorView& view() { return view_; }
+  const SensorView& view() const { return view_; }
+
+  // Sets the depths or points, and the colours, of the frame. With this view, cloud_of(frame) has the same
+  // measured points:
+  // - Points of a depth image are on the rays of their pixels, less than 1 px from their original position.
+  //   Their depths differ by half a unit at most; a depth of less than half a unit becomes one unit. Their
+  //   normals are not sent; a depth_pipeline computes them.
+  // - Frames that are sent as points have the nearest floats, and normals if the scenario has them.
+  // If the first frame has colours, all frames have them: the points of a frame without colours get
+  // kNoColour. If the first frame has none, none are sent.
+  //
+  // A frame without a measured point that does not fit the view becomes an image of holes, or a cloud without
+  // points. Any other frame that does not fit throws InputError, which names the frame. The reasons are
+  // another camera, pose or size of image; a point behind the camera or beyond 65535 units; other columns;
+  // normals that the first frame has not, or the reverse; and forbidden regions or stiffnesses of single
+  // points, which no sensor sends.
+  void encode(const PointCloud& cloud, int index, SensorFrame& frame) const;
+
+ private:
+  // Functions that return a text return the problem of the frame; the text is empty if there is none.
+  void write_nothing(SensorFrame& frame) const;
+  std::string problem_of(const PointCloud& cloud) const;
+  std::string image_problem(const PointCloud& cloud) const;
+  std::string layout_problem(const PointCloud& cloud) const;
+  std::string pixel_problem(const Vec3& p_C, std::size_t pixel) const;
+  std::string write_depth(const PointCloud& cloud, SensorFrame& frame) const;
+
+  const std::string name_;
+  const std::function<void(const PointCloud&)> require_;
+  SensorView view_;
+  RigidTransform X_CW_ = RigidTransform::Identity();
+};
+
+// A scenario that can be replaced while a simulated camera shows it, because its noise was changed.
+
+// The scenario that is shown now, shared by the camera's thread and the thread that replaces it.
+class ShownScenario {
+ public:
+  explicit ShownScenario(std::shared_ptr<const Scenario> first) : now_(std::move(first)) {}
+  std::shared_ptr<const Scenario> now() const {
+    const std::lock_guard lock(mutex_);
+    return now_;
+  }
+  // pre: the frame rate is the same. The number of frames may differ: a scenario without noise may have a
+  // single frame.
+  void replace(std::shared_ptr<const Scenario> next) {
+    const std::lock_guard lock(mutex_);
+    now_ = std::move(next);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Scenario> now_;
+};
+
+// points() and cloud() return the last frame for a number beyond it, because the camera may have chosen the
+// number before the scenario was replaced.
+class ReplaceableScenario final : public Scenario {
+ public:
+  explicit ReplaceableScenario(std::shared_ptr<const ShownScenario> shown) : shown_(std::move(shown)) {}
+
+  double frame_rate_hz() const override { return shown_->now()->frame_rate_hz(); }
+  int frame_count() const override { return shown_->now()->frame_count(); }
+  double captured_s(int frame) const override { return shown_->now()->captured_s(frame); }
+  bool ends() const override { return shown_->now()->ends(); }
+  std::optional<RigidTransform> sensor_pose() const override { return shown_->now()->sensor_pose(); }
+  std::optional<double> leaves_sensor_s(int frame) const override {
+    return shown_->now()->leaves_sensor_s(frame);
+  }
+  std::optional<std::uint64_t> fixtures_off(int frame) const override {
+    return shown_->now()->fixtures_off(frame);
+  }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
+    const auto now = shown_->now();
+    return now->points(std::min(frame, now->frame_count() - 1));
+  }
+  PointCloud cloud(int frame) const override {
+    const auto now = shown_->now();
+    return now->cloud(std::min(frame, now->frame_count() - 1));
+  }
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return shown_->now()->signed_distance(p_W, time_s);
+  }
+  Vec3 true_normal(const Vec3& p_W, double time_s) const override {
+    return shown_->now()->true_normal(p_W, time_s);
+  }
+  std::optional<Vec3> plane_normal(double time_s) const override {
+    return shown_->now()->plane_normal(time_s);
+  }
+  double truth_time_s(double time_s) const override { return shown_->now()->truth_time_s(time_s); }
+  double surface_height(double x, double z, double time_s) const override {
+    return shown_->now()->surface_height(x, z, time_s);
+  }
+
+ private:
+  const std::shared_ptr<const ShownScenario> shown_;
+};
 
 // Delivers the frames of the scenario at its frame rate; time 0 is start_at(), or else
 // the first next(). If several frames are

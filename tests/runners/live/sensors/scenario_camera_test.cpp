@@ -1,18 +1,212 @@
-// A scenario as a sensor in real time, on a simulated clock.
 #include "runners/live/sensors/scenario_camera.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/colour.h"
+#include "core/geometry/rotation.h"
+#include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/sessions/sensor_frame.h"
-#include "runners/live/sensors/replaceable_scenario.h"
 #include "scenarios/camera/sensor_faults.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::scenario_camera_test {
 namespace {
+
+// Frames of scenarios as one sensor sends them: decoding gives the same points, or a refusal names the frame.
+
+constexpr CameraIntrinsics kCamera{16, 12, 20, 21, 7.3, 5.6};
+
+RigidTransform pose() {
+  return RigidTransform(Eigen::Translation3d(0.1, 0.4, -0.2) * rotation(Vec3(0.3, -0.2, 0.5)));
+}
+
+// A wall across the axis of the camera; pixel 5 is a hole.
+PointCloud wall(double depth_m, const CameraIntrinsics& camera = kCamera,
+                const RigidTransform& X_WC = pose()) {
+  DepthImage depth{camera.width, camera.height, {}};
+  depth.z_m.assign(camera.pixels(), depth_m);
+  depth.z_m[5] = std::nan("");
+  return cloud_from_depth(depth, camera, X_WC);
+}
+
+PointCloud grid(int columns, bool has_normals = false) {
+  PointCloud cloud;
+  for (int i = 0; i < 12; ++i)
+    has_normals ? cloud.append(Vec3(0.1 * i, 0, 0.3), Vec3::UnitZ()) : cloud.append(Vec3(0.1 * i, 0, 0.3));
+  cloud.grid_columns = columns;
+  return cloud;
+}
+
+PointCloud decoded(const FrameEncoder& encoder, const PointCloud& cloud) {
+  SensorFrame frame;
+  encoder.encode(cloud, 3, frame);
+  EXPECT_TRUE(is_complete(frame, encoder.view()));
+  return cloud_of(frame, encoder.view(), encoder.view().X_WC);
+}
+
+double largest_error_m(const PointCloud& a, const PointCloud& b) {
+  double error_m = 0;
+  EXPECT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    EXPECT_EQ(a.is_measured(i), b.is_measured(i)) << i;
+    if (a.is_measured(i)) error_m = std::max(error_m, (a.point(i) - b.point(i)).norm());
+  }
+  return error_m;
+}
+
+std::string problem(const PointCloud& first, const PointCloud& later) {
+  const FrameEncoder encoder({.name = "./scene"}, first);
+  SensorFrame frame;
+  return refusal([&] { encoder.encode(later, 3, frame); });
+}
+
+// Half a unit of depth, along the longest ray of this camera: |(16 / 20, 12 / 21, 1)| < 1.5.
+double tolerance_m(const FrameEncoder& encoder) {
+  return 0.75 * encoder.view().metres_per_unit + 1e-12;
+}
+
+TEST(FrameEncoder, SendsTheDepthsOfAnImage) {
+  const FrameEncoder encoder({}, wall(0.5));
+  EXPECT_EQ(encoder.view().metres_per_unit, 1e-4);
+  EXPECT_FALSE(encoder.view().cloud);
+  for (const double depth_m : {0.00003, 0.41237, 6.5535}) {
+    const double least_m = depth_m < 1e-4 ? 1.5e-4 : 0;  // rounded up to one unit, so that it stays measured
+    EXPECT_LE(largest_error_m(decoded(encoder, wall(depth_m)), wall(depth_m)),
+              tolerance_m(encoder) + least_m);
+  }
+}
+
+// 65535 units of 0.1, 0.2, 0.5, 1 and 2 mm are 6.55, 13.1, 32.8, 65.5 and 131 m.
+TEST(FrameEncoder, ChoosesTheLeastUnitThatReachesTheMaximumDepth) {
+  for (const auto& [max_depth_m, first_m, unit_m] : {std::tuple{3.0, 0.5, 1e-4},
+                                                     {0.0, 6.5, 1e-4},
+                                                     {6.6, 0.5, 2e-4},
+                                                     {3.0, 7.0, 2e-4},
+                                                     {20.0, 0.5, 5e-4},
+                                                     {40.0, 0.5, 1e-3},
+                                                     {100.0, 0.5, 2e-3},
+                                                     {0.0, 130.0, 2e-3}}) {
+    const FrameEncoder encoder({.max_depth_m = max_depth_m}, wall(first_m));
+    EXPECT_EQ(encoder.view().metres_per_unit, unit_m) << max_depth_m << ", " << first_m;
+    const PointCloud farthest = wall(std::max(max_depth_m, first_m));
+    EXPECT_LE(largest_error_m(decoded(encoder, farthest), farthest), tolerance_m(encoder));
+  }
+  EXPECT_EQ(FrameEncoder({.unit_m = 1e-3}, wall(0.5)).view().metres_per_unit, 1e-3);
+}
+
+TEST(FrameEncoder, RefusesDepthsBeyondItsUnits) {
+  EXPECT_EQ(
+      problem(wall(0.5), wall(7)),
+      "./scene: frame 3 has a point at a depth of 7 m: expected at most 6.5535 m, 65535 units of 0.1 mm");
+  EXPECT_HAS(problem(wall(0.5), wall(-0.5)), "./scene: frame 3 has a point behind its camera");
+}
+
+TEST(FrameEncoder, RefusesAnotherPoseOfTheCamera) {
+  const RigidTransform shifted = pose() * Eigen::Translation3d(0, 0, 0.2);
+  EXPECT_HAS(problem(wall(0.4), wall(0.4, kCamera, shifted)),
+             "./scene: frame 3 was captured from another pose (0.2 m and 0 deg from the first frame)");
+  const RigidTransform turned(pose() * rotation(Vec3(0, kRadiansPerDegree, 0)));
+  EXPECT_HAS(problem(wall(0.4), wall(0.4, kCamera, turned)), "(0 m and 1 deg from the first frame)");
+}
+
+TEST(FrameEncoder, RefusesAnotherCamera) {
+  CameraIntrinsics wider = kCamera;
+  wider.fx = 10, wider.fy = 10.5;
+  EXPECT_HAS(problem(wall(0.4), wall(0.4, wider)),
+             "./scene: frame 3 has another camera than the first frame");
+  // The fit of a pinhole to the points of a frame may differ by less than a pixel.
+  CameraIntrinsics fitted = kCamera;
+  fitted.fx *= 1.01, fitted.cx += 0.01;
+  EXPECT_EQ(problem(wall(0.4), wall(0.4, fitted)), "no InputError");
+  EXPECT_HAS(problem(wall(0.4), wall(0.4, {16, 6, 20, 21, 7.3, 5.6})),
+             "frame 3 has 16 x 6 pixels: expected 16 x 12 pixels");
+}
+
+TEST(FrameEncoder, RefusesAFrameOfPointsInNoOrderAfterAnImage) {
+  PointCloud points = wall(0.4);
+  points.image.reset();
+  std::reverse(points.x.begin(), points.x.end());
+  EXPECT_HAS(problem(wall(0.4), points), "frame 3 has another camera");
+  EXPECT_HAS(problem(wall(0.4), grid(0)), "frame 3 has 12 points: expected 16 x 12 pixels");
+}
+
+TEST(FrameEncoder, RefusesAnotherLayoutOfPoints) {
+  EXPECT_EQ(problem(grid(4), grid(4)), "no InputError");
+  EXPECT_HAS(problem(grid(4), grid(0)),
+             "./scene: frame 3 has no rows and columns: expected rows of 4 points, as the first frame has");
+  EXPECT_HAS(problem(grid(0), grid(4)), "frame 3 has rows of 4 points: expected no rows and columns");
+  EXPECT_HAS(problem(grid(4), grid(3)), "frame 3 has rows of 3 points: expected rows of 4 points");
+  EXPECT_HAS(problem(grid(4), wall(0.4)), "frame 3 has rows of 16 points");
+  EXPECT_HAS(problem(grid(0), grid(0, true)), "frame 3 has normals, and the first frame has no normals");
+  EXPECT_HAS(problem(grid(0, true), grid(0)), "frame 3 has no normals, and the first frame has normals");
+}
+
+// Recordings have depth images to which no colour image belongs.
+TEST(FrameEncoder, SendsColoursIfTheFirstFrameHasSome) {
+  for (const PointCloud& plain : {wall(0.4), grid(0)}) {
+    PointCloud coloured = plain;
+    coloured.colour.assign(plain.size(), 0x123456);
+    EXPECT_EQ(decoded(FrameEncoder({}, coloured), coloured).colour, coloured.colour);
+    EXPECT_EQ(decoded(FrameEncoder({}, coloured), plain).colour,
+              std::vector<std::uint32_t>(plain.size(), kNoColour));
+    EXPECT_TRUE(decoded(FrameEncoder({}, plain), coloured).colour.empty());
+  }
+}
+
+// A rule by hue finds nothing in a frame without colours, which would leave a region out.
+TEST(FrameEncoder, RefusesAFrameThatTheRulesCannotUse) {
+  PointCloud coloured = wall(0.4);
+  coloured.colour.assign(coloured.size(), 0x123456);
+  const auto require = [](const PointCloud& cloud) {
+    if (cloud.colour.empty()) throw InputError("fixtures.0", "needs colours");
+  };
+  const FrameEncoder encoder({.require = require}, coloured);
+  SensorFrame frame;
+  encoder.encode(coloured, 0, frame);
+  EXPECT_HAS(refusal([&] { encoder.encode(wall(0.4), 1, frame); }), "fixtures.0: needs colours");
+}
+
+TEST(FrameEncoder, RefusesWhatNoSensorSends) {
+  PointCloud regions = grid(0), stiff = grid(0);
+  regions.fixture_radius_m.assign(12, 0.01), stiff.stiffness_N_per_m.assign(12, 100);
+  EXPECT_HAS(problem(grid(0), regions), "frame 3 has forbidden regions or stiffnesses of its own");
+  EXPECT_HAS(problem(grid(0), stiff), "frame 3 has forbidden regions or stiffnesses of its own");
+}
+
+// No point was measured, so no point can be at a wrong position.
+TEST(FrameEncoder, AFrameWithoutMeasuredPointsFitsEveryView) {
+  PointCloud holes = grid(4);
+  holes.x.assign(12, std::nan(""));
+  for (const PointCloud& nothing : {PointCloud{}, holes}) {
+    const PointCloud image = decoded(FrameEncoder({}, wall(0.4)), nothing);
+    EXPECT_EQ(image.size(), 192u);
+    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_FALSE(image.is_measured(i));
+    EXPECT_EQ(decoded(FrameEncoder({}, grid(0)), nothing).size(), 0u);
+  }
+}
+
+// A lens bends the rays by up to 3 px. The points of a pinhole image would be at other positions.
+TEST(FrameEncoder, SendsAnImageThatIsNoPinholesAsPoints) {
+  PointCloud bent = wall(0.4);
+  for (std::size_t i = 0; i < bent.size(); ++i) bent.x[i] += 0.4 / 20 * 3 * static_cast<double>(i) / 192;
+  const FrameEncoder encoder({}, bent);
+  ASSERT_TRUE(encoder.view().cloud);
+  EXPECT_EQ(encoder.view().cloud->grid_columns, 16);
+  EXPECT_LT(largest_error_m(decoded(encoder, bent), bent), 1e-7);
+  for (const double depth_m : {140.0, -0.4})
+    EXPECT_LT(largest_error_m(decoded(FrameEncoder({}, wall(depth_m)), wall(depth_m)), wall(depth_m)), 1e-4);
+}
+
+// A scenario as a sensor in real time, on a simulated clock.
 
 // A recording of a host that was slow to start and got fewer frames than the sensor's rate.
 class SlowRecording : public Scenario {
