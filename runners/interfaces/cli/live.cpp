@@ -29,7 +29,6 @@
 #include "runners/live/loop/live_run.h"
 #include "runners/live/sensors/sensor_table.h"
 #include "runners/live/view/live_view.h"
-#include "runners/live/view/redirect_page.h"
 
 namespace remote_touch {
 namespace {

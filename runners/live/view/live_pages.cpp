@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "runners/live/view/page_message.h"
+#include "runners/live/view/page_requests.h"
 
 namespace remote_touch {
 

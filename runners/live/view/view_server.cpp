@@ -30,8 +30,7 @@
 #include <random>
 #include <thread>
 
-#include "runners/live/view/page_message.h"
-#include "runners/live/view/request_check.h"
+#include "runners/live/view/page_requests.h"
 #endif
 
 namespace remote_touch {

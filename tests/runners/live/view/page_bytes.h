@@ -1,4 +1,4 @@
-// The bytes of a page's messages, see page_message.h.
+// The bytes of a page's messages, see page_requests.h.
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,11 @@
 // The file that leads a browser to the page of a live run.
-#include "runners/live/view/redirect_page.h"
+#include "runners/live/view/live_view.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch::redirect_page_test {
+namespace remote_touch::live_view_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,4 +42,4 @@ TEST(RedirectPage, IsWrittenToTheNextFolderIfTheFirstIsNone) {
 }
 
 }  // namespace
-}  // namespace remote_touch::redirect_page_test
+}  // namespace remote_touch::live_view_test

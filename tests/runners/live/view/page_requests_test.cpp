@@ -1,4 +1,4 @@
-#include "runners/live/view/page_message.h"
+#include "runners/live/view/page_requests.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,46 @@
 #include <string>
 
 #include "tests/runners/live/view/page_bytes.h"
+#include "tests/support/test_files.h"
 
-namespace remote_touch::page_message_test {
+namespace remote_touch::page_requests_test {
 namespace {
+
+// Which requests the page server answers, and what it says to the others.
+
+TEST(RequestCheck, LoopbackNamesWithAnyPortAreAnswered) {
+  for (const char* host : {"127.0.0.1:40123", "localhost:40123", "localhost:8000", "127.0.0.1:1",
+                           "[::1]:65535", "localhost", "127.0.0.1"})
+    EXPECT_TRUE(is_loopback_host(host)) << host;
+}
+
+TEST(RequestCheck, OtherNamesAreRefused) {
+  for (const char* host :
+       {"", "example.org", "example.org:8000", "localhost.example.org", "localhost:8000.example.org",
+        "127.0.0.1.example.org:8000", "127.0.0.1:", "localhost:80a0", "localhost:8000;x", "localhost:123456",
+        "127.0.0.2:8000", "10.0.0.1:8000", "user@localhost:8000", " localhost", "localhost:8000 "})
+    EXPECT_FALSE(is_loopback_host(host)) << host;
+}
+
+// Another program on this machine may serve a page, too: its port differs.
+TEST(RequestCheck, OnlyThePageOfThisServerOpensAChannel) {
+  EXPECT_TRUE(is_own_origin("http://127.0.0.1:40123", "127.0.0.1:40123"));
+  EXPECT_TRUE(is_own_origin("http://localhost:8000", "localhost:8000")) << "through ssh -L";
+  EXPECT_FALSE(is_own_origin("http://127.0.0.1:40124", "127.0.0.1:40123"));
+  EXPECT_FALSE(is_own_origin("http://localhost:40123", "127.0.0.1:40123"));
+  EXPECT_FALSE(is_own_origin("http://example.org", "example.org")) << "DNS rebinding";
+  EXPECT_FALSE(is_own_origin("https://127.0.0.1:40123", "127.0.0.1:40123"));
+  EXPECT_FALSE(is_own_origin("null", "127.0.0.1:40123"));
+  EXPECT_FALSE(is_own_origin("", "127.0.0.1:40123"));
+  EXPECT_FALSE(is_own_origin("http://127.0.0.1:40123/", "127.0.0.1:40123"));
+}
+
+TEST(RequestCheck, EveryRefusalSaysWhatToDo) {
+  EXPECT_HAS(refusal_text(403, "40123"), "ssh -L 8000:127.0.0.1:40123 ");
+  EXPECT_HAS(refusal_text(404, "40123"), "open the whole address");
+  EXPECT_HAS(refusal_text(409, "40123"), "Close one of them");
+  EXPECT_HAS(refusal_text(405, "40123"), "Open the address that the terminal prints");
+}
 
 TEST(PageMessage, AHandIsReadWithItsButtons) {
   const auto message = page_message(hand_bytes({0.1, -0.2, 3}, 5, {0.6, 0, 0.8, 0}));
@@ -113,4 +150,4 @@ TEST(PageMessage, RandomBytesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace remote_touch::page_message_test
+}  // namespace remote_touch::page_requests_test
