@@ -21,7 +21,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/presentation/export/csv_files.h"
+#include "runners/presentation/export/result_tables.h"
 #include "runners/sweep/answer_panels.h"
 #include "runners/sweep/answer_text.h"
 #include "runners/sweep/shards/shard_merge.h"

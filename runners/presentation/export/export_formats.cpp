@@ -3,7 +3,6 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/export/csv_files.h"
 #include "runners/presentation/export/mcap_file.h"
 #include "runners/presentation/export/npz_file.h"
 #include "runners/presentation/export/result_tables.h"

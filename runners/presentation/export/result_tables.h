@@ -6,6 +6,7 @@
 
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/column.h"
+#include "runners/presentation/export/export_job.h"
 
 namespace remote_touch {
 
@@ -25,5 +26,20 @@ TextAttributes exported_attributes(const Hdf5Reader& result, const std::vector<T
 // Returns the names of the numbers in a row: force_x, force_y, force_z. The endings of a quaternion are w, x,
 // y, z, and those of another width 0, 1, ... A column of width 1 has its own name.
 std::vector<std::string> component_names(const Column& column);
+
+// Tables as text, for spreadsheets, R and pandas.
+
+// Writes x.csv, or x_NAME.csv for each of several tables, with one line of names. Also writes x_columns.csv
+// with a line for each of these names: table, column, unit, meaning. Lines end with a line feed.
+void write_csv(const ExportJob& job);
+// The same with these tables instead of those of the result.
+void write_csv(const std::vector<Table>& tables, const ExportJob& job);
+
+// Returns the line of names. The names of a vector are name_x, name_y, name_z.
+std::string csv_header(const Table& table);
+// Returns the rows first .. end - 1. Numbers are the shortest text that is read back as the same bits, or
+// nan, inf, -inf. Enumerations have the names of their values. Texts are in quotes if they need them (RFC
+// 4180).
+std::string csv_rows(const Table& table, std::size_t first, std::size_t end);
 
 }  // namespace remote_touch

@@ -2,8 +2,7 @@
 
 #include <stdexcept>
 
-#include "runners/presentation/export/npy_array.h"
-#include "runners/presentation/export/zip_archive.h"
+#include "runners/presentation/export/npz_file.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::npz_test {

@@ -1,10 +1,10 @@
-#include "runners/presentation/export/vtk_poly_data.h"
+#include "runners/presentation/export/vtp_files.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch::vtk_poly_data_test {
+namespace remote_touch::vtp_files_test {
 namespace {
 
 std::string array(const char* type, const char* name, int components, int offset) {
@@ -42,4 +42,4 @@ TEST(VtkPolyData, IsTheFileOfTheFormat) {
 }
 
 }  // namespace
-}  // namespace remote_touch::vtk_poly_data_test
+}  // namespace remote_touch::vtp_files_test
