@@ -6,10 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/presentation/view/page_file.h"
 #include "runners/presentation/view/shown_meshes.h"
-#include "runners/presentation/view/shown_sensor.h"
-#include "runners/presentation/view/shown_tool.h"
+#include "runners/presentation/view/view_page.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/text_files/json_text.h"
 

@@ -7,8 +7,8 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/frame_stream.h"
-#include "runners/presentation/view/frames_again.h"
-#include "runners/presentation/view/shown_tool.h"
+#include "runners/presentation/view/shown_frames.h"
+#include "runners/presentation/view/shown_meshes.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {

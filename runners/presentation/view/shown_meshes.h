@@ -1,17 +1,73 @@
-// The true surface of a scene of meshes, as a page shows it: each mesh once, and its poses over time.
+// Meshes, tools and cameras as a page shows them, in packed arrays of numbers.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "runners/presentation/view/packed_arrays.h"
+#include "core/dissertation/sphere_tree/tool_spheres.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/geometry/vector.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
+
+// Arrays of numbers one after another, for a page to read: little endian, each at a multiple of eight bytes.
+
+// Position, type and length of an array in the bytes of PackedArrays.
+struct PackedArray {
+  std::size_t at = 0;        // first byte
+  const char* type = "f64";  // f64, f32, i32, u32, u16 or u8
+  std::size_t length = 0;    // numbers
+};
+Json json_of(const PackedArray& array);
+
+class PackedArrays {
+ public:
+  PackedArray add(const std::vector<double>& values) { return append(values, "f64"); }
+  PackedArray add(const std::vector<float>& values) { return append(values, "f32"); }
+  PackedArray add(const std::vector<std::int32_t>& values) { return append(values, "i32"); }
+  PackedArray add(const std::vector<std::uint32_t>& values) { return append(values, "u32"); }
+  PackedArray add(const std::vector<std::uint16_t>& values) { return append(values, "u16"); }
+  PackedArray add(const std::vector<std::uint8_t>& values) { return append(values, "u8"); }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  template <class T>
+  PackedArray append(const std::vector<T>& values, const char* type) {
+    bytes_.resize((bytes_.size() + 7) / 8 * 8);
+    const std::size_t at = bytes_.size();
+    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    return {at, type, values.size()};
+  }
+  std::string bytes_;
+};
+
+// Position and directions of a camera, as a page shows them.
+
+Json json_of(const Vec3& v);
+// Returns the position, the viewing direction and the upward direction of the image, in the world frame.
+Json sensor_json(const RigidTransform& X_WC);
+
+// The tool of a run, as a page shows it.
+
+struct ShownTool {
+  std::shared_ptr<const VoxelTool> tool;
+  std::shared_ptr<const ToolSpheres> spheres;  // null: its renderer has none
+};
+
+// renderer: the section of a resolved configuration, of a renderer with a tool. Throws as load_tool().
+ShownTool shown_tool(const Json& renderer);
+
+// Vertices and triangles of the mesh; of spheres, four numbers each: centre and radius.
+Json json_of(const ShownTool& tool, PackedArrays& numbers);
+
+// The true surface of a scene of meshes, as a page shows it: each mesh once, and its poses over time.
 
 // A mesh whose vertices are nodes of a grid in the frame O of the object: low + step * number.
 struct MeshOnGrid {

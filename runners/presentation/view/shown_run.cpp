@@ -13,11 +13,8 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/stored_configuration.h"
-#include "runners/presentation/view/frames_again.h"
 #include "runners/presentation/view/shown_frames.h"
 #include "runners/presentation/view/shown_meshes.h"
-#include "runners/presentation/view/shown_sensor.h"
-#include "runners/presentation/view/shown_tool.h"
 #include "runners/presentation/view/trace_event.h"
 #include "runners/presentation/view/true_heights.h"
 

@@ -9,7 +9,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
-#include "runners/presentation/view/packed_arrays.h"
+#include "runners/presentation/view/shown_meshes.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {

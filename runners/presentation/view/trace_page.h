@@ -5,9 +5,19 @@
 #include <filesystem>
 #include <vector>
 
+#include "analysis/storage/hdf5_file.h"
 #include "runners/presentation/view/view_page.h"
+#include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
+
+// The claims of an experiment's figure, which a page shows beside a run of that experiment.
+
+// Returns the claims of the figure whose experiment was run: `run fig4.12` belongs to figure 4.12. claims:
+// the claims.json of `remote-touch figure`; empty: none. The result is a list of objects with claim, paper,
+// measured, unit, criterion and verdict. It is empty for a run of another experiment, or with other settings.
+// Throws InputError if the file is not a list of claims.
+Json shown_claims(const std::filesystem::path& claims, const TextAttributes& run);
 
 // traces: one, or two to compare. Frames are made again from the stored configurations. Throws InputError,
 // naming the file, for a file that is no trace or of a live run, and as ShownRun and view_page() do.

@@ -1,13 +1,99 @@
 #include "runners/presentation/view/view_page.h"
 
+#include <openssl/evp.h>
+#include <zlib.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
-#include "runners/presentation/view/page_file.h"
 #include "runners/presentation/view/viewer_files.h"
 
 namespace remote_touch {
+namespace {
+
+// Compresses in pieces, because zlib counts the bytes of a call in 32 bits.
+std::string gzip(const std::string& bytes) {
+  constexpr std::size_t kPiece = 1 << 20;
+  constexpr int kGzip = 16, kLevel = 6, kMemory = 8;
+  z_stream stream{};
+  if (deflateInit2(&stream, kLevel, Z_DEFLATED, MAX_WBITS + kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::bad_alloc();
+  std::string packed(deflateBound(&stream, bytes.size()), '\0');
+  std::size_t read = 0, written = 0;
+  int code = Z_OK;
+  while (code == Z_OK) {
+    const std::size_t in = std::min(bytes.size() - read, kPiece),
+                      out = std::min(packed.size() - written, kPiece);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + read));
+    stream.avail_in = static_cast<uInt>(in);
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data() + written);
+    stream.avail_out = static_cast<uInt>(out);
+    code = deflate(&stream, read + in == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
+    read += in - stream.avail_in, written += out - stream.avail_out;
+  }
+  packed.resize(written);
+  deflateEnd(&stream);
+  if (code != Z_STREAM_END) throw std::bad_alloc();
+  return packed;
+}
+
+// Encodes in pieces, because OpenSSL counts the bytes of a call in 31 bits. Three bytes give four characters,
+// so only the last piece is padded. Each call writes a zero behind its characters.
+std::string base64(const std::string& bytes) {
+  constexpr std::size_t kPiece = 3 << 20;
+  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');
+  std::size_t written = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += kPiece)
+    written +=
+        static_cast<std::size_t>(EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data() + written),
+                                                 reinterpret_cast<const unsigned char*>(bytes.data() + at),
+                                                 static_cast<int>(std::min(bytes.size() - at, kPiece))));
+  text.resize(written);
+  return text;
+}
+
+std::string escaped(const std::string& text) {
+  std::string html;
+  for (const char c : text) {
+    if (c == '&')
+      html += "&amp;";
+    else if (c == '<')
+      html += "&lt;";
+    else
+      html += c;
+  }
+  return html;
+}
+
+// Replaces each '<', because "</script>" in a string of JSON would end the element.
+std::string in_script(const std::string& json) {
+  std::string text;
+  for (const char c : json) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return text;
+}
+
+}  // namespace
+
+std::string gzip_base64(const std::string& bytes) {
+  return base64(gzip(bytes));
+}
+
+std::string page_file(const std::string& title, const std::string& json, const std::string& bytes) {
+  if (viewer_script().empty())
+    throw InputError("this program",
+                     "was built without the viewer: expected a build by scripts/build, with Node");
+  std::string html =
+      "<!DOCTYPE html>\n<!-- remote-touch view -->\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+      escaped(title) + "</title>\n<style>\n";
+  html.append(viewer_style())
+      .append("</style></head>\n<body>\n<script type=\"application/json\" id=\"view\">");
+  html.append(in_script(json)).append("</script>\n<script type=\"text/plain\" id=\"numbers\">");
+  html.append(gzip_base64(bytes)).append("</script>\n<script type=\"module\">\n");
+  html.append(viewer_script()).append("</script>\n</body></html>\n");
+  return html;
+}
 
 namespace {
 

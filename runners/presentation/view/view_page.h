@@ -12,6 +12,14 @@
 
 namespace remote_touch {
 
+// An HTML page of the viewer: its script and style, what to show as JSON, and numbers, compressed.
+
+// json: names the arrays in bytes by PackedArray. Throws InputError without viewer_script().
+std::string page_file(const std::string& title, const std::string& json, const std::string& bytes);
+
+// Returns the bytes as a page stores them: gzip, then Base64.
+std::string gzip_base64(const std::string& bytes);
+
 struct ViewOptions {
   std::size_t max_bytes = 20'000'000;       // size of the page; points are left out until it fits
   std::filesystem::path claims = {};        // a claims.json, for shown_claims(); empty: none

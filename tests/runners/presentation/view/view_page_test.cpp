@@ -1,4 +1,4 @@
-#include "runners/presentation/view/page_file.h"
+#include "runners/presentation/view/view_page.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "runners/presentation/view/viewer_files.h"
 #include "tests/runners/presentation/view/read_page.h"
 
-namespace remote_touch::page_file_test {
+namespace remote_touch::view_page_test {
 namespace {
 
 TEST(PageFile, MakesNoTagOfItsTitleNamesOrTexts) {
@@ -23,4 +23,4 @@ TEST(PageFile, MakesNoTagOfItsTitleNamesOrTexts) {
 }
 
 }  // namespace
-}  // namespace remote_touch::page_file_test
+}  // namespace remote_touch::view_page_test
