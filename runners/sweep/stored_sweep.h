@@ -1,11 +1,92 @@
-// Sweeps in files, with the present names of settings.
+// Sweeps in files, and what a user reads of them: their cells and the notes on their runs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
 
+#include "analysis/measures/measures.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/sweeps/sweep_result.h"
+#include "analysis/tally/sweep_tally.h"
+#include "scenarios/interface/note.h"
 
 namespace remote_touch {
+
+struct Trace;
+
+// A tally as the outline of a sweep, for what needs axes, cells and the names of measures only.
+
+// Returns a part without runs.
+inline SweepResult outline_of(const SweepTally& tally) {
+  SweepResult outline;
+  outline.axes = tally.axes, outline.replicates = tally.replicates;
+  outline.measures = tally.measures, outline.note_kinds = tally.note_kinds;
+  outline.part.emplace();
+  outline.start(false);
+  return outline;
+}
+
+// Cells of a sweep as the user writes them.
+
+// Returns the index on each axis, from 0: "3,4".
+std::string cell_text(const SweepResult& result, std::size_t cell);
+
+// text: the indices as cell_text() writes them, or a value of each axis, "noise_sigma_m=0.003,rule=none". A
+// number names the value that is equal to it or, if there is none, the only value of the axis that has the
+// same text with six digits.
+struct NamedCell {
+  std::string option;  // option with which the user named it, for errors: "--cell"
+  std::string text;
+};
+
+// Throws InputError.
+std::size_t cell_of(const NamedCell& cell, const SweepResult& result);
+
+// The notes on the runs of a sweep, as counts by kind.
+
+// The options of `replay` for a run: "--cell 0,3", and "--replicate 2" if there are several replicates.
+std::string option_of_run(const SweepResult& result, std::size_t run);
+
+// Returns a line for each kind of note that a finished run has:
+//   "12 of 210 runs: no contact: no point was touched and no force was felt (the first: --cell 0,3)"
+// Empty for a result that was stored without notes.
+std::vector<std::string> note_lines(const SweepResult& result);
+// The same for counts over several results of one sweep, of which `done` runs are finished.
+std::vector<std::string> note_lines(const SweepResult& sweep, const std::vector<NoteCount>& counts,
+                                    std::size_t done);
+
+// The same of a tally.
+std::vector<std::string> note_lines(const SweepTally& tally);
+
+// Throws InputError with all these lines, for --strict. Does nothing if there is none.
+void refuse_notes(const SweepResult& result);
+void refuse_notes(const SweepTally& tally);
+
+// Adds the note "outcome unknown" if the distance to the true surface is known in some tick with a frame but
+// a measure of the outcome is NaN.
+void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes);
+
+// The notes on runs that are not stored as one sweep, such as those of a figure. Any thread may add some.
+class NoteCounts {
+ public:
+  void add(const std::vector<Note>& notes);  // the notes of one run
+  void add(const SweepResult& result);       // the notes of its finished runs; pre: run_sweep() has made it
+  // Returns a line for each kind: "12 of 210 runs: no contact: no point was touched and no force was felt".
+  std::vector<std::string> lines() const;
+
+ private:
+  void add_run(std::uint64_t bits);
+  mutable std::mutex mutex_;
+  std::size_t runs_ = 0;
+  std::map<std::size_t, std::size_t> of_kind_;  // key: number of the kind
+};
+
+// Sweeps in files, with the present names of settings.
 
 // These read a sweep as read_sweep() does, and whole: the runs of other shards are `elsewhere`. In a sweep of
 // schema /2 the configuration, and the names and values of its axes, have their present names, see

@@ -16,14 +16,10 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/run_notes.h"
-#include "runners/sweep/refine_settings.h"
 #include "runners/sweep/sweep_axis.h"
-#include "runners/sweep/sweep_cells.h"
-#include "runners/sweep/sweep_reading.h"
-#include "runners/sweep/sweep_statements.h"
+#include "runners/sweep/sweep_parts.h"
 
 namespace remote_touch {
-
 namespace {
 
 constexpr std::size_t kMaxCells = std::size_t{1} << 32;  // the cell is a key of the noise

@@ -11,8 +11,7 @@
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/sweep/keep.h"
-#include "runners/sweep/shard.h"
+#include "runners/sweep/sweep_parts.h"
 
 namespace remote_touch {
 
@@ -22,7 +21,7 @@ class Sweep {
   // label names the source in errors. Overrides "key=value" change the sweep if their path begins with one of
   // its keys, otherwise its experiment; the title names them (changed_settings.h). Cells are resolved and
   // checked: throws InputError for the first cell that cannot be run, and for parts that overwrite each other
-  // (sweep_statements.h). Of more than 20000 cells, 20000 that are spread over the grid are checked, and
+  // (sweep_parts.h). Of more than 20000 cells, 20000 that are spread over the grid are checked, and
   // those with each value of an axis and the first values of the others.
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});

@@ -10,6 +10,16 @@
 
 namespace remote_touch {
 
+// The random streams of the runs of a stored sweep.
+
+// Returns the streams of all cells, from the configuration with which the sweep was made (JSON): it states
+// every deviation and probability, the axes with common noise, and seeds. So they are known for every stored
+// sweep and tally, of any version. If the configuration cannot be read, as that of an experiment with a scene
+// that only the program that made it knows, `doubt` says so; then runs of one replicate count as one, and so
+// do the runs of a cell that are equal in all measures. Only the outline of the result is needed; without
+// values no runs count as equal.
+CellStreams streams_of(const SweepResult& result, const std::string& config);
+
 // A question names measures and axes. A question that names no measure asks for the limit of the event that
 // default_event() finds and for the means of all measures. Options without an effect are refused.
 struct SweepQuestion {
@@ -43,7 +53,7 @@ inline constexpr const char* kAnswerName = "analysis";
 // `difference_MEASURE`, and with a panel for each of them whose rows fit into at most 8 curves over one axis
 // of numbers. All p values are adjusted together. The caption states the questions. config: the configuration
 // of the sweep as JSON; its title is that of the figure, and it states which runs share random numbers
-// (sweep_streams.h). Throws InputError for a name that the sweep does not have, an axis that does not fit,
+// (streams_of()). Throws InputError for a name that the sweep does not have, an axis that does not fit,
 // and a sweep without a finished run.
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question);
 

@@ -19,7 +19,7 @@ struct SweepAxis {
   // round, and those between them that refinement may add.
   std::vector<std::vector<ChangedSetting>> settings;
   std::size_t stride = 1;     // index step between values of the first round
-  bool is_joint = false;      // true: a joint axis ("parameters" or "variants"), see joint_axis.h
+  bool is_joint = false;      // true: a joint axis ("parameters" or "variants"), see read_joint_axis()
   bool common_noise = false;  // true: runs that differ only on this axis have the same noise
   std::string definition;     // complete JSON, as in a file
 
@@ -36,7 +36,7 @@ struct SweepAxis {
 //   {"parameter": PATH, "from": A, "to": B, "count": N, "scale": "linear" or "log"}: refinement may halve
 //   the steps `levels` times
 //   {"parameter": PATH, "values": [...]}
-//   a joint axis: several parameters together, or variants, see joint_axis.h
+//   a joint axis: several parameters together, or variants, see read_joint_axis()
 // Each form may have "common_noise": true or false.
 SweepAxis read_axis(const Json& json, const std::string& label, int levels);
 
@@ -54,5 +54,20 @@ Column coordinate_of(const std::string& name, const std::string& unit, const std
 std::string unit_of_path(const std::string& path);
 
 inline constexpr int kMaxAxisValues = 100000;
+
+// A joint axis of a sweep: it sets several parameters together, or has named variants.
+
+// True if the definition is that of a joint axis: if it has "parameters" or "variants".
+bool is_joint(const Json& json);
+
+// Reads a joint axis in one of two forms. label names the axis in InputErrors.
+//   {"name": NAME, "unit": UNIT, "parameters": [PATH, ...], "values": [[...], ...], "labels": [...]}
+//   Each row of "values" has a value for each parameter. The coordinate is the list of labels, numbers or
+//   names; without labels it is the column of the first parameter. "unit" is by default that parameter's.
+//   {"name": NAME, "variants": [{"name": ..., "set": {PATH: VALUE, ...}}, ...]}
+//   The coordinate is the names. A variant may set nothing; then its runs have the values of the experiment.
+// Variants have common noise unless "common_noise" is false. Throws InputError also if two paths of one row
+// or variant overlap.
+SweepAxis read_joint_axis(const Json& json, const std::string& label);
 
 }  // namespace remote_touch

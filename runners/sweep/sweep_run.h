@@ -1,17 +1,23 @@
-// Does the runs of a sweep.
+// Does the runs of a sweep, and repeats one of them.
 #pragma once
 
 #include <atomic>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/threads/side_by_side.h"
 
 namespace remote_touch {
+
+// Does the runs of a sweep.
 
 struct SweepRunOptions {
   const Kernels* kernels = nullptr;         // null: the machine's best
@@ -43,5 +49,24 @@ bool add_round(const Sweep& sweep, SweepResult& result);
 
 // Does all rounds in memory. Failed runs are in the result, with their errors. Throws std::bad_alloc.
 SweepResult run_sweep(const Sweep& sweep, const SweepRunOptions& options);
+
+// Repeats one run of a stored sweep, as a full trace.
+
+struct Replay {
+  Experiment experiment;
+  Trace trace;
+  TextAttributes attributes;  // its provenance
+  std::string digest;
+  RunReport report;
+};
+
+enum class Strict { no, yes };  // yes: a note on the run is an error
+
+// Runs the run again and writes its trace, with frame_hash computed. If output is empty, the trace is not
+// written. pre: `sweep` was read from the configuration of `stored`. Throws InputError if a file cannot be
+// read or written. With Strict::yes it also throws InputError if there is a note on the run; then nothing is
+// written.
+Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run, SimulationOptions options,
+                  const std::filesystem::path& output, Strict strict = Strict::no);
 
 }  // namespace remote_touch

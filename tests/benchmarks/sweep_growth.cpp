@@ -20,7 +20,6 @@
 #include "core/kernels/isa.h"
 #include "runners/sweep/shards/shard_merge.h"
 #include "runners/sweep/sweep_session.h"
-#include "runners/sweep/tally_session.h"
 
 namespace remote_touch::benchmarks {
 namespace {

@@ -9,7 +9,7 @@
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 

@@ -17,7 +17,7 @@
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep_streams.h"
+#include "runners/sweep/sweep_answer.h"
 
 namespace remote_touch {
 

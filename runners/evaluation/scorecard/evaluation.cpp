@@ -18,8 +18,8 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/sweep/sweep_notes.h"
-#include "runners/sweep/sweep_replay.h"
+#include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
 

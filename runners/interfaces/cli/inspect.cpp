@@ -21,7 +21,6 @@
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/shards/shard_folder.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/tally_outline.h"
 
 namespace remote_touch {
 namespace {

@@ -24,13 +24,11 @@
 #include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/sweep/cell_text.h"
 #include "runners/sweep/shards/recheck.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
-#include "runners/sweep/sweep_origin.h"
-#include "runners/sweep/sweep_replay.h"
 #include "runners/sweep/sweep_run.h"
+#include "runners/sweep/sweep_session.h"
 
 namespace remote_touch {
 namespace {

@@ -31,7 +31,7 @@
 #include "runners/presentation/export/export_formats.h"
 #include "runners/presentation/view/sweep_page.h"
 #include "runners/presentation/view/trace_page.h"
-#include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/stored_sweep.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {

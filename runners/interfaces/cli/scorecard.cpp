@@ -17,7 +17,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/presentation/view/trace_page.h"
-#include "runners/sweep/sweep_notes.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 namespace {

@@ -22,17 +22,13 @@
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/presentation/export/result_tables.h"
-#include "runners/sweep/answer_panels.h"
-#include "runners/sweep/answer_text.h"
+#include "runners/sweep/answer_display.h"
 #include "runners/sweep/shards/shard_merge.h"
 #include "runners/sweep/shards/tally_merge.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
-#include "runners/sweep/sweep_notes.h"
 #include "runners/sweep/sweep_run.h"
 #include "runners/sweep/sweep_session.h"
-#include "runners/sweep/tally_outline.h"
-#include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
 namespace {

@@ -7,10 +7,8 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/cli/commands.h"
-#include "runners/sweep/cell_text.h"
-#include "runners/sweep/sweep_notes.h"
-#include "runners/sweep/sweep_streams.h"
-#include "runners/sweep/tally_outline.h"
+#include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_answer.h"
 
 namespace remote_touch {
 

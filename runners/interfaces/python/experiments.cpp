@@ -20,10 +20,8 @@
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
 #include "runners/interfaces/python/outputs.h"
-#include "runners/sweep/cell_text.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep_notes.h"
-#include "runners/sweep/sweep_replay.h"
+#include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
 

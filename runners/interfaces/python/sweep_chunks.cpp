@@ -13,9 +13,7 @@
 #include "runners/interfaces/python/long_work.h"
 #include "runners/interfaces/python/sweep_arrays.h"
 #include "runners/sweep/sweep.h"
-#include "runners/sweep/sweep_origin.h"
 #include "runners/sweep/sweep_session.h"
-#include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
 

@@ -15,12 +15,11 @@
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
 #include "runners/interfaces/python/sweep_arrays.h"
-#include "runners/sweep/answer_panels.h"
+#include "runners/sweep/answer_display.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_session.h"
-#include "runners/sweep/tally_session.h"
 
 namespace remote_touch {
 

@@ -12,10 +12,8 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/sweep/cell_text.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
-#include "runners/sweep/sweep_notes.h"
 
 namespace remote_touch {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "analysis/storage/hdf5_file.h"
-#include "runners/sweep/shard.h"
+#include "runners/sweep/sweep_parts.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/sweep/shard.h"
+#include "runners/sweep/sweep_parts.h"
 
 namespace remote_touch {
 

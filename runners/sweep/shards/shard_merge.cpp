@@ -13,7 +13,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/sweep/shards/seen_shards.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep_origin.h"
+#include "runners/sweep/sweep_session.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/shards/seen_shards.h"
-#include "runners/sweep/sweep_origin.h"
+#include "runners/sweep/sweep_session.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "core/kernels/isa.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/sweep/tally_session.h"
+#include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch {

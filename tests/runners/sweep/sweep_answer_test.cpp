@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/sweep/answer_text.h"
+#include "runners/sweep/answer_display.h"
 #include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 

@@ -16,7 +16,6 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/sweep/sweep_replay.h"
 #include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"
 

@@ -10,8 +10,8 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
-#include "runners/sweep/sweep_notes.h"
 #include "runners/sweep/threads/side_by_side.h"
 
 namespace remote_touch {

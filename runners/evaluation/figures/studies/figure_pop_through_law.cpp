@@ -11,7 +11,7 @@
 #include "runners/evaluation/figures/studies/stored_study.h"
 #include "runners/evaluation/figures/studies/study_figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/sweep/tally_outline.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 

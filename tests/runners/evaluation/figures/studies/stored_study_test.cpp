@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "runners/evaluation/figures/studies/law_map.h"
-#include "runners/sweep/tally_outline.h"
+#include "runners/sweep/stored_sweep.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::stored_study_test {

@@ -1,4 +1,4 @@
-// Curves of the tables of an answer about a sweep.
+// The display of an answer about a sweep: its curves and its text.
 #pragma once
 
 #include <string>
@@ -6,6 +6,8 @@
 #include "analysis/figures/figure.h"
 
 namespace remote_touch {
+
+// Curves of the tables of an answer about a sweep.
 
 // Adds a panel to the figure for a table of an answer: first `axes` columns of axes, then those of
 // add_estimates(). It has the value over the first axis of numbers, its interval as a band, and a curve for
@@ -25,5 +27,12 @@ bool is_of_curve(const Figure& figure, const Table& table);
 
 // Returns the value of an axis in a row of a table, without a unit: at most ten digits, or its name.
 std::string axis_text(const Column& axis, std::size_t row);
+
+// An answer about a sweep as text.
+
+// Returns the caption and each table with names, units and at most 60 rows; "-" stands for a value that is
+// not known. Tables of single curves, which repeat rows, are left out. A note states how many of the `asked`
+// runs are not finished.
+std::string answer_text(const Figure& answer, std::size_t done, std::size_t asked);
 
 }  // namespace remote_touch

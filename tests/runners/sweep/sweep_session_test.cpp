@@ -1,5 +1,5 @@
 // Sweeps that keep tallies: equal to the runs, the same bytes in any way, what is refused.
-#include "runners/sweep/tally_session.h"
+#include "runners/sweep/sweep_session.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -11,7 +11,7 @@
 #include "runners/sweep/sweep_run.h"
 #include "tests/runners/sweep/quick_tallies.h"
 
-namespace remote_touch::tally_session_test {
+namespace remote_touch::sweep_session_test {
 namespace {
 
 class TallySessions : public QuickTallies {
@@ -127,4 +127,4 @@ TEST_F(TallySessions, AnswersTellHowManyRunsAreUnknown) {
 }
 
 }  // namespace
-}  // namespace remote_touch::tally_session_test
+}  // namespace remote_touch::sweep_session_test
