@@ -19,7 +19,7 @@
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/sweep/shards/shard_folder.h"
+#include "runners/sweep/shards/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {

@@ -24,7 +24,7 @@
 #include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/sweep/shards/recheck.h"
+#include "runners/sweep/shards/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_run.h"

@@ -24,7 +24,6 @@
 #include "runners/presentation/export/result_tables.h"
 #include "runners/sweep/answer_display.h"
 #include "runners/sweep/shards/shard_merge.h"
-#include "runners/sweep/shards/tally_merge.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_run.h"

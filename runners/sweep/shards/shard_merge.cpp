@@ -6,19 +6,68 @@
 #include <optional>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/run_spool.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
-#include "core/parameters/input_error.h"
-#include "runners/sweep/shards/seen_shards.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_parts.h"
 #include "runners/sweep/sweep_session.h"
 #include "scenarios/text_files/json_text.h"
 
 namespace remote_touch {
-
 namespace {
+
+// Finds out which shards of a sweep the files of a merge hold.
+
+class SeenShards {
+ public:
+  // Throws InputError if one of the shards was added before, or the sweep had another number of shards.
+  void add(const std::string& file, const ShardSet& shards);
+  const ShardSet& all() const { return all_; }
+  bool are_complete() const { return all_.indices.size() == static_cast<std::size_t>(all_.count); }
+  void require_complete() const;  // throws InputError, which names the missing shards
+
+ private:
+  std::string first_file_;
+  std::map<int, std::string> file_of_;
+  ShardSet all_;
+};
+
+// Removes the attribute `shard` and returns what it states. Throws InputError for the result of a whole
+// sweep.
+ShardSet take_shards(TextAttributes& attributes, const std::string& file) {
+  const auto shard =
+      std::find_if(attributes.begin(), attributes.end(), [](const auto& a) { return a.first == "shard"; });
+  if (shard == attributes.end())
+    throw InputError(file, "is the result of a whole sweep: expected the shards of a sweep");
+  const ShardSet shards = parse_shards(shard->second, file);
+  attributes.erase(shard);
+  return shards;
+}
+
+void SeenShards::add(const std::string& file, const ShardSet& shards) {
+  if (file_of_.empty()) first_file_ = file, all_.count = shards.count;
+  if (shards.count != all_.count)
+    throw InputError(file, "is shard " + shards.text() + ": expected shards of a sweep in " +
+                               std::to_string(all_.count) + " shards, as " + first_file_ + " is");
+  for (const int index : shards.indices)
+    if (const auto [twin, is_new] = file_of_.emplace(index, file); !is_new)
+      throw InputError(file, "is shard " + Shard{index, shards.count}.text() + ", which is also in " +
+                                 twin->second + ": expected each shard once");
+  all_.indices.insert(shards.indices.begin(), shards.indices.end());
+}
+
+void SeenShards::require_complete() const {
+  if (are_complete()) return;
+  ShardSet missing{{}, all_.count};
+  for (int i = 1; i <= all_.count; ++i)
+    if (!all_.indices.contains(i)) missing.indices.insert(i);
+  const bool is_one = missing.indices.size() == 1;
+  throw InputError("merge", std::string(is_one ? "shard " : "shards ") + missing.text() +
+                                (is_one ? " is" : " are") + " missing: expected all of them, or --partial");
+}
 
 // A file of some shards, without its runs.
 struct ShardFile {
@@ -211,6 +260,50 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
                        SweepInBlocks{spool->outline(), spool->is_refined(), spool->longest_error(), values},
                        attributes);
   });
+}
+
+namespace {
+
+// Throws InputError for a shard some of whose runs are not made.
+void require_finished(const std::string& file, const ShardSet& shards, const SweepTally& tally) {
+  std::uint64_t cells = 0;
+  for (const int index : shards.indices) cells += Shard{index, shards.count}.cells_of(tally.cell_count());
+  const std::uint64_t runs = cells * static_cast<std::uint64_t>(tally.replicates);
+  if (tally.held.count() < runs)
+    throw InputError(
+        file, "is not finished (" + std::to_string(runs - tally.held.count()) +
+                  " runs are left): expected a finished shard (repeat its sweep command), or --partial");
+}
+
+}  // namespace
+
+MergedTally merge_tallies(const MergeRequest& request) {
+  require_no_device(request.output);
+  std::optional<StoredTally> merged;
+  SeenShards seen;
+  for (const std::string& file : request.shards) {
+    std::error_code absent;
+    if (std::filesystem::equivalent(file, request.output, absent))
+      throw InputError(request.output, "is one of the shards: expected another file");
+    StoredTally part = read_tally(Hdf5Reader(file));
+    require_trusted(file, part.attributes);
+    const ShardSet shards = take_shards(part.attributes, file);
+    if (merged) require_same_origin({file, part.attributes}, {request.shards.front(), merged->attributes});
+    seen.add(file, shards);
+    if (request.partial == Partial::no) require_finished(file, shards, part.tally);
+    if (!merged)
+      merged = std::move(part);
+    else if (const std::string obstacle = merged->tally.obstacle(part.tally); !obstacle.empty())
+      throw InputError(file, "cannot be added (" + obstacle + "): expected shards of one sweep");
+    else
+      merged->tally.add(std::move(part.tally));
+  }
+  if (request.partial == Partial::no) seen.require_complete();
+  if (!seen.are_complete()) merged->attributes.emplace_back("shard", seen.all().text());
+  require_nothing_more(request, [&] { return merged->tally.held; });
+  const std::string digest =
+      or_unchanged([&] { return write_tally(request.output, merged->tally, merged->attributes); });
+  return {std::move(merged->tally), digest};
 }
 
 }  // namespace remote_touch

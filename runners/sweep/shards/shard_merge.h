@@ -1,4 +1,4 @@
-// Merges the shards of a sweep into one file, block by block: their runs may be more than the memory holds.
+// Merges the shards of a sweep into one file: those with runs and those with tallies.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,8 @@
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
+
+// Merges the shards of a sweep into one file, block by block: their runs may be more than the memory holds.
 
 // yes: shards may be missing or unfinished. The merged file then is a part of the sweep: it states its
 // shards, and can be merged with others unless some of its runs are pending.
@@ -51,5 +53,16 @@ using EachBlock = std::function<void(const SweepResult& block)>;
 // that is missing, given twice, damaged, unfinished or of another sweep, build or recording, and for an
 // output that holds runs that the shards do not.
 std::string merge_shards(const MergeRequest& request, const EachBlock& each_block);
+
+// Merges the shards of a sweep that keeps tallies.
+
+struct MergedTally {
+  SweepTally tally;
+  std::string digest;
+};
+// Writes the merged tally, as merge_shards() does. Throws InputError also for a shard some of whose runs are
+// known to be wrong, see require_trusted(). An output that exists is replaced if its runs are all in the
+// shards. The memory holds the whole tally and one shard.
+MergedTally merge_tallies(const MergeRequest& request);
 
 }  // namespace remote_touch
