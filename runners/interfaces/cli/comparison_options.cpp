@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "runners/interfaces/cli/subcommands.h"
-#include "runners/sweep/threads/enough_threads.h"
+#include "runners/sweep/threads/work_pool.h"
 
 namespace remote_touch {
 

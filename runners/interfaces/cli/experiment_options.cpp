@@ -9,7 +9,7 @@
 #include "runners/interfaces/cli/other_kinds.h"
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/presentation/export/export_formats.h"
-#include "runners/sweep/threads/enough_threads.h"
+#include "runners/sweep/threads/work_pool.h"
 
 namespace remote_touch {
 

@@ -26,7 +26,7 @@
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/plugins/plugin_library.h"
-#include "runners/sweep/threads/enough_threads.h"
+#include "runners/sweep/threads/work_pool.h"
 #include "scenarios/recordings/recording_part.h"
 
 namespace remote_touch {

@@ -1,12 +1,40 @@
 #include "runners/sweep/threads/work_pool.h"
 
+#include <fcntl.h>
 #include <omp.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <limits>
+#include <numeric>
+#include <string>
 #include <thread>
 
+#include "core/parameters/input_error.h"
+
 namespace remote_touch {
+
+void side_by_side(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::vector<std::exception_ptr> failures(count);
+  // An exception must not leave the loop, it would end the program.
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t i = 0; i < count; ++i) {
+    try {
+      work(i);
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  }
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
+}
 
 namespace {
 
@@ -106,6 +134,86 @@ std::vector<JobProgress> WorkPool::progress() const {
   for (std::size_t i = 0; i < progress.size(); ++i)
     if (progress[i].state == JobState::running) progress[i].spent_s += now_s() - began_s_[i];
   return progress;
+}
+
+namespace {
+
+constexpr double kPrior_s =
+    2;  // so much work counts as done in its expected time, so that a first short job decides little
+constexpr double kMinShareLeft = 0.05;  // least share of its time that a job has left, even if it is late
+
+// Returns the factor by which jobs take longer here than expected.
+double slowness(const std::vector<double>& expected_s, const std::vector<JobProgress>& progress) {
+  double expected = kPrior_s, spent = kPrior_s;
+  for (std::size_t i = 0; i < progress.size(); ++i)
+    if (progress[i].state == JobState::done) expected += expected_s[i], spent += progress[i].spent_s;
+  return spent / expected;
+}
+
+}  // namespace
+
+std::vector<std::size_t> shortest_first(const std::vector<double>& expected_s) {
+  std::vector<std::size_t> order(expected_s.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return expected_s[a] < expected_s[b]; });
+  return order;
+}
+
+TimeLeft time_left(const std::vector<double>& expected_s, const std::vector<JobProgress>& progress,
+                   int threads) {
+  const double slower = slowness(expected_s, progress);
+  TimeLeft left{std::vector<double>(progress.size())};
+  double running = 0;
+  for (const JobProgress& job : progress) running += job.state == JobState::running ? 1 : 0;
+  for (std::size_t i = 0; i < progress.size(); ++i) {
+    if (progress[i].state == JobState::done) continue;
+    const double whole_s = slower * expected_s[i];
+    left.of_job_s[i] = std::max(whole_s - progress[i].spent_s, kMinShareLeft * whole_s);
+    left.all_s += left.of_job_s[i] / threads;
+    // Threads without a job help those that run.
+    if (progress[i].state == JobState::running) left.of_job_s[i] *= std::min(1.0, running / threads);
+  }
+  return left;
+}
+
+namespace {
+
+// Runs in the child process, which prints nothing and is ended after some seconds.
+[[noreturn]] void start_threads() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGALRM})
+    std::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::alarm(20);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  ::dup2(nowhere, STDOUT_FILENO), ::dup2(nowhere, STDERR_FILENO);
+  std::atomic<int> started{0};
+#pragma omp parallel
+  ++started;
+  ::_exit(started > 0 ? 0 : 1);
+}
+
+bool can_start_threads() {
+  const pid_t child = ::fork();
+  if (child == 0) start_threads();
+  int status = 0;
+  while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
+void use_threads(int wanted) {
+  if (wanted > 0) omp_set_num_threads(wanted);
+  const int threads = omp_get_max_threads();
+  const std::string subject = (wanted > 0 ? "--threads = " : "OMP_NUM_THREADS = ") + std::to_string(threads);
+  if (threads > kMaxThreads) throw InputError(subject, "expected 1 to " + std::to_string(kMaxThreads));
+  if (threads > 1 && !can_start_threads())
+    throw InputError(
+        subject,
+        "this number of threads cannot be started: expected fewer, or higher limits of processes "
+        "and memory");
 }
 
 }  // namespace remote_touch

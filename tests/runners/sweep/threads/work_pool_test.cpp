@@ -1,12 +1,18 @@
 #include "runners/sweep/threads/work_pool.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <fstream>
 #include <latch>
 #include <stdexcept>
 #include <string>
 #include <thread>
+
+#include "tests/support/test_files.h"
 
 namespace remote_touch {
 namespace {
@@ -103,6 +109,110 @@ TEST(WorkPool, TheLastReportSeesThatAllHaveEnded) {
   };
   pool.run({until_looked_at}, 0.001, report);
   EXPECT_EQ(seen, JobState::done);
+}
+
+}  // namespace
+}  // namespace remote_touch
+
+namespace remote_touch::work_pool_test {
+namespace {
+
+// Result of use_threads() in a thread where OpenMP has not run yet: the number of threads there afterwards,
+// and the refusal, empty if none.
+struct Outcome {
+  int threads = 0;
+  std::string problem;
+};
+Outcome outcome_of(int wanted) {
+  Outcome outcome;
+  std::thread([&] {
+    try {
+      use_threads(wanted);
+    } catch (const InputError& error) {
+      outcome.problem = error.what();
+    }
+    outcome.threads = omp_get_max_threads();
+  }).join();
+  return outcome;
+}
+
+// Limits this process to little more memory than it has, as long as the object lives.
+class LittleMemory {
+ public:
+  LittleMemory() {
+    EXPECT_EQ(::getrlimit(RLIMIT_AS, &before_), 0);
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit now = before_;
+    now.rlim_cur = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (64u << 20);
+    EXPECT_EQ(::setrlimit(RLIMIT_AS, &now), 0);
+  }
+  ~LittleMemory() { ::setrlimit(RLIMIT_AS, &before_); }
+  LittleMemory(const LittleMemory&) = delete;
+  LittleMemory& operator=(const LittleMemory&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(UseThreads, AcceptsTheThreadsThatTheSystemGives) {
+  const Outcome three = outcome_of(3);
+  EXPECT_EQ(three.problem, "");
+  EXPECT_EQ(three.threads, 3);
+  EXPECT_EQ(outcome_of(0).problem, "");
+}
+
+TEST(UseThreads, RefusesMoreThanThereCanBe) {
+  EXPECT_EQ(outcome_of(kMaxThreads + 1).problem, "--threads = 4097: expected 1 to 4096");
+}
+
+TEST(UseThreads, RefusesThoseThatCannotBeStarted) {
+  const LittleMemory limit;
+  EXPECT_HAS(outcome_of(256).problem,
+             "--threads = 256: this number of threads cannot be started: expected fewer");
+}
+
+}  // namespace
+}  // namespace remote_touch::work_pool_test
+
+namespace remote_touch {
+namespace {
+
+constexpr JobState kWaiting = JobState::waiting, kRunning = JobState::running, kDone = JobState::done;
+
+TEST(ShortestFirst, EqualOnesKeepTheirOrder) {
+  EXPECT_EQ(shortest_first({3, 1, 2, 1}), (std::vector<std::size_t>{1, 3, 2, 0}));
+}
+
+TEST(TimeLeft, IsWhatWasExpectedBeforeAnythingIsDone) {
+  const TimeLeft left = time_left({10, 30}, {{kWaiting, 0}, {kWaiting, 0}}, 2);
+  EXPECT_DOUBLE_EQ(left.of_job_s[0], 10);
+  EXPECT_DOUBLE_EQ(left.of_job_s[1], 30);
+  EXPECT_DOUBLE_EQ(left.all_s, 20);
+}
+
+TEST(TimeLeft, TakesTheSpeedOfTheMachineFromWhatIsDone) {
+  // The prior counts 2 s, and a job of 8 s took 18 s: 20 s for 10 s.
+  const TimeLeft left = time_left({8, 30}, {{kDone, 18}, {kWaiting, 0}}, 1);
+  EXPECT_EQ(left.of_job_s[0], 0);
+  EXPECT_DOUBLE_EQ(left.of_job_s[1], 60);
+  EXPECT_DOUBLE_EQ(left.all_s, 60);
+}
+
+TEST(TimeLeft, ARunningJobCountsForATwentiethAtLeast) {
+  EXPECT_DOUBLE_EQ(time_left({10}, {{kRunning, 4}}, 1).all_s, 6);
+  EXPECT_DOUBLE_EQ(time_left({10}, {{kRunning, 40}}, 1).all_s, 0.5);
+}
+
+TEST(TimeLeft, ThreadsWithoutAJobHelpTheOneThatRuns) {
+  const TimeLeft left = time_left({10}, {{kRunning, 2}}, 4);
+  EXPECT_DOUBLE_EQ(left.of_job_s[0], 2);
+  EXPECT_DOUBLE_EQ(left.all_s, 2);
+}
+
+TEST(TimeLeft, IsZeroWhenAllJobsAreDone) {
+  const TimeLeft left = time_left({10, 1}, {{kDone, 1}, {kDone, 1}}, 2);
+  EXPECT_EQ(left.all_s, 0);
 }
 
 }  // namespace
