@@ -1,9 +1,73 @@
 #include "scenarios/camera/camera_scene.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <utility>
 
 namespace remote_touch {
+
+Extrusion::Extrusion(std::vector<std::array<double, 2>> profile, double x_low, double x_high)
+    : profile_(std::move(profile)), x_low_(x_low), x_high_(x_high) {}
+
+namespace {
+
+struct Edge {
+  double z, y, dz, dy;  // start and direction, counter-clockwise: the inside is on the left
+  double length_squared() const { return dz * dz + dy * dy; }
+  // Distance of a point from the edge's line, multiplied by the edge's length; positive outside.
+  double scaled_distance(double pz, double py) const { return dy * (pz - z) - dz * (py - y); }
+};
+
+Edge edge(const std::vector<std::array<double, 2>>& profile, std::size_t i) {
+  const auto& a = profile[i];
+  const auto& b = profile[(i + 1) % profile.size()];
+  return {a[0], a[1], b[0] - a[0], b[1] - a[1]};
+}
+
+}  // namespace
+
+double Extrusion::signed_distance(const Vec3& p) const {
+  double nearest_squared = std::numeric_limits<double>::infinity();
+  bool inside = true;
+  for (std::size_t i = 0; i < profile_.size(); ++i) {
+    const Edge e = edge(profile_, i);
+    const double pz = p.z() - e.z, py = p.y() - e.y;
+    const double t = std::clamp((pz * e.dz + py * e.dy) / e.length_squared(), 0.0, 1.0);
+    const double rz = pz - t * e.dz, ry = py - t * e.dy;
+    nearest_squared = std::min(nearest_squared, rz * rz + ry * ry);
+    inside &= e.scaled_distance(p.z(), p.y()) <= 0;
+  }
+  const double across = inside ? -std::sqrt(nearest_squared) : std::sqrt(nearest_squared);
+  const double beside = std::max(x_low_ - p.x(), p.x() - x_high_);
+  if (across > 0 && beside > 0) return std::sqrt(across * across + beside * beside);
+  return std::max(across, beside);
+}
+
+// Clips the ray at every face. The part that is left is inside the solid, and its start is the entry.
+double Extrusion::cast(const Vec3& origin, const Vec3& direction) const {
+  double enter = 0, leave = std::numeric_limits<double>::infinity();
+  const auto clip = [&](double height, double slope) {  // outside where height + t slope > 0
+    if (slope > 0)
+      leave = std::min(leave, -height / slope);
+    else if (slope < 0)
+      enter = std::max(enter, -height / slope);
+    else if (height > 0)
+      leave = -1;
+  };
+  for (std::size_t i = 0; i < profile_.size(); ++i) {
+    const Edge e = edge(profile_, i);
+    clip(e.scaled_distance(origin.z(), origin.y()), e.dy * direction.z() - e.dz * direction.y());
+  }
+  clip(x_low_ - origin.x(), -direction.x());
+  clip(origin.x() - x_high_, direction.x());
+  return enter <= leave ? enter : std::numeric_limits<double>::infinity();
+}
+
+double Extrusion::height(double x, double z) const {
+  const double above = 1e3;
+  const double depth = cast({x, above, z}, {0, -1, 0});
+  return above - depth;
+}
 
 Parameters parameters(CameraScene::Settings& s) {
   return appended({{"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the camera per second, f_c"}},

@@ -8,22 +8,57 @@
 
 #include "core/geometry/camera.h"
 #include "core/kernels/kernels.h"
+#include "core/kernels/noise_kernels.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
 #include "scenarios/camera/depth_camera.h"
 
 namespace remote_touch {
 
+// The shadow that a second device beside a camera has: a projector of light, or the second camera of a pair.
+
+// Returns for each pixel of a depth image 1 if the second device does not see the surface that the camera
+// sees there. The device is at (baseline, 0, 0) in the camera frame, to the camera's right, so that shadows
+// lie to the left of near objects. They are baseline focal (1 / z_near - 1 / z_far) pixels wide.
+//
+// A straight line stays straight in coordinates of column u and disparity d = baseline focal / z. The
+// line from a point (u, d) to the device is (u + s, d + s), s > 0. The point is in the shadow if this line
+// meets the surfaces of its row. They are exactly known at the pixels. Between two neighbours the surface is
+// straight, unless their depths differ by more than edge_jump_m: then there is an edge in the middle between
+// them, and nothing behind it. A surface that turns its back to the device is in the shadow as well. Surfaces
+// that the camera does not see are unknown and throw no shadow.
+//
+// focal_baseline_px_m: product of the focal length in pixels and the baseline, above 0.
+std::vector<char> baseline_shadow(const DepthImage& depth, double focal_baseline_px_m, double edge_jump_m);
+
+// Noise of the pixels of an image that is correlated as the results of a matching window are: the windows of
+// neighbouring pixels overlap.
+
+// Standard normals of all pixels, row by row.
+struct WindowNoise {
+  // Correlated: two pixels that are (i, j) pixels apart have the correlation
+  // (1 - |i| / window) (1 - |j| / window), and 0 from a distance of window on.
+  std::vector<double> averaged;
+  // Independent of each other, of other pixels and, for a window of 1, of averaged. Empty if not wanted.
+  std::vector<double> across, down;
+};
+
+// The result is a pure function of its arguments. `averaged` is the sum of independent normals over the
+// window's pixels, divided by the window's width. A window reaches beyond the image, so that pixels at the
+// border have the same noise as others. Pre: width, height and window_px are 1 or more.
+WindowNoise window_noise(int width, int height, int window_px, bool also_independent,
+                         const NoiseStream& stream, const Kernels& kernels);
+
 // Structured light and active stereo triangulate: a second device, a projector or a second camera, is at
 // (baseline, 0, 0) in the camera frame, to the right of the camera. The sensor measures the disparity
 // d = f b / z in pixels, with the focal length f and the baseline b. All errors arise there:
 //
-//   1. Pixels without a measurement: the second device does not see the surface (baseline_shadow.h); the
+//   1. Pixels without a measurement: the second device does not see the surface (see above); the
 //      disparity exceeds the range of the search, so that the surface is too near; the ray meets the surface
 //      at a grazing angle; in stereo also if the point is beyond the left border of the second image, which
 //      is a band of f b / z pixels.
 //   2. Lateral noise (structured light): at a depth edge the pixel may measure the surface on the other side.
-//   3. Noise of the disparity, d + sigma n, which is correlated over the matching window (window_noise.h).
+//   3. Noise of the disparity, d + sigma n, which is correlated over the matching window (WindowNoise).
 //   4. Rounding to a multiple of the smallest step of disparity, s.
 //
 // A published standard deviation is that of measured depths, so it contains the rounding. Here sigma is what

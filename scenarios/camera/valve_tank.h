@@ -7,13 +7,75 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
 #include "scenarios/camera/depth_camera.h"
-#include "scenarios/camera/handwheel.h"
-#include "scenarios/camera/water.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
+
+// A valve's handwheel: a ring on three round spokes, with a hub, and a stem back to the wall behind it.
+
+// The axis is along z and the wheel lies in the plane z = centre.z; the stem ends at the wall z = 0. One
+// spoke points up, +y. Metres.
+class Handwheel {
+ public:
+  // Dimensions other than the constructor's. The ring's radius is that of the centre line of its tube.
+  static constexpr double kTubeRadius_m = 0.007, kSpokeRadius_m = 0.0045;
+  static constexpr double kHubRadius_m = 0.011, kHubHalfLength_m = 0.010, kStemRadius_m = 0.008;
+
+  // pre: ring_radius_m > kTubeRadius_m and centre_m.z > kHubHalfLength_m.
+  Handwheel(const Vec3& centre_m, double ring_radius_m);
+
+  // Distance to the surface of the union, negative inside. Exact outside. Inside, the depth returned is a
+  // lower bound, because the nearest point of one part may lie inside another part.
+  double signed_distance(const Vec3& p) const;
+  // Returns the smallest t >= 0 at which origin + t direction is inside, or at most 1e-9 m outside. Returns
+  // infinity if the ray misses, or if it passes so close that the search needs too many steps.
+  double cast(const Vec3& origin, const Vec3& direction) const;
+  // Returns the outward unit normal at a position on the surface, or a blend of both normals where two parts
+  // meet.
+  Vec3 normal(const Vec3& p) const;
+
+ private:
+  Vec3 centre_;
+  double ring_radius_;
+  // Ball that encloses the wheel and its stem.
+  Vec3 ball_centre_;
+  double ball_radius_;
+};
+
+// Model of a colour and depth camera in turbid water: colours fade into a veil of scattered light, and depth
+// becomes noisier or is lost. The rates describe the trend, not one particular water.
+
+// exp(-x) for x >= 0, with a relative error below 1e-12; 0 from 64 on. Computed by products, so that the bits
+// do not depend on which exponential the C library picks for a machine.
+double decay(double x);
+
+// Distances are metres of water between the camera and the object; infinite if the pixel shows no object. The
+// model neglects blur and the path of the light to the objects.
+class Water {
+ public:
+  // Attenuation beta per metre, 0 for clear water. Red is lost fastest, blue slowest.
+  explicit Water(double turbidity_per_m) : turbidity_per_m_(turbidity_per_m) {}
+
+  static constexpr double kAttenuation[3] = {1.3, 0.95, 0.8};  // factors on beta for red, green and blue
+  static constexpr double kVeil[3] = {13, 31, 28};             // a dark bluish green; 0 to 255
+
+  // Colour through the water, as channels from 0 to 255. A channel c of rgb, 0xRRGGBB, becomes
+  // c exp(-beta_c d) + veil_c (1 - exp(-beta_c d)).
+  std::array<double, 3> seen(std::uint32_t rgb, double distance_m) const;
+
+  // Probability that a pixel has no depth, 1 - (1 - dropout) exp(-beta d / 4), with dropout the probability
+  // in clear water.
+  double lost(double dropout_probability, double distance_m) const;
+  // Factor on the standard deviation of depth, 1 + beta d, because the sensor's light pattern returns
+  // fainter.
+  double depth_noise_factor(double distance_m) const;
+
+ private:
+  const double turbidity_per_m_;
+};
 
 // The class of a pixel, and the valve that a query is about.
 enum class Valve : std::uint8_t { none, left, right };

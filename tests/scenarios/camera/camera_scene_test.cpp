@@ -1,4 +1,4 @@
-#include "scenarios/camera/extrusion.h"
+#include "scenarios/camera/camera_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace remote_touch::extrusion_test {
+namespace remote_touch::camera_scene_test {
 namespace {
 
 using Profile = std::vector<std::array<double, 2>>;
@@ -176,4 +176,4 @@ TEST(Extrusion, ABoxHasTheValuesComputedByHand) {
 }
 
 }  // namespace
-}  // namespace remote_touch::extrusion_test
+}  // namespace remote_touch::camera_scene_test
