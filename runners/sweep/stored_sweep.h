@@ -13,7 +13,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/tally/sweep_tally.h"
-#include "scenarios/interface/note.h"
+#include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace remote_touch {
 
@@ -28,6 +29,26 @@ Vec3 Scenario::true_normal(const Vec3& p_W, double time_s) const {
   const double length = gradient.norm();
   if (!(std::abs(length - 1) <= kMaxShortening)) return Vec3::Constant(std::nan(""));
   return gradient / length;
+}
+
+// Returns null if the frame is not kept.
+KeptFrames::Points KeptFrames::find(std::size_t frame) {
+  const std::lock_guard lock(mutex_);
+  const auto found =
+      std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.frame == frame; });
+  if (found == kept_.end()) return nullptr;
+  std::rotate(kept_.begin(), found, found + 1);
+  return kept_.front().points;
+}
+
+KeptFrames::Points KeptFrames::get(std::size_t frame, const std::function<Points()>& make) {
+  if (Points points = find(frame)) return points;
+  Points made = make();  // the lock is free, so that other frames are made meanwhile
+  if (Points points = find(frame)) return points;
+  const std::lock_guard lock(mutex_);
+  if (kept_.size() == at_most_) kept_.pop_back();
+  kept_.insert(kept_.begin(), {frame, made});
+  return made;
 }
 
 }  // namespace remote_touch

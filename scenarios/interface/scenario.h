@@ -2,9 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,9 +18,28 @@
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
 #include "core/search/neighbour_search.h"
-#include "scenarios/interface/note.h"
 
 namespace remote_touch {
+
+// Phases of a motion, and notes on a run for the user.
+
+// A remark on a run that the user should read: the run is valid, but it may not be what was meant.
+struct Note {
+  std::string kind;  // the same for all notes of this kind, see note_kinds(): "no contact"
+  std::string text;  // one line
+};
+
+// A part of the scripted motion of a scene or of a hand.
+struct Phase {
+  std::string name;  // name with its article: "the acceleration"
+  double begins_s = 0;
+  double ends_s = std::numeric_limits<double>::infinity();
+};
+
+// The time at which a surface that moves is considered.
+
+// newest_frame: the surface as at the last capture. moving: the surface as it moves between frames.
+enum class SurfaceTime { newest_frame, moving };
 
 // Two times count as equal if they differ by less than this, because sums and quotients of times are rounded.
 inline constexpr double kSameTime_s = 5e-7;
@@ -109,6 +131,34 @@ class Scenario {
   virtual double surface_height(double /*x*/, double /*z*/, double /*time_s*/) const {
     return std::numeric_limits<double>::quiet_NaN();
   }
+};
+
+// The frames of a scenario that were used last.
+
+// Hand, renderer and truth use the same frames in turn, and making a frame may take far longer than copying
+// it. Several threads may call get() at the same time.
+class KeptFrames {
+ public:
+  using Points = std::shared_ptr<const NeighbourSearch>;
+
+  // Pre: at_most is 1 or more.
+  explicit KeptFrames(std::size_t at_most) : at_most_(at_most) {}
+
+  // Returns the frame if it is kept. Otherwise makes it, and keeps it instead of the frame that was used
+  // longest ago. What make() throws is passed on, and nothing is kept. Threads that ask for the same frame
+  // at the same time may each make it.
+  Points get(std::size_t frame, const std::function<Points()>& make);
+
+ private:
+  struct Kept {
+    std::size_t frame;
+    Points points;
+  };
+  Points find(std::size_t frame);
+
+  const std::size_t at_most_;
+  std::mutex mutex_;        // guards kept_
+  std::vector<Kept> kept_;  // the frame that was used last is in front
 };
 
 }  // namespace remote_touch

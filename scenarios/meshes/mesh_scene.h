@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "scenarios/interface/kept_frames.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/mesh_camera.h"
 

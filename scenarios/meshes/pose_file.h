@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/geometry/vector.h"
-#include "scenarios/interface/note.h"
+#include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/pose_path.h"
 
 namespace remote_touch {

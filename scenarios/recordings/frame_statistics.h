@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/geometry/point_cloud.h"
-#include "scenarios/interface/note.h"
+#include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 
 #include "core/geometry/point_cloud.h"
 #include "core/geometry/vector.h"
-#include "scenarios/interface/note.h"
+#include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/camera_path.h"
 
 namespace remote_touch {

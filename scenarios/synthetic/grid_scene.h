@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "scenarios/interface/scenario.h"
-#include "scenarios/interface/surface_time.h"
 #include "scenarios/synthetic/grid.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "scenarios/interface/note.h"
+#include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 

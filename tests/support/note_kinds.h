@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/interface/note.h"
+#include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 

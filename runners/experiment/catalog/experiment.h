@@ -12,7 +12,7 @@
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/settings/embedded_data.h"
 #include "runners/experiment/teleoperation/teleoperation.h"
-#include "scenarios/interface/note.h"
+#include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
 

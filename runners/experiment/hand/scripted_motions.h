@@ -10,7 +10,6 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/interface/surface_time.h"
 
 namespace remote_touch {
 

@@ -13,7 +13,6 @@
 #include "core/kernels/kernels.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/factory.h"
-#include "scenarios/interface/note.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

@@ -12,7 +12,6 @@
 #include "core/geometry/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/interface/note.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
