@@ -10,7 +10,7 @@
 
 #include "core/geometry/vector.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/meshes/pose_path.h"
+#include "scenarios/meshes/mesh_object.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "scenarios/meshes/object_view.h"
+#include "scenarios/meshes/mesh_object.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "scenarios/meshes/object_view.h"
+#include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/recorded_truth.h"
 
 namespace remote_touch {

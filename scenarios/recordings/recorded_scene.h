@@ -23,7 +23,7 @@ namespace remote_touch {
 
 // The world frame is the camera's, x right, y down, z forward, unless the camera is registered to another or
 // its poses are known. The true surface is the measured one, or that of the meshes in the folder truth/ of
-// the recording, see truth_folder.h.
+// the recording, see recorded_truth.h.
 class RecordedScene : public Scenario {
  public:
   using Playback = FrameTimes::Playback;

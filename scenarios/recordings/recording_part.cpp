@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "scenarios/meshes/truth_folder.h"
+#include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/recordings/camera_path.h"
 #include "scenarios/text_files/file_ending.h"

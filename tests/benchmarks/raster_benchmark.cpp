@@ -11,7 +11,7 @@
 
 #include "core/geometry/rotation.h"
 #include "core/mesh/triangle_mesh.h"
-#include "scenarios/meshes/depth_raster.h"
+#include "scenarios/meshes/mesh_scene.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/support/depth_scenes.h"
 

@@ -16,7 +16,7 @@
 #include "core/mesh/mesh_sides.h"
 #include "core/mesh/welded_mesh.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
-#include "scenarios/meshes/checked_object.h"
+#include "scenarios/meshes/mesh_object.h"
 #include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {

@@ -8,7 +8,6 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
-#include "scenarios/meshes/mesh_camera.h"
 #include "scenarios/meshes/mesh_scene.h"
 #include "scenarios/meshes/pose_file.h"
 #include "scenarios/recordings/recorded_scene.h"

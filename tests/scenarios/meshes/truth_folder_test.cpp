@@ -1,5 +1,4 @@
-// The folder truth/ of a recording: what is found in it, and what is refused.
-#include "scenarios/meshes/truth_folder.h"
+#include "scenarios/meshes/recorded_truth.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/camera.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::truth_folder_test {
 namespace {
+
+// The folder truth/ of a recording: what is found in it, and what is refused.
 
 namespace fs = std::filesystem;
 
@@ -206,6 +208,167 @@ TEST_F(TruthFolders, AreRefusedIfAFileIsElsewhere) {
   expect_object_refused("poses.txt", "none.txt",
                         "objects[0]: poses: no file " + in_truth("none.txt").string());
   expect_object_refused("cube.obj", ".", "objects[0]: mesh: no file");
+}
+
+// The pixels at which the truth holds, and the masks that are refused.
+
+const CameraIntrinsics kCamera = {4, 3, 10, 20, 1.5, 1};
+const Vec3 kCentre = unproject(kCamera, 1, 1, 2);  // a position at pixel (1, 1)
+const std::vector<std::uint8_t> kAll(12, 255), kNone(12, 0);
+
+class Masks : public testing::Test {
+ protected:
+  // A mask of 4 x 3 pixels or another width.
+  void write(const std::string& name, const std::vector<std::uint8_t>& grey, int width = 4) const {
+    const int height = static_cast<int>(grey.size()) / width;
+    folder_.write_png("mask/" + name, width, height, PNG_FORMAT_GRAY, grey.data());
+  }
+  TruthMasks masks(const std::vector<std::string>& frames, const CameraIntrinsics& camera = kCamera) const {
+    TruthFolder truth;
+    truth.masks = folder_ / "mask";
+    return {truth, frames, camera};
+  }
+  // Masks of frames that are numbered from 0.
+  TruthMasks masks(std::size_t frames, const CameraIntrinsics& camera = kCamera) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < frames; ++i) names.push_back(std::to_string(i) + ".png");
+    return masks(names, camera);
+  }
+  std::string why(std::size_t frames) const {
+    return refusal([&] { masks(frames).holds_at(0, kCentre); });
+  }
+
+  const TestFolder folder_{"truth_masks_test"};
+};
+
+TEST_F(Masks, HoldAtTheirPixelsThatAreNotBlack) {
+  const std::vector<std::uint8_t> grey = {0, 255, 0, 1, 7, 0, 0, 0, 0, 0, 128, 0};
+  write("0000.png", grey);
+  const TruthMasks one = masks(1);
+  for (int v = 0; v < 3; ++v)
+    for (int u = 0; u < 4; ++u)
+      for (const double z_m : {0.1, 1.0, 30.0})
+        EXPECT_EQ(one.holds_at(0, unproject(kCamera, u, v, z_m)), grey[4 * v + u] != 0) << u << " " << v;
+}
+
+// A pixel reaches half a pixel to each side of its centre.
+TEST_F(Masks, RoundToTheNearestPixel) {
+  write("0000.png", {0, 0, 0, 0, 0, 255, 0, 0, 0, 0, 0, 0});
+  const TruthMasks one = masks(1);
+  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 0.51, 0.51, 1)));
+  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 1.49, 1.49, 1)));
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 0.49, 1, 1)));
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1.51, 1, 1)));
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 0.49, 1)));
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 1.51, 1)));
+}
+
+TEST_F(Masks, HoldNowhereOutsideTheImage) {
+  write("0000.png", kAll);
+  const TruthMasks one = masks(1);
+  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, -0.49, -0.49, 1)));
+  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 3.49, 2.49, 1)));
+  for (const auto& [u, v] : {std::pair(-0.51, 1.0), {3.51, 1.0}, {1.0, -0.51}, {1.0, 2.51}, {1e300, 1.0}})
+    EXPECT_FALSE(one.holds_at(0, unproject(kCamera, u, v, 1))) << u << " " << v;
+  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 1, -1)));
+  EXPECT_FALSE(one.holds_at(0, Vec3::Zero()));
+  EXPECT_FALSE(one.holds_at(0, Vec3::Constant(std::nan(""))));
+}
+
+TEST_F(Masks, HoldEverywhereWithoutAFolder) {
+  const TruthMasks none(TruthFolder{}, std::vector<std::string>(3), {});
+  EXPECT_TRUE(none.holds_at(2, kCentre));
+  EXPECT_TRUE(none.holds_at(2, {0, 0, -1}));
+}
+
+// The first frame has the number 1, and a mask of every other frame is missing.
+TEST_F(Masks, BelongToTheFramesWithTheirNumbers) {
+  std::vector<std::string> frames;
+  for (int i = 1; i <= 6; ++i) frames.push_back("frame-00000" + std::to_string(i) + ".depth.png");
+  write("m_1.png", kAll), write("m_3.png", kNone), write("m_0005.png", kAll);
+  const TruthMasks some = masks(frames);
+  const std::vector<bool> expected = {true, false, false, false, true, false};
+  for (std::size_t frame = 0; frame < 6; ++frame) EXPECT_EQ(some.holds_at(frame, kCentre), expected[frame]);
+}
+
+// The names are frame_object. There are as many masks as frames, but two are those of one frame.
+TEST_F(Masks, OfSeveralObjectsAreJoined) {
+  std::vector<std::uint8_t> left(12, 0), right(12, 0);
+  left[5] = 255, right[6] = 255;
+  write("000001_000000.png", left), write("000001_000001.png", right), write("000002_000001.png", right);
+  const TruthMasks three = masks({"000001.png", "000002.png", "000003.png"});
+  const Vec3 other = unproject(kCamera, 2, 1, 2);
+  EXPECT_TRUE(three.holds_at(0, kCentre) && three.holds_at(0, other));
+  EXPECT_TRUE(!three.holds_at(1, kCentre) && three.holds_at(1, other));
+  EXPECT_TRUE(!three.holds_at(2, kCentre) && !three.holds_at(2, other));
+}
+
+// More masks than are kept in memory, in an order that reads each of them several times.
+TEST_F(Masks, StayWithTheirFrames) {
+  for (int i = 0; i < 12; ++i) write("m" + std::to_string(i) + ".png", i % 3 == 0 ? kAll : kNone);
+  const TruthMasks many = masks(12);
+  for (std::size_t i = 0; i < 200; ++i) {
+    const std::size_t frame = i * i * 7 % 12;
+    ASSERT_EQ(many.holds_at(frame, kCentre), frame % 3 == 0) << frame;
+    ASSERT_EQ(many.holds_at(i % 12, kCentre), i % 12 % 3 == 0) << i;
+  }
+}
+
+// Reading an image a second time would fail.
+TEST_F(Masks, AreReadOnceAndNotBeforeTheyAreNeeded) {
+  write("0.png", kAll);
+  const TruthMasks two = [&] {
+    write("1.png", kNone);
+    return masks(2);
+  }();
+  EXPECT_TRUE(two.holds_at(0, kCentre));
+  fs::remove_all(folder_ / "mask");
+  EXPECT_TRUE(two.holds_at(0, kCentre));
+  EXPECT_HAS(refusal([&] { two.holds_at(1, kCentre); }), "1.png: cannot be read");
+}
+
+TEST_F(Masks, AreTransparentWhereTheTruthDoesNotHold) {
+  std::vector<std::uint8_t> rgba(48, 255);
+  rgba[4 * 5 + 3] = 0;
+  folder_.write_png("mask/0.png", 4, 3, PNG_FORMAT_RGBA, rgba.data());
+  EXPECT_FALSE(masks(1).holds_at(0, unproject(kCamera, 1, 1, 1)));
+  EXPECT_TRUE(masks(1).holds_at(0, unproject(kCamera, 2, 1, 1)));
+}
+
+TEST_F(Masks, AreRefusedIfTheirFrameIsNotClear) {
+  for (const char* name : {"3.png", "mask.png", "3_1.png", "99999999999999999999.png"}) {
+    fs::remove_all(folder_ / "mask");
+    write(name, kAll);
+    EXPECT_HAS(why(3),
+               (folder_ / "mask" / name).string() +
+                   ": its name has the number of no frame: expected names with the numbers of the depth");
+  }
+  for (const char* more : {"01.png", "1_7.png"}) {
+    fs::remove_all(folder_ / "mask");
+    write("1.png", kAll), write(more, kAll);
+    EXPECT_HAS(why(3), "frame 1 has another mask");
+  }
+  EXPECT_HAS(refusal([&] {
+               masks({"a1.png", "b1.png"});
+             }),
+             "it is not clear which of its files belong to a1.png and which to b1.png");
+}
+
+TEST_F(Masks, AreRefusedForFramesThatAreNotImages) {
+  write("0.png", kAll);
+  EXPECT_EQ(refusal([&] { masks({"0.png"}, {}); }),
+            (folder_ / "mask").string() + ": the frames are not images: expected no masks");
+}
+
+TEST_F(Masks, AreRefusedInAnotherSizeOrFormat) {
+  write("0.png", kAll, 3);
+  EXPECT_EQ(why(1), (folder_ / "mask/0.png").string() +
+                        ": has 3 x 4 pixels: expected 4 x 3 pixels, as the camera has");
+  const std::vector<std::uint16_t> deep(12, 1);
+  folder_.write_png("mask/0.png", 4, 3, PNG_FORMAT_LINEAR_Y, deep.data());
+  EXPECT_HAS(why(1), "expected up to 8 bits a channel");
+  folder_.write("mask/0.png", "no image");
+  EXPECT_HAS(why(1), "0.png: is not a whole PNG file");
 }
 
 }  // namespace

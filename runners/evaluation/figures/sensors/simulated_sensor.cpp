@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "scenarios/meshes/depth_raster.h"
+#include "scenarios/meshes/mesh_scene.h"
 
 namespace remote_touch {
 

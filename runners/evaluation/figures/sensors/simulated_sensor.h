@@ -9,7 +9,7 @@
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
 #include "scenarios/camera/depth_sensor.h"
-#include "scenarios/meshes/mesh_camera.h"
+#include "scenarios/meshes/mesh_scene.h"
 #include "scenarios/meshes/recorded_truth.h"
 
 namespace remote_touch {
