@@ -244,7 +244,7 @@ class PoseReader {
 
   // Returns false for a time that is that of the line before.
   bool add_stamp(const std::string& where, const Words& words) {
-    constexpr double kMaxStamp_s = 1e12;  // the limit of tum_layout.cpp
+    constexpr double kMaxStamp_s = 1e12;  // the limit of image_folders.cpp
     std::vector<double>& stamps_s = result_.stamps_s;
     const double stamp_s = columns_.value(where, words, kTime);
     if (is_not_finite(stamp_s)) refuse(where, "has a number that is not finite: ", kStamped);

@@ -3,18 +3,61 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/geometry/point_cloud.h"
-#include "scenarios/recordings/bag_choice.h"
 #include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/recordings/bags/depth_from_message.h"
 #include "scenarios/recordings/bags/image_rays.h"
+#include "scenarios/recordings/bags/messages.h"
 
 namespace remote_touch {
+
+// Settings that choose the frames of a recording from a bag of ROS.
+
+// The part of a bag that is used. topic and camera_info are names of topics. If a name is empty, the program
+// chooses the topic.
+struct BagChoice {
+  enum class Images { by_name, measured, rectified };
+  std::string topic;                // topic of clouds or depth images; empty: the only one that has them
+  std::string camera_info;          // topic of their camera; empty: found by the name of the images' topic
+  Images images = Images::by_name;  // `by_name`: rectified if the last part of the topic's name has "rect"
+  std::string frame_id;             // coordinate frame of tf_static; empty: that of the messages
+  // Size of one unit of depth images. 0: floats are in metres, and integers are in the unit that a RealSense
+  // recorded, or else in 0.001 m.
+  double depth_unit_m = 0;
+};
+
+// Fixed transforms between the coordinate frames of a robot, as in tf_static: each frame has at most one
+// parent.
+
+// Removes the leading / that older programs write in front of the name of a frame.
+std::string plain_frame(const std::string& frame);
+
+class StaticTransforms {
+ public:
+  // A frame that is added again gets its new parent and transform. Throws InputError about the subject for
+  // more than 10000 frames.
+  void add(const std::vector<StampedTransform>& transforms, const std::string& subject = "tf_static");
+  // p_to = X * p_from. Throws InputError about the subject when the two are not connected, or a frame is its
+  // own ancestor.
+  RigidTransform between(const std::string& to, const std::string& from, const std::string& subject) const;
+
+ private:
+  struct Parent {
+    std::string name;
+    RigidTransform X;
+  };
+  // Returns the transform from the frame to its root, the ancestor without a parent, and writes the root's
+  // name. Throws InputError about the subject if a frame is its own ancestor.
+  RigidTransform to_root(std::string frame, std::string& root, const std::string& subject) const;
+
+  std::map<std::string, Parent> parent_of_;
+};
 
 // Reads sensor_msgs/PointCloud2, Image and CompressedImage (compressedDepth). The first CameraInfo is used
 // for all frames, see camera_change(). Integers of depth images are in units of 1 mm, or in the unit that the

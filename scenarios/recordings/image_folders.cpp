@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <utility>
 
-#include "scenarios/recordings/camera_file.h"
-#include "scenarios/recordings/folder_files.h"
 #include "scenarios/recordings/images_and_clouds/depth_npy.h"
 #include "scenarios/recordings/images_and_clouds/depth_png.h"
-#include "scenarios/recordings/tum_layout.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/json_text.h"
@@ -21,9 +21,214 @@
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void require_target(const fs::path& file) {
+  if (fs::is_symlink(file) && !fs::exists(file))
+    refuse(file.string(), "is a link to a file that does not exist: expected a file");
+}
+
+std::vector<std::string> numbers_in(const fs::path& file) {
+  return numbers_in_name(file.stem().string());
+}
+
+[[noreturn]] void refuse_pair(const fs::path& colour, const fs::path& depth) {
+  refuse(colour.string(), "it is not clear whether it belongs to ", depth.string(),
+         ": expected colour images with the names of the depth images, or with "
+         "the same numbers in their names");
+}
+
+std::vector<fs::path> paired_by_numbers(const std::vector<fs::path>& depth,
+                                        const std::vector<fs::path>& colours) {
+  std::map<std::vector<std::string>, fs::path> of_numbers;
+  for (const fs::path& colour : colours)
+    if (!of_numbers.emplace(numbers_in(colour), colour).second) refuse_pair(colour, depth.front());
+  std::vector<fs::path> images(depth.size());
+  std::set<std::vector<std::string>> used;
+  for (std::size_t j = 0; j < depth.size(); ++j) {
+    const auto found = of_numbers.find(numbers_in(depth[j]));
+    if (found == of_numbers.end()) continue;
+    if (!used.insert(found->first).second) refuse_pair(found->second, depth[j]);
+    images[j] = found->second;
+  }
+  if (used.empty()) refuse_pair(colours.front(), depth.front());
+  return images;
+}
+
+}  // namespace
+
+std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& extension) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!has_ending(entry.path(), extension) || is_hidden(entry.path())) continue;
+    require_target(entry.path());
+    files.push_back(entry.path());
+  }
+  sort_by_name(files);
+  return files;
+}
+
+std::vector<fs::path> colour_images(const std::vector<fs::path>& depth, const fs::path& folder) {
+  std::vector<fs::path> images(depth.size());
+  require_target(folder);
+  if (!fs::is_directory(folder)) return images;
+  const std::vector<fs::path> colours = files_in_order(folder, ".png");
+  if (colours.empty() && !fs::is_empty(folder))
+    refuse(folder.string(), "holds no .png file: expected the colour images of ", depth.front().string(),
+           " and the others");
+  if (colours.empty()) return images;
+  std::map<std::string, fs::path> of_stem;
+  for (const fs::path& colour : colours) of_stem.emplace(colour.stem().string(), colour);
+  bool any = false;
+  for (std::size_t j = 0; j < depth.size(); ++j) {
+    const fs::path same = folder / depth[j].filename();  // a folder may hold both 1.png and 1.PNG
+    const auto found = of_stem.find(depth[j].stem().string());
+    if (found == of_stem.end()) continue;
+    images[j] = fs::exists(same) ? same : found->second, any = true;
+  }
+  return any ? images : paired_by_numbers(depth, colours);
+}
+
 namespace {
 
 namespace fs = std::filesystem;
+
+Json parse_camera_file(const fs::path& file) {
+  static const Json kKeys = {
+      "width",      "height", "fx", "fy", "cx", "cy", "depth_scale_m", "frame_rate_hz", "colour_registered",
+      "depth_along"};
+  Json json = parse_json(read_input_text(file, "expected an object of plain values"), file.string());
+  if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
+  for (const auto& item : json.items()) {
+    const std::string& key = item.key();
+    const auto is_key = [&key](const Json& name) { return name.get_ref<const std::string&>() == key; };
+    if (std::any_of(kKeys.begin(), kKeys.end(), is_key)) continue;
+    refuse(file, "key ", shown(key), ": expected ", kKeys.dump());
+  }
+  return json;
+}
+
+// Returns the value of a required key, a finite number. Throws InputError if it is missing or of another
+// kind.
+double number(const fs::path& file, const Json& json, const std::string& key, bool positive) {
+  const auto found = json.find(key);
+  if (found == json.end()) refuse(file, "has no key '", key, "'");
+  const double value = found->is_number() ? found->get<double>() : std::nan("");
+  if (!std::isfinite(value) || (positive && value <= 0))
+    refuse(file, key, " = ", shown(*found), ": expected a number", (positive ? " above 0" : ""));
+  return value;
+}
+
+// Returns a value from 1 to 65535, which is more pixels a side than any depth camera has.
+int pixel_count(const fs::path& file, const Json& json, const std::string& key) {
+  constexpr double kMaxCount = 65535;
+  const double value = number(file, json, key, true);
+  if (value == std::floor(value) && value <= kMaxCount) return static_cast<int>(value);
+  refuse(file, key, " = ", shown(json[key]), ": expected an integer from 1 to 65535");
+}
+
+double frame_rate(const fs::path& file, const Json& json) {
+  const double value = number(file, json, "frame_rate_hz", true);
+  if (value <= kMaxFrameRate_hz) return value;
+  refuse(file, "frame_rate_hz = ", shown(json["frame_rate_hz"]), ": expected above 0 to 10000");
+}
+
+}  // namespace
+
+ImageCamera read_camera_file(const fs::path& file) {
+  const Json json = parse_camera_file(file);
+  ImageCamera result;
+  result.source = file.filename().string();
+  CameraIntrinsics& camera = result.camera;
+  camera.width = pixel_count(file, json, "width"), camera.height = pixel_count(file, json, "height");
+  camera.fx = number(file, json, "fx", true), camera.fy = number(file, json, "fy", true);
+  camera.cx = number(file, json, "cx", false), camera.cy = number(file, json, "cy", false);
+  result.metres_per_unit = number(file, json, "depth_scale_m", true);
+  if (json.contains("frame_rate_hz")) result.frame_rate_hz = frame_rate(file, json);
+  if (const auto found = json.find("colour_registered"); found != json.end()) {
+    if (!found->is_boolean()) refuse(file, "colour_registered = ", shown(*found), ": expected true, false");
+    result.colour_registered = found->get<bool>();
+  }
+  if (const auto found = json.find("depth_along"); found != json.end()) {
+    if (*found != "axis" && *found != "ray")
+      refuse(file, "depth_along = ", shown(*found), ": expected \"axis\", \"ray\"");
+    result.depth_along_ray = *found == "ray";
+  }
+  return result;
+}
+
+double read_frame_rate(const fs::path& file) {
+  return frame_rate(file, parse_camera_file(file));
+}
+
+namespace {
+
+constexpr double kMaxStamp_s = 1e12;  // some 30000 years; differences of stamps are then exact to 0.1 ms
+
+// Returns seconds since an arbitrary origin. Throws InputError about `where`, the list with ":line", unless
+// the whole text is a finite number of at most kMaxStamp_s.
+double read_stamp(const std::string& where, const std::string& stamp) {
+  double stamp_s = 0;
+  const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), stamp_s);
+  if (error == std::errc() && end == stamp.data() + stamp.size() && std::abs(stamp_s) <= kMaxStamp_s)
+    return stamp_s;
+  refuse(where, "timestamp '", stamp.substr(0, 32), "': expected a number of seconds");
+}
+
+}  // namespace
+
+std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
+  const std::string text = read_input_text(list, "expected lines 'timestamp filename'");
+  std::istringstream stream{std::string(without_byte_order_mark(text))};
+  stream.exceptions(std::ios::badbit);  // throws if memory runs out, which would otherwise pass for the end
+  std::vector<StampedFile> files;
+  std::string line;
+  // Files from other systems may end their lines with CR LF; blank lines and comments are skipped.
+  for (int line_number = 1; std::getline(stream, line); ++line_number) {
+    if (line.ends_with('\r')) line.pop_back();
+    std::istringstream words(line);
+    words.exceptions(std::ios::badbit);
+    std::string stamp, name, surplus;
+    if (!(words >> stamp) || stamp.front() == '#') continue;
+    const std::string where = list.string() + ":" + std::to_string(line_number);
+    const double stamp_s = read_stamp(where, stamp);
+    if (!(words >> name) || words >> surplus)
+      refuse(where, "'", line.substr(0, 64), "': expected one timestamp and one file name");
+    if (!files.empty() && stamp_s <= files.back().stamp_s)
+      refuse(where, "timestamp ", stamp, ": expected above that of the line before");
+    files.push_back({stamp_s, list.parent_path() / name});
+    const std::filesystem::path& file = files.back().file;
+    if (!std::filesystem::is_regular_file(file)) refuse(where, "no file ", file.string());
+  }
+  if (files.empty()) refuse(list.string(), "lists no file: expected lines 'timestamp filename'");
+  return files;
+}
+
+std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
+                                            const std::vector<StampedFile>& colour) {
+  constexpr double kMaxApart_s = 0.02;  // the tolerance of the benchmark's own association
+  std::vector<RecordedFrame> frames;
+  auto first = colour.begin();
+  for (const StampedFile& image : depth) {
+    RecordedFrame frame{image.stamp_s - depth.front().stamp_s, image.file, {}};
+    double nearest_s = kMaxApart_s;
+    // The stamps increase, so a colour image that is too early for this depth image is too early for all
+    // later ones.
+    while (first != colour.end() && image.stamp_s - first->stamp_s > kMaxApart_s) ++first;
+    for (auto other = first; other != colour.end() && other->stamp_s - image.stamp_s <= kMaxApart_s;
+         ++other) {
+      const double off_s = std::abs(other->stamp_s - image.stamp_s);
+      if (off_s <= nearest_s) nearest_s = off_s, frame.colour = other->file;
+    }
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+namespace {
 
 constexpr double kMillimetre_m = 1e-3;
 

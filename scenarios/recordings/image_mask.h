@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/dissertation/virtual_fixtures/fixture_rule.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

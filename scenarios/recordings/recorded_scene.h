@@ -8,18 +8,22 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/point_cloud.h"
 #include "core/parameters/parameter.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/camera_path.h"
-#include "scenarios/recordings/frame_layout.h"
 #include "scenarios/recordings/frame_statistics.h"
-#include "scenarios/recordings/frame_times.h"
-#include "scenarios/recordings/pose_fit.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/recordings/recording_part.h"
 
 namespace remote_touch {
+
+// The surface that a depth image shows: a plane through the points around a pixel.
+
+// Returns the distance of p to a plane through the points of the cloud around p's pixel, within radius_m, m;
+// positive towards the camera. NaN at holes and depth edges, outside the image, behind the camera, and for
+// clouds without a camera.
+double distance_to_measured(const PointCloud& cloud, const Vec3& p_W, double radius_m);
 
 // The world frame is the camera's, x right, y down, z forward, unless the camera is registered to another or
 // its poses are known. The true surface is the measured one, or that of the meshes in the folder truth/ of
@@ -67,7 +71,7 @@ class RecordedScene : public Scenario {
   // than truth_reach_m from all of them, beyond the border of an open one, and outside the mask. Otherwise it
   // is measured_distance().
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  // The distance to a plane through the points of the newest frame around p's pixel, see measured_surface.h.
+  // The distance to a plane through the points of the newest frame around p's pixel, see above.
   bool has_measured_distance() const override { return truth_ != nullptr; }
   double measured_distance(const Vec3& p_W, double time_s) const override;
   // Returns NaN if the truth is the measured surface, which is no independent truth: a normal would be judged

@@ -1,24 +1,219 @@
 #include "scenarios/recordings/recording.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
-#include <limits>
-#include <optional>
+#include <map>
 #include <utility>
 
 #include "core/geometry/camera.h"
+#include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/bag_frames.h"
-#include "scenarios/recordings/camera_file.h"
-#include "scenarios/recordings/folder_files.h"
-#include "scenarios/recordings/frame_layout.h"
+#include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/camera_path.h"
 #include "scenarios/recordings/image_folders.h"
 #include "scenarios/recordings/images_and_clouds/depth_npy.h"
 #include "scenarios/recordings/images_and_clouds/depth_png.h"
 #include "scenarios/recordings/images_and_clouds/pcd_file.h"
+#include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string data_folder;
+
+// The largest sizes of files that are read whole. Without a limit here the digest of a larger file is
+// computed first, which can take minutes.
+void require_readable_size(const fs::path& file) {
+  constexpr std::uintmax_t kMaxMeshBytes = std::uintmax_t{2} << 30;  // 5 million triangles as text
+  std::error_code unreachable;
+  const std::uintmax_t size = fs::file_size(file, unreachable);
+  if (unreachable) return;  // the reader refuses it
+  for (const char* ending : {".obj", ".ply", ".stl"})
+    if (has_ending(file, ending) && size > kMaxMeshBytes)
+      refuse(file.string(), "is larger than 2 GiB: expected a mesh of at most 5 million triangles");
+  for (const char* ending : {".csv", ".traj", ".txt", ".tum"})
+    if (has_ending(file, ending) && size > kMaxTextBytes)
+      refuse(file.string(), "is longer than ", kMaxTextBytes >> 20, " MiB: expected a shorter text");
+}
+
+// True for images, meshes, paths of poses, measured contacts and live sessions. A recording of frames is not
+// made from such files.
+bool is_single_file(const fs::path& file) {
+  constexpr std::array kEndings = {".png", ".obj", ".ply",  ".stl", ".h5",
+                                   ".oni", ".csv", ".traj", ".txt", ".tum"};
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return has_ending(file, ending); });
+}
+
+// Returns all files of a bag, regardless of the topic and the frames.
+std::vector<InputFile> bag_files(const fs::path& bag) {
+  std::vector<InputFile> list;
+  for (const fs::path& file : files_of_bag(bag)) list.push_back({file.filename().generic_string(), file});
+  std::sort(list.begin(), list.end(), [](const InputFile& a, const InputFile& b) { return a.name < b.name; });
+  return list;
+}
+
+}  // namespace
+
+void set_data_folder(const std::string& folder) {
+  data_folder = folder;
+}
+
+std::string recording_places() {
+  return "here or below REMOTE_TOUCH_DATA" + (data_folder.empty() ? " (not set)" : " = " + data_folder);
+}
+
+std::string find_recording(const std::string& path) {
+  const fs::path below = fs::path(data_folder) / path;
+  const bool may_be_below = !data_folder.empty() && fs::path(path).is_relative();
+  for (const fs::path& found : {fs::path(path), may_be_below ? below : fs::path()}) {
+    std::error_code unreachable;
+    if (found.empty() || !fs::exists(found, unreachable)) continue;
+    require_file_or_folder(found);
+    return found.string();
+  }
+  throw MissingRecording(path,
+                         "no such recording, image or mesh: expected a folder or file " + recording_places());
+}
+
+FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording) {
+  const int available = static_cast<int>(recording.frames.size());
+  const int last = part.last_frame < 0 ? available - 1 : part.last_frame;
+  if (part.first_frame >= available || last >= available)
+    refuse(part.path, "first_frame = ", part.first_frame, ", last_frame = ", part.last_frame,
+           ": expected 0 to ", available - 1);
+  return {part.first_frame, last};
+}
+
+namespace {
+
+std::vector<InputFile> listed_files(const RecordingPart& part) {
+  const fs::path found = find_recording(part.path);
+  if (is_single_file(found)) return {{found.filename().generic_string(), found}};
+  if (is_bag(found)) return bag_files(found);
+  const RecordingIndex recording = index_recording(found);
+  const FrameRange frames = frames_of(part, recording);
+  // The folder is absolute, because a list may name files by absolute paths: their names become ../../...
+  const fs::path place = fs::absolute(found);
+  const fs::path folder = fs::is_directory(place) ? place : place.parent_path();
+  std::map<std::string, fs::path> files;
+  const auto add = [&](const fs::path& file) {
+    files.emplace(fs::absolute(file).lexically_relative(folder).generic_string(), file);
+  };
+  for (const fs::path& text : recording.texts) add(text);
+  for (int i = frames.first; i <= frames.last; ++i) {
+    const RecordedFrame& frame = recording.frames[static_cast<std::size_t>(i)];
+    add(frame.depth);
+    if (!frame.colour.empty()) add(frame.colour);
+  }
+  if (const fs::path poses = (folder / part.camera_poses).lexically_normal(); !part.camera_poses.empty()) {
+    if (!fs::is_directory(poses)) add(poses);
+    for (const fs::path& file :
+         fs::is_directory(poses) ? pose_files(poses, recording) : std::vector<fs::path>())
+      if (!file.empty()) add(file);
+  }
+  if (const std::optional<TruthFolder> truth = part.with_truth ? find_truth(folder) : std::nullopt)
+    for (const fs::path& file : files_of(*truth)) add(file);
+  std::vector<InputFile> list;
+  for (const auto& [name, file] : files) list.push_back({name, file});
+  return list;
+}
+
+}  // namespace
+
+std::vector<InputFile> files_of(const RecordingPart& part) {
+  std::vector<InputFile> files = listed_files(part);
+  for (const InputFile& input : files) require_file(input.file), require_readable_size(input.file);
+  return files;
+}
+
+namespace {
+
+int rows_of(const PointCloud& cloud) {
+  return cloud.columns() == 0 ? 0 : static_cast<int>(cloud.size()) / cloud.columns();
+}
+
+std::string size_text(int columns, int rows) {
+  return std::to_string(columns) + " x " + std::to_string(rows) + " points";
+}
+
+// Returns the largest offset of a projected point from its pixel, along u or v (px). Returns infinity if a
+// point is not in front of the camera.
+double residual_px(const CameraIntrinsics& camera, const PointCloud& cloud) {
+  double worst = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_measured(i)) continue;
+    if (!(cloud.z[i] > 0)) return std::numeric_limits<double>::infinity();
+    const int place = static_cast<int>(i), u = place % camera.width, v = place / camera.width;
+    worst = std::max({worst, std::abs(camera.fx * cloud.x[i] / cloud.z[i] + camera.cx - u),
+                      std::abs(camera.fy * cloud.y[i] / cloud.z[i] + camera.cy - v)});
+  }
+  return worst;
+}
+
+PointCloud image_of_holes(const CameraIntrinsics& camera) {
+  PointCloud cloud;
+  const auto pixels = camera.pixels();
+  cloud.x.assign(pixels, std::nan("")), cloud.y = cloud.x, cloud.z = cloud.x;
+  cloud.grid_columns = camera.width;
+  return cloud;
+}
+
+void conform_to_camera(const CameraIntrinsics& camera, const std::string& subject, PointCloud& cloud) {
+  if (cloud.size() == 0) cloud = image_of_holes(camera);
+  if (cloud.columns() != camera.width || rows_of(cloud) != camera.height)
+    refuse(subject, "has ", size_text(cloud.columns(), rows_of(cloud)), ": expected ",
+           size_text(camera.width, camera.height), ", as the first frame that is used has");
+  // A depth image has the recording's camera. It is not tested, because a lens may bend its rays by more than
+  // a pixel.
+  if (cloud.image && cloud.image->camera == camera) return;
+  const double residual = residual_px(camera, cloud);
+  if (!(residual < (cloud.image ? 2 * kMaxFitResidual_px : kMaxFitResidual_px)))
+    refuse(subject,
+           "has another camera than the first frame that is used, or none: expected points at the "
+           "pixels of the same camera");
+  if (!cloud.image)
+    cloud.image = ImageLayout{camera, RigidTransform::Identity(), residual + kPixelRounding_px};
+}
+
+}  // namespace
+
+FrameLayout layout_of(const PointCloud& cloud) {
+  FrameLayout layout{cloud.columns() > 0, {}};
+  if (cloud.image) layout.camera = cloud.image->camera;
+  return layout;
+}
+
+void conform(const FrameLayout& layout, const std::string& subject, PointCloud& cloud) {
+  if (cloud.size() > 0 && layout.is_organised != (cloud.columns() > 0))
+    refuse(subject, layout.is_organised
+                        ? "has points in no order: expected an organised cloud, as the first frame "
+                          "that is used is"
+                        : "is an organised cloud: expected points in no order, as the first frame "
+                          "that is used has");
+  if (layout.camera)
+    conform_to_camera(*layout.camera, subject, cloud);
+  else
+    cloud.image.reset();
+}
+
+void drop_beyond(double max_depth_m, PointCloud& cloud) {
+  for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
+    if (!(cloud.z[i] > max_depth_m)) continue;
+    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 namespace {
 
 namespace fs = std::filesystem;

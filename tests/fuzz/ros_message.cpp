@@ -1,10 +1,10 @@
 // Messages of ROS. The first byte selects the type, and ROS 1 or 2.
 #include <cmath>
 
+#include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/bags/cloud_from_message.h"
 #include "scenarios/recordings/bags/depth_from_message.h"
 #include "scenarios/recordings/bags/image_rays.h"
-#include "scenarios/recordings/static_transforms.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::ros_message {

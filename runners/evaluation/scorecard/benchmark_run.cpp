@@ -10,7 +10,7 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/sweep/sweep_session.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "analysis/storage/other_processes.h"
 #include "core/mesh/triangle_mesh.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

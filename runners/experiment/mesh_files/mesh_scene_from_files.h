@@ -11,7 +11,7 @@
 #include "scenarios/meshes/mesh_scene.h"
 #include "scenarios/meshes/pose_file.h"
 #include "scenarios/recordings/recorded_scene.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "core/parameters/input_error.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "core/dissertation/sphere_tree/tool_spheres.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/parameters/parameter.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 
 #include "analysis/storage/other_processes.h"
 #include "runners/interfaces/cli/commands.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
 #include "runners/interfaces/python/python_class.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

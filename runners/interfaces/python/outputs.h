@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/storage/other_processes.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 

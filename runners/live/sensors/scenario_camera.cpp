@@ -19,7 +19,7 @@ constexpr double kUnits_m[] = {1e-4, 2e-4, 5e-4, 1e-3, 2e-3};
 // origin.
 constexpr double kSamePose = 1e-9;
 // Limit of the error of the pinhole camera that is fitted to an organised cloud, in the first frame of a
-// recording and in later ones, see scenarios/recordings/frame_layout.h.
+// recording and in later ones, see scenarios/recordings/recording.h.
 constexpr double kMaxOff_px = 1;
 
 std::string number(double value) {

@@ -1,17 +1,208 @@
-// The report about the frames of a recording.
-#include "scenarios/recordings/frame_statistics.h"
+#include "scenarios/recordings/recording.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "core/geometry/camera.h"
 #include "core/geometry/colour.h"
+#include "scenarios/recordings/frame_statistics.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::frame_statistics_test {
 namespace {
+
+// Properties that later frames of a recording must have in common with the first.
+
+constexpr CameraIntrinsics kCamera = {4, 3, 10, 10, 1.5, 1};
+
+PointCloud image(const CameraIntrinsics& camera, double depth_m) {
+  DepthImage depth{camera.width, camera.height, {}};
+  depth.z_m.assign(camera.pixels(), depth_m);
+  return cloud_from_depth(depth, camera, RigidTransform::Identity());
+}
+
+PointCloud grid(int columns, int rows) {
+  PointCloud cloud;
+  for (int i = 0; i < columns * rows; ++i) cloud.append({-1.0, 0.1 * (i % columns), 0.1 * (i / columns)});
+  cloud.grid_columns = columns;
+  return cloud;
+}
+
+std::string problem(const PointCloud& first, PointCloud later) {
+  return refusal([&] {
+    conform(layout_of(first), "2.pcd", later);
+    throw InputError("conforms");
+  });
+}
+
+TEST(FrameLayout, ImagesOfAnotherSizeAreRefused) {
+  const PointCloud first = image(kCamera, 1);
+  EXPECT_EQ(problem(first, image(kCamera, 2)), "conforms");
+  EXPECT_EQ(problem(first, image({2, 6, 10, 10, 1.5, 1}, 1)),
+            "2.pcd: has 2 x 6 points: expected 4 x 3 points, as the first frame that is used has");
+  EXPECT_HAS(problem(first, image({4, 2, 10, 10, 1.5, 1}, 1)), "has 4 x 2 points: expected 4 x 3");
+}
+
+// The corner pixel is 1.5 columns from the centre: with a focal length of 16 instead of 10 px its point is
+// 0.9 px off, with 17 px 1.05 px.
+TEST(FrameLayout, ImagesOfAnotherCameraAreRefused) {
+  const PointCloud first = image({4, 3, 16, 16, 1.5, 1}, 1);
+  const auto seen_with = [](double focal_px) { return image({4, 3, focal_px, focal_px, 1.5, 1}, 1); };
+  EXPECT_EQ(problem(first, seen_with(10)), "conforms");
+  EXPECT_HAS(problem(image({4, 3, 17, 17, 1.5, 1}, 1), seen_with(10)),
+             "2.pcd: has another camera than the first");
+}
+
+TEST(FrameLayout, CloudsInNoOrderAndOrganisedOnesDoNotMix) {
+  PointCloud unorganised = grid(4, 3);
+  unorganised.grid_columns = 0;
+  EXPECT_EQ(problem(image(kCamera, 1), unorganised),
+            "2.pcd: has points in no order: expected an organised cloud, as the first frame that is used is");
+  EXPECT_HAS(problem(grid(4, 3), unorganised), "2.pcd: has points in no order");
+  EXPECT_EQ(problem(unorganised, grid(4, 3)),
+            "2.pcd: is an organised cloud: expected points in no order, as the first frame that is used has");
+  EXPECT_HAS(problem(unorganised, image(kCamera, 1)), "2.pcd: is an organised cloud");
+  EXPECT_EQ(problem(unorganised, {}), "conforms");
+}
+
+TEST(FrameLayout, CloudsWithoutACameraMayChangeTheirSize) {
+  PointCloud few = grid(5, 2), unorganised = grid(4, 3);
+  unorganised.grid_columns = few.grid_columns = 0;
+  EXPECT_EQ(problem(unorganised, few), "conforms");
+  EXPECT_EQ(problem(grid(4, 3), grid(5, 2)), "conforms");
+  EXPECT_HAS(problem(image(kCamera, 1), grid(4, 3)),
+             "has another camera than the first frame that is used, or none");
+}
+
+// All frames are images, or none is: a camera that only later frames have is not used.
+TEST(FrameLayout, HasNoCameraInAnyFrameIfTheFirstHasNone) {
+  PointCloud later = image(kCamera, 1);
+  later.grid_columns = 4;
+  conform(layout_of(grid(4, 3)), "2.pcd", later);
+  EXPECT_FALSE(later.image);
+  EXPECT_EQ(later.columns(), 4);
+}
+
+// The frame has no measured point, or too few for a fit.
+TEST(FrameLayout, FramesWithTooFewPointsForAFitHaveTheCameraOfTheFirst) {
+  const FrameLayout layout = layout_of(image(kCamera, 1));
+  PointCloud nothing, one_point = image(kCamera, 2);
+  for (std::size_t i = 0; i < one_point.size(); ++i)
+    if (i != 5) one_point.x[i] = one_point.y[i] = one_point.z[i] = std::nan("");
+  one_point.image.reset(), one_point.grid_columns = 4;
+  for (PointCloud* cloud : {&nothing, &one_point}) {
+    conform(layout, "2.pcd", *cloud);
+    ASSERT_TRUE(cloud->image);
+    EXPECT_EQ(cloud->size(), 12u);
+    EXPECT_EQ(cloud->image->camera.fx, 10);
+    EXPECT_LT(cloud->image->pixel_slack, 1e-5);
+  }
+  EXPECT_TRUE(std::isnan(nothing.z[5]));
+  EXPECT_EQ(one_point.z[5], 2);
+  one_point.image.reset(), one_point.x[5] += 0.15;  // 0.75 px
+  EXPECT_HAS(problem(image(kCamera, 1), one_point), "has another camera");
+}
+
+// The times at which the frames of a recording are shown.
+
+using Playback = FrameTimes::Playback;
+
+RecordingIndex stamped(const std::vector<double>& times_s) {
+  RecordingIndex index;
+  for (const double time_s : times_s) index.frames.push_back({time_s, {}, {}});
+  index.is_stamped = true;
+  index.frame_rate_hz = times_s.size() > 1 ? static_cast<double>(times_s.size() - 1) / times_s.back() : 30;
+  return index;
+}
+
+RecordingIndex steady(int frames, double rate_hz) {
+  RecordingIndex index;
+  for (int j = 0; j < frames; ++j) index.frames.push_back({j / rate_hz, {}, {}});
+  index.frame_rate_hz = rate_hz;
+  return index;
+}
+
+std::vector<double> times_of(const FrameTimes& times, int frames) {
+  std::vector<double> all;
+  for (int i = 0; i < frames; ++i) all.push_back(times.captured_s(i));
+  return all;
+}
+
+std::vector<std::size_t> sources_of(const FrameTimes& times, int frames) {
+  std::vector<std::size_t> all;
+  for (int i = 0; i < frames; ++i) all.push_back(times.source(i));
+  return all;
+}
+
+// Frames 1 to 3 of four, 0.25 and 0.75 s apart: 2 Hz on average, so that a loop takes 1 + 0.5 s.
+TEST(FrameTimes, AreTheStampsAlsoWhereThePartIsPlayedAgain) {
+  const RecordingIndex index = stamped({0, 8, 8.25, 9});
+  const RecordingPart part{"x", 1, -1};
+  const FrameTimes hold(index, part, Playback::hold, 0), loop(index, part, Playback::loop, 0),
+      ping_pong(index, part, Playback::ping_pong, 0);
+  EXPECT_EQ(times_of(hold, 3), (std::vector<double>{0, 0.25, 1}));
+  EXPECT_EQ(times_of(loop, 7), (std::vector<double>{0, 0.25, 1, 1.5, 1.75, 2.5, 3}));
+  EXPECT_EQ(sources_of(loop, 7), (std::vector<std::size_t>{1, 2, 3, 1, 2, 3, 1}));
+  EXPECT_EQ(times_of(ping_pong, 7), (std::vector<double>{0, 0.25, 1, 1.75, 2, 2.25, 3}));
+  EXPECT_EQ(sources_of(ping_pong, 7), (std::vector<std::size_t>{1, 2, 3, 2, 1, 2, 3}));
+  EXPECT_EQ(hold.rate_hz(), 2) << "the mean of the part, not of the recording";
+}
+
+TEST(FrameTimes, AreMultiplesOfThePeriodOfASteadyRecording) {
+  const FrameTimes loop(steady(3, 30), {"x", 0, -1}, Playback::loop, 0);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(loop.captured_s(i), i / 30.0);
+  EXPECT_FALSE(loop.follows_stamps());
+}
+
+TEST(FrameTimes, IgnoreTheStampsIfARateIsChosen) {
+  for (const Playback playback : {Playback::hold, Playback::loop, Playback::ping_pong}) {
+    const FrameTimes chosen(stamped({0, 1, 5}), {"x", 0, -1}, playback, 10);
+    EXPECT_EQ(times_of(chosen, 3), (std::vector<double>{0, 1 / 10.0, 2 / 10.0}));
+    EXPECT_EQ(chosen.rate_hz(), 10);
+    EXPECT_EQ(chosen.text(), "10 Hz (recorded at 0.4 Hz)");
+    EXPECT_FALSE(chosen.follows_stamps());
+  }
+}
+
+TEST(FrameTimes, ASingleFrameIsAtTimeZero) {
+  for (const Playback playback : {Playback::hold, Playback::loop, Playback::ping_pong}) {
+    const FrameTimes single(stamped({0, 1, 5}), {"x", 1, 1}, playback, 0);
+    EXPECT_EQ(single.captured_s(0), 0);
+    EXPECT_EQ(single.source(0), 1u);
+    EXPECT_FALSE(single.follows_stamps());
+  }
+}
+
+// A pause is a time between frames that is nearer to two periods than to one, because a frame is missing.
+TEST(FrameTimes, ReportTheRateThatIsPlayed) {
+  const auto text = [](const RecordingIndex& index, double chosen_hz = 0) {
+    return FrameTimes(index, {"x", 0, -1}, Playback::hold, chosen_hz).text();
+  };
+  EXPECT_EQ(text(steady(3, 30)), "30 Hz");
+  EXPECT_EQ(text(steady(3, 30), 30), "30 Hz");
+  EXPECT_EQ(text(stamped({0, 0.1, 0.2, 0.34})), "8.82353 Hz") << "uneven, but none is missing";
+  EXPECT_EQ(text(stamped({0, 0.25, 0.5, 1.5, 1.75, 2})), "4 Hz with pauses of up to 1 s (2.5 Hz on average)");
+}
+
+TEST(FrameTimes, HaveAUsualRateThatAPauseDoesNotChange) {
+  EXPECT_EQ(FrameTimes(stamped({0, 0.25, 0.5, 60, 60.25}), {"x", 0, -1}, Playback::hold, 0).usual_rate_hz(),
+            4);
+}
+
+TEST(FrameTimes, APartThatIsTooFastIsRefused) {
+  const RecordingIndex index = stamped({0, 1, 1 + 1.0 / 16384, 4});
+  EXPECT_HAS(refusal([&] {
+               FrameTimes(index, {"x", 1, 2}, Playback::hold, 0);
+             }),
+             "x: frames 1 to 2 have timestamps of more than 10000 frames a second: expected seconds");
+}
+
+// The report about the frames of a recording.
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 

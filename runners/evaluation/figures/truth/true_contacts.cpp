@@ -10,7 +10,7 @@
 #include "core/search/neighbour_search.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/hand/image_surface.h"
-#include "scenarios/recordings/measured_surface.h"
+#include "scenarios/recordings/recorded_scene.h"
 
 namespace remote_touch {
 namespace {

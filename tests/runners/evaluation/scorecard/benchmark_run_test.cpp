@@ -14,7 +14,7 @@
 #include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 #include "tests/support/recorded_data.h"
 #include "tests/support/test_files.h"
 #include "tests/support/test_name.h"

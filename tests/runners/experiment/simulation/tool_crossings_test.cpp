@@ -11,7 +11,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/figures/tools/figure_pictures.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 #include "tests/runners/experiment/simulation/tool_audit.h"
 #include "tests/support/recorded_data.h"
 #include "tests/support/scenes.h"

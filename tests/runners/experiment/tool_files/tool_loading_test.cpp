@@ -7,7 +7,7 @@
 
 #include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "scenarios/recordings/recording_part.h"
+#include "scenarios/recordings/recording.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 

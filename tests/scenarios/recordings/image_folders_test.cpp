@@ -1,11 +1,11 @@
 // The pairing of colour images with depth images of a folder.
-#include "scenarios/recordings/folder_files.h"
+#include "scenarios/recordings/image_folders.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch::folder_files_test {
+namespace remote_touch::image_folders_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_F(FolderFiles, LinksToNothingAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch::folder_files_test
+}  // namespace remote_touch::image_folders_test
