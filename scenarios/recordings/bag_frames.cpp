@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/parameters/input_error.h"
-#include "scenarios/recordings/bags/cloud_from_message.h"
+#include "scenarios/recordings/bags/frames_from_messages.h"
 #include "scenarios/recordings/recording.h"
 #include "scenarios/text_files/refuse.h"
 

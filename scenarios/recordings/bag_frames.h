@@ -11,8 +11,7 @@
 
 #include "core/geometry/point_cloud.h"
 #include "scenarios/recordings/bags/bag_file.h"
-#include "scenarios/recordings/bags/depth_from_message.h"
-#include "scenarios/recordings/bags/image_rays.h"
+#include "scenarios/recordings/bags/frames_from_messages.h"
 #include "scenarios/recordings/bags/messages.h"
 
 namespace remote_touch {

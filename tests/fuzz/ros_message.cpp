@@ -2,9 +2,7 @@
 #include <cmath>
 
 #include "scenarios/recordings/bag_frames.h"
-#include "scenarios/recordings/bags/cloud_from_message.h"
-#include "scenarios/recordings/bags/depth_from_message.h"
-#include "scenarios/recordings/bags/image_rays.h"
+#include "scenarios/recordings/bags/frames_from_messages.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::ros_message {

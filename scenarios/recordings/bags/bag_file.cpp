@@ -1,9 +1,16 @@
 #include "scenarios/recordings/bags/bag_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
 
 #include "scenarios/recordings/bags/db3_file.h"
-#include "scenarios/recordings/bags/joined_bags.h"
 #include "scenarios/recordings/bags/mcap_file.h"
 #include "scenarios/recordings/bags/ros1_bag.h"
 #include "scenarios/text_files/file_ending.h"
@@ -11,6 +18,107 @@
 #include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {
+
+ByteFile::ByteFile(const std::filesystem::path& file) : name_(file.string()) {
+  descriptor_ = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  struct stat status {};
+  if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
+    const std::string why = std::strerror(errno);
+    if (descriptor_ >= 0) ::close(descriptor_);
+    refuse(name_, "cannot be opened: ", why);
+  }
+  if (!S_ISREG(status.st_mode)) {
+    ::close(descriptor_);
+    refuse(name_, "is not a file: expected a bag");
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+ByteFile::~ByteFile() {
+  ::close(descriptor_);
+}
+
+std::string ByteFile::bytes(std::uint64_t at, std::uint64_t size) const {
+  if (!has(at, size)) refuse(name_, "ends at byte ", size_, ": expected ", size, " bytes at ", at);
+  std::string result(size, '\0');
+  read(at, result.data(), result.size());
+  return result;
+}
+
+void ByteFile::read(std::uint64_t at, char* to, std::size_t size) const {
+  while (size > 0) {
+    const ssize_t got = ::pread(descriptor_, to, size, static_cast<off_t>(at));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) refuse(name_, "cannot be read: ", std::strerror(errno));
+    if (got == 0) refuse(name_, "ends while it is read");
+    at += static_cast<std::uint64_t>(got), to += got, size -= static_cast<std::size_t>(got);
+  }
+}
+
+std::uint32_t ByteFile::crc(std::uint64_t at, std::uint64_t end) const {
+  uLong crc = 0;
+  for (std::string piece; at < end; at += piece.size()) {
+    piece = bytes(at, std::min<std::uint64_t>(1u << 20, end - at));
+    crc = crc32_z(crc, reinterpret_cast<const unsigned char*>(piece.data()), piece.size());
+  }
+  return static_cast<std::uint32_t>(crc);
+}
+
+namespace {
+
+// Reads the files into which one long recording was divided as one bag.
+
+class JoinedBags final : public BagFile {
+ public:
+  // name: path of the whole bag, for an InputError. part_names: names of the parts' files, for the remark.
+  JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts,
+             const std::vector<std::string>& part_names, const WantedTopic& wanted);
+  std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override;
+
+ private:
+  // Adds what is wrong with a part to the remark of the whole bag.
+  void add_remark(const std::string& part_name, const std::string& remark);
+
+  // MessagePlace::part of this bag is an index into all_.
+  struct PlaceInFile {
+    const BagFile* file;
+    MessagePlace place;
+  };
+  std::vector<std::unique_ptr<BagFile>> parts_;
+  std::vector<PlaceInFile> all_;
+};
+
+JoinedBags::JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts,
+                       const std::vector<std::string>& part_names, const WantedTopic& wanted)
+    : BagFile(name, wanted), parts_(std::move(parts)) {
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const auto& part = parts_[p];
+    add_remark(part_names[p], part->remark());
+    for (std::size_t t = 0; t < part->topics().size(); ++t) {
+      BagTopic topic = part->topics()[t];
+      const std::uint64_t messages = std::exchange(topic.messages, 0);
+      const std::size_t index = add_topic(topic);
+      if (!is_wanted_[index]) topics_[index].messages += messages;
+      for (const MessagePlace& place : part->places(t)) {  // empty unless the topic is wanted
+        add_message(index, {place.logged_ns, all_.size(), 0});
+        all_.push_back({part.get(), place});
+      }
+    }
+  }
+  sort_places();
+}
+
+void JoinedBags::add_remark(const std::string& part_name, const std::string& remark) {
+  if (remark.empty()) return;
+  remark_ += (remark_.empty() ? "" : "; ") + part_name + " " + remark;
+}
+
+std::string JoinedBags::start(const MessagePlace& place, std::uint64_t max_bytes) const {
+  const PlaceInFile& found = all_[place.part];
+  return found.file->start(found.place, max_bytes);
+}
+
+}  // namespace
 
 namespace fs = std::filesystem;
 

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <new>
 
-#include "scenarios/recordings/bags/byte_file.h"
+#include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/text_files/refuse.h"
 
 namespace remote_touch {

@@ -9,7 +9,6 @@
 
 #include "scenarios/recordings/bags/bag_chunk.h"
 #include "scenarios/recordings/bags/bag_file.h"
-#include "scenarios/recordings/bags/byte_file.h"
 
 namespace remote_touch {
 

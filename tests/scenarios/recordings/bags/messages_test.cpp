@@ -8,9 +8,7 @@
 #include <string>
 
 #include "core/geometry/colour.h"
-#include "scenarios/recordings/bags/cloud_from_message.h"
-#include "scenarios/recordings/bags/depth_from_message.h"
-#include "scenarios/recordings/bags/image_rays.h"
+#include "scenarios/recordings/bags/frames_from_messages.h"
 #include "tests/support/bag_files.h"
 #include "tests/support/test_files.h"
 

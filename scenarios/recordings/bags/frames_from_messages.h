@@ -1,4 +1,4 @@
-// Viewing rays of the pixels of a depth image, from a CameraInfo. They convert a depth image to a cloud.
+// Depth images, viewing rays and clouds from messages of ROS.
 #pragma once
 
 #include <cstdint>
@@ -6,9 +6,37 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/geometry/point_cloud.h"
 #include "scenarios/recordings/bags/messages.h"
 
 namespace remote_touch {
+
+// Converts an Image or a CompressedImage to depths.
+
+// Factors that convert the values of a depth image to metres, for integers and for floats.
+struct DepthUnits {
+  double of_integers_m = 0.001;
+  double of_floats_m = 1;
+};
+
+// Returns true for the encodings of depth images: integers as 16UC1, mono16 and Z16, floats as 32FC1.
+bool is_depth_encoding(const std::string& encoding);
+inline constexpr const char* kDepthEncodings = "16UC1, mono16, Z16 or 32FC1";
+
+// Converts an image to depths in metres. A depth that is 0, negative, not finite or beyond max_depth_m
+// becomes NaN. Throws InputError about the subject for another encoding, or if the data are shorter than
+// height and step claim. At most 2^26 pixels.
+DepthImage depth_from_message(const ImageMessage& message, const DepthUnits& units, double max_depth_m,
+                              const std::string& subject);
+
+// Converts an image of the transport compressedDepth: 12 bytes (a format, then two floats a and b), then a
+// 16-bit PNG. The format "16UC1; ..." holds integers. The format "32FC1; ..." holds integers q: the float is
+// a / (q - b), and q = 0 means no measurement. Throws InputError also if the PNG is damaged or of another
+// kind.
+DepthImage depth_from_message(const CompressedImageMessage& message, const DepthUnits& units,
+                              double max_depth_m, const std::string& subject);
+
+// Viewing rays of the pixels of a depth image, from a CameraInfo. They convert a depth image to a cloud.
 
 // Size in pixels of the images of a camera: the size of its region of interest, divided by its binning.
 struct ImageSize {
@@ -56,5 +84,19 @@ class ImageRays {
   std::vector<double> ray_x_, ray_y_;
   double slack_ = 0;
 };
+
+// Reads the points of a PointCloud2 with any layout of its fields.
+
+// Reads the fields x, y, z (float32 or float64, metres) and, if present, rgb or rgba (4 bytes, 0xAARRGGBB).
+// Alpha is dropped, but see colour_of_float() for rgb as float32. Other fields are skipped. The message's
+// frame is the world frame. A point with a coordinate that is not finite, or at exactly (0, 0, 0), is a
+// missing measurement: it keeps its index, and its three coordinates are NaN.
+//
+// height > 1: the cloud is organised. It gets cloud.image if a pinhole camera explains it, as for a PCD file.
+// height = 1: the points are in no order.
+//
+// Throws InputError about the subject when a field is missing, of another type or of several values, or the
+// data are shorter than width, height and steps claim. At most 2^24 points.
+PointCloud cloud_from_message(const PointCloudMessage& message, const std::string& subject);
 
 }  // namespace remote_touch
