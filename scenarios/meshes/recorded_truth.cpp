@@ -14,7 +14,7 @@
 #include "core/geometry/colour.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"
-#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/json_text.h"

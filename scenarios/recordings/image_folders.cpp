@@ -11,8 +11,7 @@
 #include <sstream>
 #include <utility>
 
-#include "scenarios/recordings/images_and_clouds/depth_npy.h"
-#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/json_text.h"

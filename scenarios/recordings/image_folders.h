@@ -77,7 +77,7 @@ std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& dept
 // - BOP: depth/*.png and scene_camera.json; depth_scale is millimetres per unit; colours in rgb/.
 // - ScanNet: depth/*.png and intrinsic/intrinsic_depth.txt, or intrinsics_depth.txt; millimetres.
 // - 7-Scenes: *.depth.png; millimetres, f = 585, c = (320, 240).
-// Depth images may be NumPy files (depth/*.npy, depth_npy.h) in every layout but that of 7-Scenes.
+// Depth images may be NumPy files (depth/*.npy, depth_images.h) in every layout but that of 7-Scenes.
 // A camera.json replaces the camera and the unit of every layout, and states whether colours are registered,
 // whether depths are along the axis or the rays and, except for TUM, the rate, which is otherwise 30 Hz.
 // Colours that are there but not used are a note. Images are in the order of sort_by_name(); colours are

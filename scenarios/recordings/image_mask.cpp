@@ -1,6 +1,6 @@
 #include "scenarios/recordings/image_mask.h"
 
-#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/depth_images.h"
 
 #include "scenarios/text_files/refuse.h"
 

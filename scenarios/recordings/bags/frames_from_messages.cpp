@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "core/geometry/colour.h"
-#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
 #include "scenarios/text_files/refuse.h"
 

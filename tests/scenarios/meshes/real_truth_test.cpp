@@ -12,7 +12,7 @@
 #include "core/geometry/camera.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/meshes/recorded_truth.h"
-#include "scenarios/recordings/images_and_clouds/depth_png.h"
+#include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "tests/support/recorded_data.h"
 
 namespace remote_touch::real_truth_test {

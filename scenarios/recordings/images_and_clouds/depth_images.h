@@ -1,4 +1,4 @@
-// Depth and colour images in PNG files, as RGB-D recordings store them.
+// Depth and colour images in files: PNG and NumPy.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,8 @@
 #include "core/geometry/camera.h"
 
 namespace remote_touch {
+
+// Depth and colour images in PNG files, as RGB-D recordings store them.
 
 // Reads a 16-bit PNG of one channel: z = value * metres_per_unit along the optical axis. The value 0 (no
 // measurement) and every z beyond max_depth_m (may be infinite) become NaN. Pre: metres_per_unit > 0 and
@@ -30,5 +32,17 @@ GreyImage decode_grey_png(std::string_view bytes, const std::string& name);
 // values of alpha are ignored. Allowed are RGB and grey of up to 8 bits a channel, with or without alpha, and
 // palettes. Samples are used as stored: no gamma or colour profile is applied. Throws InputError as above.
 std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height);
+
+// Depth images in NumPy files (.npy), whose values may be floats.
+
+// Reads an array of the shape (height, width) and the type float32, float64 or uint16, in any byte order and
+// any order of its elements: z = value * metres_per_unit, exactly. The values 0, NaN, infinity and, of
+// integers, 65535 (no measurement) and every z beyond max_depth_m (may be infinite) become NaN. Pre:
+// metres_per_unit > 0 and finite. Throws InputError if the file is missing, cut short, longer than its header
+// says, of another shape or type, or has a negative depth.
+DepthImage read_depth_npy(const std::filesystem::path& file, double metres_per_unit, double max_depth_m);
+
+// Replaces distances from the camera's centre by depths along its axis. Pre: the image has the camera's size.
+void distances_to_depths(const CameraIntrinsics& camera, DepthImage& image);
 
 }  // namespace remote_touch
