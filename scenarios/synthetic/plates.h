@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/synthetic/grid_scene.h"
-#include "scenarios/synthetic/panel.h"
+#include "scenarios/synthetic/panel_scenes.h"
 
 namespace remote_touch {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "scenarios/synthetic/grid.h"
-#include "scenarios/synthetic/panel.h"
+#include "scenarios/synthetic/grid_scene.h"
+#include "scenarios/synthetic/panel_scenes.h"
 
 namespace remote_touch {
 

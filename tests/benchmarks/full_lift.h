@@ -7,7 +7,7 @@
 #include "analysis/trace/trace.h"
 #include "core/search/neighbour_search.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "scenarios/synthetic/moving_lift.h"
+#include "scenarios/synthetic/lifts.h"
 
 namespace remote_touch::benchmarks {
 

@@ -8,7 +8,7 @@
 
 #include "core/dissertation/proxy/proxy_parameters.h"
 #include "core/geometry/vector.h"
-#include "scenarios/synthetic/moving_lift.h"
+#include "scenarios/synthetic/lifts.h"
 
 namespace remote_touch::naive {
 

@@ -18,7 +18,7 @@
 
 #include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
 #include "core/kernels/isa.h"
-#include "scenarios/synthetic/moving_lift.h"
+#include "scenarios/synthetic/lifts.h"
 #include "tests/benchmarks/checked_benchmark.h"
 
 namespace remote_touch::benchmarks {

@@ -9,7 +9,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rotation.h"
 #include "core/search/neighbour_search.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {
 namespace {

@@ -15,17 +15,11 @@
 #include "scenarios/camera/camera_scene.h"
 #include "scenarios/camera/valve_tank.h"
 #include "scenarios/recordings/image_mask.h"
-#include "scenarios/synthetic/flat_grid.h"
-#include "scenarios/synthetic/listed_points.h"
-#include "scenarios/synthetic/moving_lift.h"
-#include "scenarios/synthetic/moving_plane.h"
+#include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/moving_shape.h"
-#include "scenarios/synthetic/open_box.h"
+#include "scenarios/synthetic/panel_scenes.h"
 #include "scenarios/synthetic/plates.h"
-#include "scenarios/synthetic/single_panel.h"
-#include "scenarios/synthetic/slot.h"
-#include "scenarios/synthetic/triangle_wave.h"
-#include "scenarios/synthetic/wedge.h"
+#include "scenarios/synthetic/resting_clouds.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/rivals/penalty_renderer.h"
-#include "scenarios/synthetic/triangle_wave.h"
+#include "scenarios/synthetic/resting_clouds.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::implicit_surface_renderer_test {

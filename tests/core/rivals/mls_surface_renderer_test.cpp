@@ -10,7 +10,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/numeric/noise.h"
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::mls_surface_renderer_test {

@@ -15,13 +15,10 @@
 #include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/camera_scene.h"
 #include "scenarios/camera/valve_tank.h"
-#include "scenarios/synthetic/flat_grid.h"
-#include "scenarios/synthetic/listed_points.h"
-#include "scenarios/synthetic/moving_lift.h"
-#include "scenarios/synthetic/moving_plane.h"
+#include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/moving_shape.h"
-#include "scenarios/synthetic/triangle_wave.h"
-#include "scenarios/synthetic/wedge.h"
+#include "scenarios/synthetic/panel_scenes.h"
+#include "scenarios/synthetic/resting_clouds.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::scenario_test {

@@ -7,13 +7,10 @@
 
 #include "core/geometry/rotation.h"
 #include "scenarios/camera/sensor_faults.h"
-#include "scenarios/synthetic/flat_grid.h"
-#include "scenarios/synthetic/moving_lift.h"
-#include "scenarios/synthetic/moving_plane.h"
+#include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/moving_shape.h"
-#include "scenarios/synthetic/single_panel.h"
-#include "scenarios/synthetic/slot.h"
-#include "scenarios/synthetic/triangle_wave.h"
+#include "scenarios/synthetic/panel_scenes.h"
+#include "scenarios/synthetic/resting_clouds.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::true_normal_test {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/synthetic/grid.h"
+#include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch::shape_test {
 namespace {

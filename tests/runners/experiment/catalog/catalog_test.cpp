@@ -13,7 +13,7 @@
 #include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/synthetic/flat_grid.h"
+#include "scenarios/synthetic/resting_clouds.h"
 #include "scenarios/text_files/json_text.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

@@ -11,10 +11,9 @@
 #include "runners/experiment/hand/scripted_motions.h"
 #include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/camera_scene.h"
-#include "scenarios/synthetic/flat_grid.h"
-#include "scenarios/synthetic/moving_lift.h"
+#include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/moving_shape.h"
-#include "scenarios/synthetic/triangle_wave.h"
+#include "scenarios/synthetic/resting_clouds.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::trajectory_test {

@@ -1,10 +1,40 @@
-#include "scenarios/synthetic/triangle_wave.h"
+#include "scenarios/synthetic/resting_clouds.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace remote_touch {
+
+Parameters parameters(FlatGrid::Settings& s) {
+  return appended(
+      parameters(s.grid),
+      {{"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames of the cloud per second, f_c"},
+       {"noise_sigma_m", &s.noise_sigma_m, 0, 0.1, "standard deviation of the noise on x, y and z", kLive},
+       {"redraw_noise", &s.redraw_noise, 0, 1,
+        "true: new noise in every frame; false: the same noise in all"}});
+}
+
+PointCloud FlatGrid::cloud(int frame) const {
+  return sampled(redraw_noise_ ? frame : 0, [](double x, double z) { return Vec3(x, 0, z); });
+}
+
+Parameters parameters(ListedPoints::Settings& s) {
+  return {
+      {"points", Rows{{"x_m", "y_m", "z_m"}, &s.points}, -100, 100, "the points, world frame"},
+      {"frame_rate_hz", &s.frame_rate_hz, 1e-3, 10000, "frames per second, when fixtures change with time"},
+  };
+}
+
+std::string validate(const ListedPoints::Settings& s) {
+  return s.points.empty() ? "points: expected one or more" : "";
+}
+
+PointCloud ListedPoints::cloud(int) const {
+  PointCloud cloud;
+  const std::vector<double>& p = settings_.points;
+  for (std::size_t i = 0; i + 2 < p.size(); i += 3) cloud.append({p[i], p[i + 1], p[i + 2]});
+  return cloud;
+}
 
 Parameters parameters(TriangleWave::Settings& s) {
   const Parameters more = {

@@ -1,5 +1,5 @@
 // A lift against its closed form: the motion is a function of time, which frames sample.
-#include "scenarios/synthetic/lift_motion.h"
+#include "scenarios/synthetic/lifts.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,11 @@
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/synthetic/moving_lift.h"
 #include "scenarios/synthetic/moving_shape.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::lift_motion_test {
+namespace remote_touch::lifts_test {
 namespace {
 
 constexpr double kRates_hz[] = {15, 30, 60, 90, 1000, 7.5, 29.97};
@@ -155,4 +154,4 @@ TEST(LiftMotion, PopsThroughAtTheBoundOfEachFrameRate) {
 }
 
 }  // namespace
-}  // namespace remote_touch::lift_motion_test
+}  // namespace remote_touch::lifts_test
