@@ -14,7 +14,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/run_notes.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

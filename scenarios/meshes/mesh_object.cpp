@@ -8,7 +8,7 @@
 
 #include "core/geometry/rotation.h"
 #include "core/mesh/mesh_check.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

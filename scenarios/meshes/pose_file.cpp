@@ -9,7 +9,6 @@
 
 #include "core/geometry/point_cloud.h"
 #include "scenarios/text_files/number_columns.h"
-#include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

@@ -9,7 +9,7 @@
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bags/frames_from_messages.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

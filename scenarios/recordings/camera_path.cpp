@@ -11,7 +11,7 @@
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/image_folders.h"
 #include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "core/geometry/colour.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

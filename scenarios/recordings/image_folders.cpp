@@ -12,11 +12,8 @@
 #include <utility>
 
 #include "scenarios/recordings/images_and_clouds/depth_images.h"
-#include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/json_text.h"
 #include "scenarios/text_files/number_columns.h"
-#include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

@@ -2,7 +2,7 @@
 
 #include "scenarios/recordings/images_and_clouds/depth_images.h"
 
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include "core/geometry/rotation.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/recordings/bag_frames.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

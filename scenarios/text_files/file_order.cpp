@@ -1,13 +1,8 @@
 #include "scenarios/text_files/file_order.h"
 
-#include <algorithm>
-#include <string>
-#include <string_view>
-
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
-
 namespace {
 
 bool is_digit(char c) {

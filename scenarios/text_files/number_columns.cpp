@@ -4,7 +4,7 @@
 #include <charconv>
 #include <utility>
 
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -1,7 +1,7 @@
 // Numbers for a JSON file.
 #pragma once
 
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

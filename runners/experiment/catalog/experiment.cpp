@@ -16,7 +16,7 @@
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 #include "scenarios/camera/depth_sensor.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -10,9 +10,8 @@
 #include "core/geometry/point_cloud.h"
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
-#include "scenarios/text_files/file_ending.h"
+#include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/number_columns.h"
-#include "scenarios/text_files/refuse.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

@@ -17,7 +17,7 @@
 #include "core/mesh/welded_mesh.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/meshes/mesh_object.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "analysis/storage/digest.h"
 #include "build_info.h"  // written by the build: version, commit, compiler, flags
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

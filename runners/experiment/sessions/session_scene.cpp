@@ -9,7 +9,7 @@
 #include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/recordings/frame_statistics.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

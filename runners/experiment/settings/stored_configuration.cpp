@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "core/parameters/input_error.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

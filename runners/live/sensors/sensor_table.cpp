@@ -13,7 +13,7 @@
 #include "runners/live/sensors/realsense_camera.h"
 #include "runners/live/sensors/scenario_camera.h"
 #include "scenarios/recordings/recorded_scene.h"
-#include "scenarios/text_files/file_ending.h"
+#include "scenarios/text_files/file_order.h"
 
 namespace remote_touch {
 

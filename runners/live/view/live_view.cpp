@@ -9,7 +9,7 @@
 #include "runners/presentation/view/shown_meshes.h"
 #include "runners/presentation/view/view_page.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -9,7 +9,7 @@
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/presentation/view/shown_frames.h"
 #include "runners/presentation/view/shown_meshes.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -11,7 +11,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/presentation/export/little_endian.h"
 #include "runners/presentation/export/result_tables.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -9,7 +9,7 @@
 #include "runners/presentation/export/exported_run.h"
 #include "runners/presentation/export/little_endian.h"
 #include "runners/presentation/export/result_tables.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -12,7 +12,7 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/geometry/vector.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "runners/presentation/view/shown_meshes.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "scenarios/recordings/bags/bag_file.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -13,9 +13,8 @@
 #include "scenarios/recordings/bags/db3_file.h"
 #include "scenarios/recordings/bags/mcap_file.h"
 #include "scenarios/recordings/bags/ros1_bag.h"
-#include "scenarios/text_files/file_ending.h"
 #include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <new>
 
 #include "scenarios/recordings/bags/bag_file.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

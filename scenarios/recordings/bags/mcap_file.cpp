@@ -5,7 +5,7 @@
 
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/bags/messages.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

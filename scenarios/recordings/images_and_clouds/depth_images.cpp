@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "core/geometry/colour.h"
-#include "scenarios/text_files/refuse.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

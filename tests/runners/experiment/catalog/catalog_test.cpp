@@ -14,7 +14,7 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/synthetic/resting_clouds.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

@@ -9,7 +9,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "scenarios/text_files/json_text.h"
+#include "scenarios/text_files/text_file.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::stored_configuration_test {
