@@ -9,7 +9,6 @@
 
 #include "core/beyond/tracked_surface/height_fit.h"
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/beyond/tracked_surface/patch_points.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/search/neighbour_search.h"

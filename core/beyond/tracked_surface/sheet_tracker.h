@@ -7,7 +7,6 @@
 
 #include "core/beyond/tracked_surface/height_fit.h"
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/beyond/tracked_surface/patch_points.h"
 #include "core/beyond/tracked_surface/sheet_search.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "core/beyond/tracked_surface/patch_points.h"
+#include "core/beyond/tracked_surface/height_fit.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::sheet_search_test {
