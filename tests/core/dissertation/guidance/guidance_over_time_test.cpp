@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/guidance/guidance_spring.h"
+#include "core/dissertation/guidance/guided_renderer.h"
 #include "tests/core/dissertation/guidance/guided_scene.h"
 
 namespace remote_touch::guidance_over_time_test {
