@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/proxy/proxy_parameters.h"
+#include "core/dissertation/proxy/proxy_step.h"
 #include "core/geometry/point_cloud.h"
 #include "core/rendering/renderer.h"
 #include "core/search/neighbour_search.h"

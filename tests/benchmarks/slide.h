@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/proxy/proxy_parameters.h"
+#include "core/dissertation/proxy/proxy_step.h"
 #include "core/search/neighbour_search.h"
 #include "tests/benchmarks/naive_proxy.h"
 

@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "core/dissertation/proxy/proxy_parameters.h"
 #include "core/dissertation/proxy/proxy_step.h"
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"

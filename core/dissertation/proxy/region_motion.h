@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/dissertation/proxy/proxy_parameters.h"
+#include "core/dissertation/proxy/proxy_step.h"
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/points_view.h"

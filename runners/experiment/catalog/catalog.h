@@ -13,7 +13,7 @@
 
 #include "analysis/measures/measures.h"
 #include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
-#include "core/dissertation/proxy/proxy_parameters.h"
+#include "core/dissertation/proxy/proxy_step.h"
 #include "core/parameters/input_error.h"
 #include "core/rivals/god_object_renderer.h"
 #include "core/rivals/implicit_surface_renderer.h"
