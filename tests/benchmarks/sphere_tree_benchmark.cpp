@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/sphere_tree/region_contacts.h"
+#include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
 #include "core/dissertation/tool/motion/look_ahead_motion.h"
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"

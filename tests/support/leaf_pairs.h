@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/dissertation/sphere_tree/region_contacts.h"
+#include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
 
 namespace remote_touch {
 
