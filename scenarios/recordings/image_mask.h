@@ -2,7 +2,7 @@
 // have made.
 #pragma once
 
-#include "core/dissertation/virtual_fixtures/fixture_rule.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

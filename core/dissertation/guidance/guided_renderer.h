@@ -13,7 +13,7 @@
 
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
-#include "core/dissertation/virtual_fixtures/fixture_rule.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/dissertation/virtual_fixtures/guidance_target.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame_order.h"

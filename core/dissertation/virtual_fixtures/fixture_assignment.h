@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/fixture_rule.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/dissertation/virtual_fixtures/guidance_target.h"
 #include "core/geometry/point_cloud.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/fixture_rule.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"

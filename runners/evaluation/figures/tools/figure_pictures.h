@@ -8,7 +8,7 @@
 
 #include "analysis/figures/figure.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/dissertation/virtual_fixtures/fixture_rule.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/geometry/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 
