@@ -1,4 +1,4 @@
-// Constraint-based rendering of a point cloud as an implicit surface, [84] (see point_surface.h). The proxy
+// Constraint-based rendering of a point cloud as an implicit surface, [84] (see point_normals.h). The proxy
 // is a point that is kept outside by the scheme of K. Salisbury and C. Tarr, "Haptic rendering of surfaces
 // defined by implicit functions", ASME IMECE 1997:
 //
@@ -21,7 +21,7 @@
 
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
-#include "core/rivals/point_surface.h"
+#include "core/rivals/point_normals.h"
 #include "core/rivals/rival_renderer.h"
 
 namespace remote_touch {

@@ -24,7 +24,6 @@
 
 #include "core/parameters/parameter.h"
 #include "core/rivals/point_normals.h"
-#include "core/rivals/point_surface.h"
 #include "core/rivals/rival_renderer.h"
 
 namespace remote_touch {
