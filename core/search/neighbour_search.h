@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,21 @@
 #include "core/kernels/points_view.h"
 
 namespace remote_touch {
+
+// Orders of points: along a space-filling curve, and in compact runs.
+
+// The order of the points of a cloud along a space-filling curve: most points follow a neighbour.
+
+// Returns the indices of the measured points along a Morton curve through the cloud's bounding box. Points in
+// the same cell of the curve keep the order of the cloud.
+std::vector<std::uint32_t> morton_order(const PointCloud& cloud);
+
+// An order of points in which runs of points are compact: their boxes are nearly cubes.
+
+// Returns the indices of the points in such an order. Each run of 8, 64, 512 or 4096 that begins at a
+// multiple of its length is one part of a halving of the cloud, across its longest side each time. So all
+// runs but the last are full. pre: the points are finite.
+std::vector<std::uint32_t> compact_order(std::span<const Vec3> points);
 
 // The points near the proxy, copied into contiguous columns that the kernels read.
 

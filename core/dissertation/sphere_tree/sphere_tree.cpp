@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/search/point_order.h"
+#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 namespace {

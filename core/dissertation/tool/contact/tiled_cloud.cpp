@@ -8,7 +8,7 @@
 #include "core/dissertation/tool/contact/contact_thinning.h"
 #include "core/geometry/vector.h"
 #include "core/numeric/order_statistic.h"
-#include "core/search/point_order.h"
+#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 namespace {
