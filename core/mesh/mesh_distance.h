@@ -13,6 +13,26 @@
 
 namespace remote_touch {
 
+// Joins the triangles of a mesh that touch each other, so that every edge has all of its triangles.
+
+// Returns the same surface with one vertex per position (0 and -0 are equal), and without triangles that have
+// no area (is_degenerate()). Such a triangle is removed so that its neighbours meet, and a closed surface
+// stays closed:
+//   - If one of its corners lies on its longest side, the triangle across that side is divided there.
+//   - If it has a side shorter than 1e-8 of the longest one, the ends of that side become one vertex.
+// A triangle without area is only left out if its longest side has no other triangle, or several.
+//
+// Small fins, which bound no volume, are left out, too: triangles of which two sides have no other triangle
+// and the third has at least two others, and whose corner is within 1e-3 of the mesh's longest extent of that
+// side. Reconstruction and decimation leave such triangles on closed surfaces.
+//
+// Vertices that no triangle uses are left out. Vertices and triangles keep their order.
+// pre: check_mesh(mesh).readable(). The result has no triangles if none has an area.
+TriangleMesh welded_mesh(const TriangleMesh& mesh);
+
+// Vertices and triangles keep their order.
+void leave_out_unused_vertices(TriangleMesh& mesh);
+
 // The point of a surface that is nearest to a position. The normal is a unit vector: that of the face, or at
 // an edge or a vertex the mean of the faces that meet there, weighted by their angles (mesh_sides.h).
 struct NearestOnMesh {
