@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figures/figure.h"
+#include "analysis/figures/result_file.h"
 #include "analysis/scorecard/ranking.h"
 #include "analysis/sweeps/sweep_result.h"
 

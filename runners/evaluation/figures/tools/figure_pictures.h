@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/figure.h"
+#include "analysis/figures/result_file.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/geometry/point_cloud.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/figure.h"
+#include "analysis/figures/result_file.h"
 #include "analysis/measures/no_value.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "runners/evaluation/figures/truth/depth_errors.h"
