@@ -7,7 +7,7 @@
 
 #include "core/dissertation/guidance/guided_renderer.h"
 #include "runners/evaluation/contract/allocation_counter.h"
-#include "runners/evaluation/contract/checks.h"
+#include "runners/evaluation/contract/contract_tests.h"
 #include "runners/evaluation/contract/flat_scene.h"
 #include "runners/experiment/catalog/configuration.h"
 

@@ -8,7 +8,7 @@
 
 #include "analysis/trace/trace.h"
 #include "core/search/neighbour_search.h"
-#include "runners/evaluation/contract/checks.h"
+#include "runners/evaluation/contract/contract_tests.h"
 #include "runners/evaluation/contract/flat_scene.h"
 
 namespace remote_touch::broken_contract_test {
