@@ -1,6 +1,6 @@
 // A simulated sensor before recorded scenes: the scenes that are made of recordings against known
 // ones, and errors against true objects that are known.
-#include "runners/evaluation/figures/sensors/simulated_sensor.h"
+#include "runners/evaluation/figures/sensors/sensor_comparison.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::simulated_sensor_test {
+namespace remote_touch::sensor_comparison_test {
 namespace {
 
 constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
@@ -139,4 +139,4 @@ TEST_F(TrueObjects, AreMeasuredBySensorsWithoutNoiseAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace remote_touch::simulated_sensor_test
+}  // namespace remote_touch::sensor_comparison_test
