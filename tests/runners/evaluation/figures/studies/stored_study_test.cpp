@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "runners/evaluation/figures/studies/law_map.h"
 #include "runners/sweep/stored_sweep.h"
 #include "tests/support/test_files.h"
 
