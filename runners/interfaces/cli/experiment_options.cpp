@@ -1,19 +1,55 @@
-// The options of the commands that list names, run experiments and show results.
+#include "runners/interfaces/cli/experiment_options.h"
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
-#include "runners/interfaces/cli/other_kinds.h"
+#include "runners/experiment/settings/embedded_data.h"
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/presentation/export/export_formats.h"
 #include "runners/sweep/threads/work_pool.h"
 
 namespace remote_touch {
+namespace {
+
+template <class Entries>
+bool has(const Entries& entries, const std::string& name) {
+  return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return name == entry.name; });
+}
+
+bool is_of(const std::string& command, const std::string& name) {
+  if (command == "run") return has(embedded_experiments(), name);
+  if (command == "sweep") return has(embedded_sweeps(), name);
+  return has(figures(), name);
+}
+
+std::string advice(const char* kind, const std::string& command, const std::string& name,
+                   const char* output) {
+  return std::string("is ") + kind + ": expected `remote-touch " + command + " " + name + " -o " + output +
+         "`";
+}
+
+}  // namespace
+
+std::string other_kind(const std::string& name, const std::string& command) {
+  std::error_code unreachable;
+  if (is_of(command, name) || std::filesystem::exists(name, unreachable)) return {};
+  if (is_of("run", name)) return advice("an experiment", "run", name, "FILE");
+  if (is_of("sweep", name)) return advice("a sweep", "sweep", name, "FILE");
+  // The name of a figure is its number. Experiments and sweeps are named like their files: fig4.12.
+  for (const std::string& number : {name, name.starts_with("fig") ? name.substr(3) : std::string()})
+    if (is_of("figure", number)) return advice("a figure", "figure", number, "FOLDER");
+  return {};
+}
 
 namespace {
+
+// The options of the commands that list names, run experiments and show results.
 
 void require_own_kind(const std::string& name, const char* command) {
   if (const std::string other = other_kind(name, command); !other.empty()) throw InputError(name, other);

@@ -1,8 +1,8 @@
-#include "runners/interfaces/cli/other_kinds.h"
+#include "runners/interfaces/cli/experiment_options.h"
 
 #include <gtest/gtest.h>
 
-namespace remote_touch::other_kinds_test {
+namespace remote_touch::experiment_options_test {
 namespace {
 
 TEST(OtherKind, NamesTheCommand) {
@@ -24,4 +24,4 @@ TEST(OtherKind, IsEmptyForTheCommandsOwnNamesForFilesAndForNoWord) {
 }
 
 }  // namespace
-}  // namespace remote_touch::other_kinds_test
+}  // namespace remote_touch::experiment_options_test
