@@ -1,8 +1,10 @@
-// Runs an experiment, or repeats one run of a sweep.
 #include <pybind11/stl.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
@@ -19,11 +21,52 @@
 #include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
-#include "runners/interfaces/python/outputs.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
+namespace {
+
+// The file that a call writes, if it writes one.
+
+// Throws InputError, before any work is done, unless the result can be written there. The folder must be
+// writable. The file must be none of the inputs. An existing file must be a result of this project or empty,
+// unless force is given. Holds the lock of the file. If the name is empty, there is no file.
+class OutputFile {
+ public:
+  OutputFile(const std::string& file, bool force, const std::string& subject,
+             const std::vector<RecordingPart>& inputs);
+  // Calls write(file) while no other call uses the HDF5 library, or without_file() if there is no file.
+  // Returns the result of that call.
+  std::string write(const std::function<std::string(const std::string&)>& write,
+                    const std::function<std::string()>& without_file) const;
+
+ private:
+  const std::string file_;
+  std::optional<FileLock> lock_;
+};
+
+OutputFile::OutputFile(const std::string& file, bool force, const std::string& subject,
+                       const std::vector<RecordingPart>& inputs)
+    : file_(file) {
+  if (file.empty()) return;
+  require_different_file(file, subject);
+  for (const RecordingPart& part : inputs) require_different_file(file, part.path);
+  require_output(file, {.is_ours = has_result_header, .force = force, .force_option = "force=True"});
+  lock_.emplace(file);
+}
+
+std::string OutputFile::write(const std::function<std::string(const std::string&)>& write,
+                              const std::function<std::string()>& without_file) const {
+  if (file_.empty()) return without_file();
+  const FileTurn turn;
+  return write(file_);
+}
+
+}  // namespace
+
+// Runs an experiment, or repeats one run of a sweep.
 
 namespace py = pybind11;
 

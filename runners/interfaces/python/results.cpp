@@ -1,25 +1,35 @@
-// Reads stored results, compares two of them, and describes everything that has a name.
+#include "runners/interfaces/python/results.h"
+
 #include <pybind11/stl.h>
 
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <limits>
 
 #include "analysis/comparison/compared_columns.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/result_comparison.h"
+#include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/card_folder.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/stored_configuration.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/descriptions/descriptions.h"
-#include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
-#include "runners/interfaces/python/sweep_arrays.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
+
+// Reads stored results, compares two of them, and describes everything that has a name.
 
 namespace py = pybind11;
 
@@ -153,6 +163,130 @@ void bind_results(py::module_& module) {
       py::arg("name"), "All that has the name, as text.");
   module.def("list", &list_names, "Names and summaries by kind.");
   module.def("version", &version, "Returns the version of the program.");
+}
+
+namespace {
+
+// A sweep that keeps a tally, as arrays over its axes.
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+template <class Number, class Of>
+Column over_cells(const SweepTally& tally, Column column, Number without_runs, const Of& of) {
+  std::vector<Number> values(tally.cell_count(), without_runs);
+  for (std::size_t i = 0; i < tally.cells.size(); ++i) values[tally.cells[i]] = of(tally.tallies[i]);
+  column.values = std::move(values);
+  return column;
+}
+
+void add_counts(const SweepTally& tally, std::vector<Column>& columns) {
+  using Count = std::uint64_t;
+  columns.push_back(over_cells<Count>(tally, {"runs", "1", "number of runs that were made", {}}, 0,
+                                      [](const CellTally& cell) { return static_cast<Count>(cell.runs()); }));
+  columns.push_back(over_cells<Count>(tally, {"failed", "1", "number of runs that failed", {}}, 0,
+                                      [](const CellTally& cell) { return static_cast<Count>(cell.failed); }));
+}
+
+void add_measure(const SweepTally& tally, std::size_t measure, std::vector<Column>& columns) {
+  const Column& about = tally.measures[measure];
+  columns.push_back(over_cells<std::uint64_t>(
+      tally, {about.name + "_values", "1", "number of finite values of " + about.name, {}}, 0,
+      [&](const CellTally& cell) { return static_cast<std::uint64_t>(cell.measures[measure].values); }));
+  struct Statistic {
+    const char* name;
+    double (*of)(const MeasureTally&);
+  };
+  const std::array<Statistic, 4> statistics{
+      Statistic{"mean", [](const MeasureTally& of) { return of.mean(); }},
+      Statistic{"standard_deviation", [](const MeasureTally& of) { return of.standard_deviation(); }},
+      Statistic{"least", [](const MeasureTally& of) { return of.values > 0 ? of.least : kUnknown; }},
+      Statistic{"greatest", [](const MeasureTally& of) { return of.values > 0 ? of.greatest : kUnknown; }}};
+  for (const Statistic& statistic : statistics)
+    columns.push_back(over_cells<double>(
+        tally, {about.name + "_" + statistic.name, about.units, about.long_name, {}}, kUnknown,
+        [&](const CellTally& cell) { return statistic.of(cell.measures[measure]); }));
+}
+
+}  // namespace
+
+py::dict to_python(const StoredTally& stored) {
+  constexpr std::uint64_t kMaxCells = 10'000'000;
+  const SweepTally& tally = stored.tally;
+  if (tally.cell_count() > kMaxCells)
+    throw InputError("the tally", "has " + std::to_string(tally.cell_count()) + " cells: expected at most " +
+                                      std::to_string(kMaxCells) + " as arrays");
+  std::vector<Column> columns;
+  add_counts(tally, columns);
+  for (std::size_t i = 0; i < tally.measures.size(); ++i) add_measure(tally, i, columns);
+  std::vector<py::ssize_t> shape;
+  for (const Column& axis : tally.axes) shape.push_back(static_cast<py::ssize_t>(axis.length()));
+  py::list arrays;
+  for (Column& column : columns) arrays.append(to_python(std::move(column), shape));
+  TextAttributes attributes = {{"schema", schema_name("tally")}};
+  attributes.insert(attributes.end(), stored.attributes.begin(), stored.attributes.end());
+  attributes.emplace_back("digest", digest(tally));
+  py::dict all;
+  all["kind"] = "tally";
+  all["axes"] = to_python(std::vector<Column>(tally.axes));
+  all["columns"] = arrays;
+  all["attributes"] = to_python(attributes);
+  all["warning"] = distrust_of(stored.attributes);
+  return all;
+}
+
+namespace {
+
+// Scorecards: methods compared on many scenes.
+
+using Texts = std::vector<std::string>;
+
+struct FailedRuns {
+  std::size_t count = 0;
+  std::string first;  // "SCENE.METHOD: the error"
+};
+
+FailedRuns failed_runs(const std::vector<BenchmarkSweep>& sweeps) {
+  FailedRuns failed;
+  for (const BenchmarkSweep& each : sweeps) {
+    const SweepResult result = read_sweep(each.file).result;
+    const std::vector<std::size_t> runs = result.runs_in(RunState::failed);
+    if (failed.count == 0 && !runs.empty()) failed.first = each.name + ": " + result.error[runs.front()];
+    failed.count += runs.size();
+  }
+  return failed;
+}
+
+// Writes scorecard.h5 and scorecard.json into the folder.
+FailedRuns make_scorecard(const Texts& methods, const Texts& scenes, int seeds,
+                          const std::filesystem::path& folder, const LongWork& work) {
+  const BenchmarkPlan plan = plan_of(chosen_benchmark(methods, scenes, seeds, folder.string()));
+  const std::vector<BenchmarkSweep> sweeps = plan.sweeps();
+  const FileTurn turn(FileTurn::For::a_sweep);
+  require_same_benchmark(sweeps);
+  require_all_of(folder / kScorecardFile, plan);
+  make_scorecard_folder(folder.string());
+  do_sweeps(sweeps, work.kernels, &work.stop, [&](std::size_t done, std::size_t all, double fraction) {
+    work.progress((static_cast<double>(done) + fraction) / static_cast<double>(all + 1));
+  });
+  const ScorecardReport report = evaluate(plan, work.kernels, &work.stop, [](std::size_t, std::size_t) {});
+  write_scorecard(folder, plan, report, scorecard_command(methods, scenes, seeds));
+  return failed_runs(sweeps);
+}
+
+py::tuple scorecard(const Texts& methods, const Texts& scenes, int seeds, int threads,
+                    const std::string& folder, const py::object& report) {
+  FailedRuns failed;
+  do_long_work(report, threads,
+               [&](const LongWork& work) { failed = make_scorecard(methods, scenes, seeds, folder, work); });
+  return py::make_tuple(failed.count, failed.first);
+}
+
+}  // namespace
+
+void bind_scorecards(py::module_& module) {
+  module.def("scorecard", &scorecard, py::arg("methods"), py::arg("scenes"), py::arg("seeds"),
+             py::arg("threads"), py::arg("folder"), py::arg("report"),
+             "Makes a scorecard in a folder; how many runs failed, and how the first one did.");
 }
 
 }  // namespace remote_touch

@@ -66,7 +66,7 @@ class Engine:
         self._submit(os.getpid)  # starts forked workers before the file is locked: they would hold the lock, too
 
     def do_round(self, config, inputs, pending, done, total, is_tally, store, forget):
-        """Does the pending runs. The arguments: see WorkElsewhere in sweep_chunks.cpp."""
+        """Does the pending runs. The arguments: see WorkElsewhere in sweeps.cpp."""
         self.config, self.inputs, self.pending, self.store, self.forget = config, inputs, pending, store, forget
         self.done, self.ended, self.total, self.next = done, done, total, 0
         self.is_tally = is_tally

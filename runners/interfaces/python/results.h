@@ -1,4 +1,4 @@
-// A sweep as arrays over its axes.
+// Results for Python: files, sweeps and tallies as arrays over their axes, comparisons and scorecards.
 #pragma once
 
 #include <pybind11/pybind11.h>
