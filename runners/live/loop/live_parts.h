@@ -2,20 +2,97 @@
 // steps, called without threads on a simulated clock, make the same run.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/contact_watch.h"
+#include "runners/experiment/teleoperation/teleoperation.h"
 #include "runners/live/loop/camera_feed.h"
-#include "runners/live/loop/live_contact.h"
 #include "runners/live/loop/live_log.h"
 #include "runners/live/loop/live_run.h"
-#include "runners/live/loop/live_slave.h"
+#include "runners/live/loop/servo.h"
 
 namespace remote_touch {
+
+// Watches the first contact of a live session, for a note on points that are too far apart.
+
+class LiveContact {
+ public:
+  // Watches nothing if the renderer is not a ball that single points hold (RenderedContact), or if the
+  // experiment has fixtures, because their regions may be larger than the ball.
+  explicit LiveContact(const Experiment& experiment);
+
+  // The camera's thread calls it with each frame that is sent to the renderer.
+  void add(const Frame& frame);
+  // Another thread calls it with each tick, in order. A tick whose frame is no longer kept is skipped.
+  void add(const LiveTick& tick, double time_s);
+  // See ContactWatch::spacing_notes(). pre: no thread calls add() any more.
+  std::vector<Note> notes(const Kernels& kernels) const;
+
+ private:
+  // The number is large enough, because a tick is read within about one period of the logger after it was
+  // made, and few frames come meanwhile.
+  static constexpr std::size_t kKeptFrames = 8;
+  struct KeptFrame {
+    int index = -1;
+    ContactWatch::Points points;
+  };
+
+  const double ball_radius_m_;  // 0: watches nothing
+  std::mutex mutex_;            // guards the frames
+  std::array<KeptFrame, kKeptFrames> frames_;
+  std::size_t next_ = 0;
+  bool is_over_ = false;  // the first contact is known: frames are no longer kept
+  ContactWatch watch_;
+};
+
+// The slave of a live session: what it touches, why it may touch nothing, and which frames it sends.
+
+// The slave is simulated, also behind a real hand. It touches the true surface of a simulated scene
+// (Experiment::build_simulated_scene()). It has a scene of its own, because the haptic loop must not wait for
+// the thread of the camera. With any other camera it moves but touches nothing.
+//
+// The mass of the hand is not known, whatever the section operator says, because a replay of the session has
+// no operator. Passivity control then uses the published rule.
+//
+// The dead-band of frames needs memory and time, so the thread of the camera decides which frames are sent.
+// The haptic loop passes it the positions of the slave. A recording stores which frames the renderer
+// received, so a replay needs no decision.
+class LiveSlave {
+ public:
+  // depth: the address of the sensor; kSimulatedDepth: the scenario is the camera.
+  LiveSlave(const Experiment& experiment, const std::string& depth, const Kernels& kernels);
+  LiveSlave(const LiveSlave&) = delete;
+  LiveSlave& operator=(const LiveSlave&) = delete;
+
+  // Returns null if there is no slave. Only the haptic loop may use the result while the run lasts.
+  Teleoperation* remote() { return remote_ ? &*remote_ : nullptr; }
+
+  // Returns a line that says why the slave cannot touch anything; empty if it can, or if there is no slave.
+  const std::string& why_untouching() const { return why_; }
+
+  // The queue for the position of the slave at every tick. Only the haptic loop may write to it. Null if
+  // every frame is sent.
+  Ring<SlavePlace>* places() { return places_ ? &*places_ : nullptr; }
+  // Returns true if a frame that was captured has to be sent to the renderer. Only the thread of the camera
+  // may call it. If no frame came for kMostPlaces ticks, the next one is sent.
+  bool sends(const Frame& frame);
+  static constexpr std::size_t kMostPlaces = 1 << 12;  // 4 s at 1 kHz
+
+ private:
+  const std::unique_ptr<const Scenario> touched_;
+  std::optional<Teleoperation> remote_;
+  FrameSender sender_;
+  std::optional<Ring<SlavePlace>> places_;
+  std::string why_;
+};
 
 // The number of points for which renderers have to reserve memory, so that no frame needs memory from the
 // system. For images: the number of pixels, with width and height rounded up to multiples of 16. For clouds,
