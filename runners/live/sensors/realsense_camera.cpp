@@ -8,10 +8,106 @@
 #include "core/parameters/input_error.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/sensors/driver_frames.h"
-#include "runners/live/sensors/realsense_lens.h"
+#include "runners/live/sensors/undistortion.h"
+
+namespace remote_touch::rs2 {
+namespace {
+
+// The file name contains the minor version; only packages for development add a name without it. Older
+// versions can be named with the environment variable.
+constexpr int kOldestMinor = 50, kNewestMinor = 69;
+constexpr int kMajor = 2;
+
+SharedLibrary::Lookup realsense_lookup() {
+  SharedLibrary::Lookup lookup{
+      {"librealsense2.so"}, "REMOTE_TOUCH_LIBREALSENSE", "the RealSense SDK (librealsense2)"};
+  for (int minor = kNewestMinor; minor >= kOldestMinor; --minor)
+    lookup.names.push_back("librealsense2.so." + std::to_string(kMajor) + "." + std::to_string(minor));
+  return lookup;
+}
+
+std::string text_of_version(int version) {
+  return std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
+         std::to_string(version % 100);
+}
+
+}  // namespace
+
+RealSenseLibrary::RealSenseLibrary() : library(realsense_lookup()) {}
+
+int RealSenseLibrary::checked_version() const {
+  const int found = Calls(*this, library.file())("does not report its version", get_api_version);
+  if (found / 10000 != kMajor)
+    throw InputError(library.file(), "is version " + text_of_version(found) + " of its interface: expected " +
+                                         std::to_string(kMajor) + ".x");
+  return found;
+}
+
+std::string RealSenseLibrary::version_text() const {
+  return text_of_version(version);
+}
+
+std::string RealSenseLibrary::text_of(Error* error) const {
+  const char *message = get_error_message(error), *function = get_failed_function(error);
+  std::string text = function != nullptr ? function : "";
+  if (message != nullptr) text += (text.empty() ? "" : ": ") + std::string(message);
+  free_error(error);
+  return text.empty() ? "no reason given" : text;
+}
+
+void Calls::refuse(const std::string& problem) const {
+  throw InputError(name_, problem);
+}
+
+void Calls::check(const char* what, Error* error) const {
+  if (error != nullptr) refuse(std::string(what) + " (the library says: " + rs2_.text_of(error) + ")");
+}
+
+// The lens of a RealSense camera.
+
+// True if the image is distorted; false for a pinhole camera.
+bool has_distortion(const Intrinsics& intrinsics);
+
+// Returns a lens that calls the library's own functions, because the meaning of a model's coefficients has
+// changed between versions. Throws InputError, with this name, for a model that some versions cannot invert,
+// and for versions before 2.46, which lack these functions. The library must outlive the lens.
+Lens lens_of(const std::string& name, const RealSenseLibrary& rs2, const Intrinsics& intrinsics);
+
+bool has_distortion(const Intrinsics& intrinsics) {
+  return intrinsics.model != distortion_none &&
+         std::any_of(std::begin(intrinsics.coefficients), std::end(intrinsics.coefficients),
+                     [](float coefficient) { return coefficient != 0; });
+}
+
+Lens lens_of(const std::string& name, const RealSenseLibrary& rs2, const Intrinsics& intrinsics) {
+  if (rs2.project_point_to_pixel == nullptr || rs2.deproject_pixel_to_point == nullptr)
+    throw InputError(name,
+                     "has a lens with distortion: expected librealsense 2.46 or newer, which can compute it");
+  if (intrinsics.model != brown_conrady && intrinsics.model != inverse_brown_conrady)
+    throw InputError(name, "has a lens of model " + std::to_string(intrinsics.model) +
+                               ": expected one of Brown and Conrady, whose pixels have known rays");
+  using Eigen::Vector2d;
+  const auto finite = [](double x, double y) -> std::optional<Vector2d> {
+    if (!std::isfinite(x) || !std::isfinite(y)) return {};
+    return Vector2d(x, y);
+  };
+  return {[=, &rs2](const Vector2d& ray) {
+            const float point[3] = {static_cast<float>(ray.x()), static_cast<float>(ray.y()), 1};
+            float pixel[2] = {NAN, NAN};
+            rs2.project_point_to_pixel(pixel, &intrinsics, point);
+            return finite(pixel[0], pixel[1]);
+          },
+          [=, &rs2](const Vector2d& at) {
+            const float pixel[2] = {static_cast<float>(at.x()), static_cast<float>(at.y())};
+            float point[3] = {NAN, NAN, NAN};
+            rs2.deproject_pixel_to_point(point, &intrinsics, pixel, 1);
+            return finite(point[0], point[1]);
+          }};
+}
+
+}  // namespace remote_touch::rs2
 
 namespace remote_touch {
-
 namespace {
 
 constexpr int kRealSenseWidth = 640, kRealSenseHeight = 480, kRealSenseRate_hz = 30;

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "runners/live/sensors/k4a_library.h"
-#include "runners/live/sensors/realsense_library.h"
+#include "runners/live/sensors/k4a_camera.h"
+#include "runners/live/sensors/realsense_camera.h"
 
 #if __has_include(<k4a/k4a.h>)
 #include <k4a/k4a.h>
