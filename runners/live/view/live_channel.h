@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,13 +17,40 @@
 #include "core/geometry/point_cloud.h"
 #include "core/kernels/kernels.h"
 #include "core/rendering/frame.h"
+#include "runners/live/devices/browser_device.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/loop/servo.h"
-#include "runners/live/view/page_hand.h"
 
 namespace remote_touch {
+
+// Passes the hand of the pages to the device browser:. One page has the hand at a time, and the hand must not
+// jump when another page receives it: a jump of the hand is a jump of the force.
+
+// Poses are in the world frame, lengths in metres. The safety gate and the speed limit of BrowserDevice apply
+// as well. Only the server's thread calls the functions.
+class PageHand {
+ public:
+  explicit PageHand(std::shared_ptr<HandPoses> poses) : poses_(std::move(poses)) {}
+
+  // A page receives the hand. BrowserDevice stops the hand in its next tick, with no button pressed. The hand
+  // stays there until the page moves it.
+  void pass_on();
+  // A pose from the page that has the hand. The first pose after pass_on() is the reference and does not move
+  // the hand. Each later pose displaces the hand, from where it was stopped, by the motion of the page since
+  // the reference. So no page can make the hand jump by a wrong idea of where it is.
+  void move(const HandPose& of_page);
+  // Releases the buttons, because the user can no longer do so.
+  void release_buttons();
+
+ private:
+  void publish();
+
+  const std::shared_ptr<HandPoses> poses_;
+  std::optional<HandPose> page_start_;  // the first pose of the page that has the hand
+  HandMotion motion_;                   // the newest motion published
+};
 
 // The messages of a live run to its page. Numbers are little endian, and begin at multiples of eight bytes.
 
