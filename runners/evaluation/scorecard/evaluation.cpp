@@ -12,8 +12,6 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/scorecard/benchmark_run.h"
-#include "runners/evaluation/scorecard/json_number.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
@@ -22,6 +20,10 @@
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
 
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop) {

@@ -13,8 +13,14 @@
 #include "analysis/scorecard/scorecard.h"
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
+
+// Numbers for a JSON file.
+
+// JSON has neither NaN nor infinity.
+Json number_or_null(double value);
 
 // The cost of renderers: wall-clock time of ticks and frames on this machine. It varies from run to run, so
 // it is stored apart from all results.

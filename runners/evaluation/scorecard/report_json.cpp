@@ -5,7 +5,6 @@
 
 #include "analysis/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/evaluation.h"
-#include "runners/evaluation/scorecard/json_number.h"
 
 namespace remote_touch {
 
