@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/kernels/depth_kernels.h"
-#include "runners/experiment/opencl/kernel_source.h"
 
 namespace remote_touch {
 namespace {

@@ -11,6 +11,10 @@
 
 namespace remote_touch {
 
+// depth_kernels.cl, compiled into the program.
+
+extern const char* const kDepthKernelSource;
+
 // The kernels of the depth pipeline, built once in a process for each device, however many runs use them.
 // Only for use inside this folder.
 
