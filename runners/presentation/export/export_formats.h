@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/presentation/export/export_job.h"
+#include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {
 

@@ -12,7 +12,6 @@
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
-
 namespace {
 
 const std::string kTrace = "/trace/";

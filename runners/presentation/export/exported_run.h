@@ -1,18 +1,56 @@
 // A stored trace with its frames, which are made again, as other programs show it.
 #pragma once
 
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/hdf5_reader.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/geometry/point_cloud.h"
+#include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/presentation/export/export_job.h"
 
 namespace remote_touch {
+
+// The input of every format of an export: the result, the output and the files to write.
+
+struct ExportJob {
+  const Hdf5Reader& result;
+  std::filesystem::path output;
+  NewFiles& files;
+  // Throws InputError unless the file may be written: it must be absent, or begin with `opening` as an
+  // earlier export does.
+  std::function<void(const std::filesystem::path& file, const std::string& opening)> require_allowed;
+  const Kernels* kernels = nullptr;         // pre: set
+  const std::atomic<bool>* stop = nullptr;  // when set, ends with Interrupted
+
+  void begin(const std::filesystem::path& file, const std::string& opening) const {
+    if (require_allowed) require_allowed(file, opening);
+    files.begin(file);
+  }
+  // Throws Interrupted when the user wants the program to end.
+  void go_on() const;
+};
+
+// Writes numbers one after another, as files store them: little-endian, without gaps.
+
+static_assert(std::endian::native == std::endian::little);
+
+template <class Number>
+void put(std::string& bytes, Number number) {
+  static_assert(std::is_arithmetic_v<Number>);
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
 
 // A row for each tick.
 struct ExportedRun {

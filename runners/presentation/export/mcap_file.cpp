@@ -11,7 +11,6 @@
 #include "core/geometry/colour.h"
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/presentation/export/exported_run.h"
-#include "runners/presentation/export/little_endian.h"
 
 namespace remote_touch {
 namespace {

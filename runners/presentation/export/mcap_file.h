@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/geometry/vector.h"
-#include "runners/presentation/export/export_job.h"
+#include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {
 

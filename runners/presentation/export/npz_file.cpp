@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "core/parameters/input_error.h"
-#include "runners/presentation/export/little_endian.h"
+#include "runners/presentation/export/exported_run.h"
 #include "runners/presentation/export/result_tables.h"
 #include "scenarios/text_files/text_file.h"
 

@@ -7,7 +7,6 @@
 
 #include "core/geometry/colour.h"
 #include "runners/presentation/export/exported_run.h"
-#include "runners/presentation/export/little_endian.h"
 #include "runners/presentation/export/result_tables.h"
 #include "scenarios/text_files/text_file.h"
 
