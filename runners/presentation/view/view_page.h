@@ -5,12 +5,20 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/kernels/kernels.h"
 #include "runners/presentation/view/shown_run.h"
 
 namespace remote_touch {
+
+// The viewer's script and style, which the build made from runners/presentation/view/page and embedded in the
+// program.
+
+// Both empty in a program that was built without Node.
+std::string_view viewer_script();
+std::string_view viewer_style();
 
 // An HTML page of the viewer: its script and style, what to show as JSON, and numbers, compressed.
 

@@ -10,7 +10,7 @@
 #include "analysis/trace/trace.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/view/viewer_files.h"
+#include "runners/presentation/view/view_page.h"
 #include "runners/sweep/sweep_run.h"
 #include "tests/runners/presentation/view/read_page.h"
 #include "tests/support/scenes.h"

@@ -10,7 +10,6 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/view/view_page.h"
-#include "runners/presentation/view/viewer_files.h"
 #include "tests/runners/presentation/view/read_page.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

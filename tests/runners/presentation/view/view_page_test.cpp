@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runners/presentation/view/viewer_files.h"
 #include "tests/runners/presentation/view/read_page.h"
 
 namespace remote_touch::view_page_test {
