@@ -17,7 +17,6 @@
 #include "scenarios/recordings/image_folders.h"
 #include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "scenarios/recordings/images_and_clouds/pcd_file.h"
-#include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/text_file.h"
 

@@ -20,7 +20,7 @@
 
 #include "core/geometry/colour.h"
 #include "core/geometry/vector.h"
-#include "scenarios/recordings/images_and_clouds/pinhole_fit.h"
+#include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
