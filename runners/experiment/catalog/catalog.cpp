@@ -18,7 +18,6 @@
 #include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/panel_scenes.h"
-#include "scenarios/synthetic/plates.h"
 #include "scenarios/synthetic/resting_clouds.h"
 
 namespace remote_touch {
