@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/geometry/point_cloud.h"
-#include "scenarios/text_files/number_columns.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

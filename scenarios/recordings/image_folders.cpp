@@ -13,7 +13,6 @@
 
 #include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/number_columns.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

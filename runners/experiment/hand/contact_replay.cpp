@@ -11,7 +11,6 @@
 #include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/number_columns.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
