@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "runners/live/devices/clock.h"
-#include "runners/live/devices/real_time.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/loop/servo.h"
 #include "tests/doubles/vendor_devices.h"

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <thread>
 
+#include "runners/live/devices/clock.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/live/devices/real_time.h"
 
 namespace remote_touch {
 

@@ -13,7 +13,6 @@
 #include "core/kernels/isa.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_table.h"
-#include "runners/live/devices/real_time.h"
 #include "runners/live/loop/live_parts.h"
 #include "runners/live/sensors/sensor_table.h"
 

@@ -1,15 +1,13 @@
-#include "runners/live/devices/real_time.h"
+#include "runners/live/devices/clock.h"
 
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstring>
 
 namespace remote_touch {
-
 namespace {
 
 constexpr int kPriority = 80, kWatchPriority = 85;
