@@ -15,7 +15,7 @@ constexpr double kMinWeightInSphere = 1e-6;
 // A sphere passes no plane on if the mean of its points' normals is shorter than this, as between two walls.
 constexpr double kMinMeanNormal = 0.5;
 // Largest distance by which points are searched outside the tool. The search has no larger reach.
-constexpr double kMaxSearch_m = 0.9 * kFieldMargin_m;
+constexpr double kLargestReach_m = 0.9 * kFieldMargin_m;
 constexpr double kUnitBall = 4.0 / 3 * std::numbers::pi;  // volume
 
 Eigen::Matrix3d cross_matrix(const Vec3& v) {
@@ -61,7 +61,7 @@ void PenetrationQuery::gather(const ToolPose& pose, const TouchFinder& finder) {
   const VoxelTool& tool = finder.tool();
   const Eigen::Matrix3d R_TW = pose.q_WT.conjugate().toRotationMatrix();
   const PointSums none(sum_grid_for(cloud.padded_size()));
-  for (const std::uint32_t point : finder.within(pose, std::min(tool.grid.size_m, kMaxSearch_m))) {
+  for (const std::uint32_t point : finder.within(pose, std::min(tool.grid.size_m, kLargestReach_m))) {
     const Vec3 p_T = R_TW * (cloud.point(point) - pose.p_W);
     const std::optional<std::uint32_t> i = locator_.at(p_T);
     if (!i) continue;

@@ -104,7 +104,7 @@ class FrameAverage {
   int shown_last_ = 0;
 };
 
-// The proxy of chapter 4 on points that are averaged over the last frames (frame_average.h). A user has this
+// The proxy of chapter 4 on points that are averaged over the last frames (FrameAverage). A user has this
 // result when the temporal filter of the depth camera is on.
 
 struct AveragedProxyParameters {

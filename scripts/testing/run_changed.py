@@ -34,7 +34,7 @@ OF_THE_PROGRAM = [
     (r"scripts/testing/|tests/(system/(run|evidence)_\w+|allowed_skips)$", ["run_ctest", "run_changed", "evidence"]),
     (r"data/sweeps/", ["figures_quick", "page_commands"]),
     (r"tests/system/page_commands$|scripts/example_recording$", ["page_commands"]),
-    (r".*/(.*_settings|.*parameters?|settings)\.(h|cpp)$", ["reference", "page_links"]),
+    (r"(core|scenarios|analysis|runners)/.*\.h$", ["reference", "page_links"]),  # any of them may have settings
 ]
 
 

@@ -1,4 +1,4 @@
-// The commands that compare and check: `compare`, `hashes`, `baseline` and `verify`.
+// The commands that compare and check: `compare`, `hashes` and `verify`.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -12,9 +12,9 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/junit_report.h"
+#include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/provenance/provenance.h"
@@ -111,153 +111,6 @@ int command_hashes(const CommandLine& line, const HashesRequest& request) {
   std::printf("%s: %zu hashes", printable(request.output).c_str(), hashes.tick.size());
   if (!hashes.tick.empty()) std::printf(", the last of tick %d", hashes.tick.back());
   std::printf("\n");
-  return kDone;
-}
-
-namespace {
-
-using State = BaselineCheck::State;
-
-const char* word_for(State state) {
-  switch (state) {
-    case State::same:
-      return "same";
-    case State::changed:
-      return "CHANGED";
-    case State::missing:
-      return "MISSING";
-    case State::not_run:
-      return "not run";
-    case State::not_comparable:
-      break;
-  }
-  return "COULD NOT COMPARE";
-}
-
-std::vector<Baseline> chosen(const Manifest& manifest, const BaselineCheckRequest& request) {
-  std::vector<Baseline> list;
-  for (const std::string& name : request.names) {
-    const Baseline* baseline = manifest.find(name);
-    if (!baseline)
-      throw InputError("baseline " + name, "does not exist in " + request.folder + "/manifest.json");
-    list.push_back(*baseline);
-  }
-  return request.names.empty() ? manifest.baselines : list;
-}
-
-// The files that a check reads. No report may replace them.
-std::vector<std::string> files_of(const std::string& folder, const std::vector<Baseline>& list) {
-  std::vector<std::string> files{manifest_file(folder).string()};
-  for (const Baseline& baseline : list) {
-    files.push_back(file_of(folder, baseline).string());
-    files.push_back(subject_of(folder, baseline));
-  }
-  return files;
-}
-
-void print(const BaselineCheck& check) {
-  std::printf("%-18s %-24s %s\n", word_for(check.state), check.name.c_str(), check.text.c_str());
-  if (check.comparison && check.state != State::same) print_comparison(*check.comparison);
-}
-
-// "66 baselines: 63 same, 1 changed, 1 could not be compared, 1 not run; 0 missing"
-void print_summary(const std::vector<BaselineCheck>& checks) {
-  const auto count = [&](State state) {
-    return std::count_if(checks.begin(), checks.end(),
-                         [&](const auto& check) { return check.state == state; });
-  };
-  const auto missing = count(State::missing);
-  std::printf("%td baselines: %td same, %td changed, %td could not be compared, %td not run; %td missing\n",
-              static_cast<std::ptrdiff_t>(checks.size()) - missing, count(State::same), count(State::changed),
-              count(State::not_comparable), count(State::not_run), missing);
-}
-
-ReportSuite suite_of(const std::vector<BaselineCheck>& checks) {
-  ReportSuite suite{"baselines"};
-  for (const BaselineCheck& check : checks) {
-    using Case = ReportCase::State;
-    const Case state = check.state == State::same                                       ? Case::passed
-                       : check.state == State::changed || check.state == State::missing ? Case::failed
-                       : check.state == State::not_run                                  ? Case::skipped
-                                                                                        : Case::error;
-    suite.cases.push_back({check.name, state, check.text});
-  }
-  return suite;
-}
-
-// Returns the comparison of each check. A check without a comparison gets an entry with its verdict and
-// without columns.
-std::vector<ResultComparison> comparisons(const std::vector<BaselineCheck>& checks) {
-  std::vector<ResultComparison> list;
-  for (const BaselineCheck& check : checks) {
-    if (check.comparison)
-      list.push_back(*check.comparison);
-    else
-      list.push_back({check.name, "this program", check.state == State::not_run ? "not run" : "none"});
-    list.back().baseline = check.name;
-    if (check.comparison) continue;
-    list.back().verdict = check.text;
-    if (check.state == State::missing) list.back().outcome = Outcome::changed;
-  }
-  return list;
-}
-
-int exit_code(const std::vector<BaselineCheck>& checks) {
-  const auto any = [&](State state) {
-    return std::any_of(checks.begin(), checks.end(), [&](const auto& check) { return check.state == state; });
-  };
-  const bool any_failed = any(State::changed) || any(State::missing);
-  if (!any(State::same) && !any_failed) return kBadInput;  // no baseline was compared
-  return any(State::not_comparable) ? kBadInput : any_failed ? kCheckFailed : kDone;
-}
-
-}  // namespace
-
-int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& request) {
-  require_distinct({{"--json", request.json}, {"--junit", request.junit}});
-  const Manifest manifest = read_manifest(request.folder);
-  const std::vector<std::string> inputs = files_of(request.folder, manifest.baselines);
-  if (!request.json.empty()) require_report(line, request.json, inputs, kJsonReports);
-  if (!request.junit.empty()) require_report(line, request.junit, inputs, kJunitReport);
-  const std::vector<Baseline> list = chosen(manifest, request);
-  std::vector<BaselineCheck> checks;
-  NoteCounts notes;
-  Progress progress("baselines", line.quiet);
-  for (const Baseline& baseline : list) {
-    progress.update(checks.size(), list.size(), 0, "baselines");
-    checks.push_back(check_baseline(request.folder, baseline, *line.kernels, line.stop, &notes));
-    print(checks.back());
-  }
-  progress.clear();
-  std::vector<BaselineCheck> missing;
-  if (request.names.empty()) missing = missing_baselines(request.folder, manifest);
-  for (const BaselineCheck& check : missing) print(check);
-  checks.insert(checks.end(), missing.begin(), missing.end());
-  if (checks.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
-  for (const std::string& note : notes.lines()) std::printf("note: %s\n", note.c_str());
-  print_summary(checks);
-  if (!request.json.empty()) write_report(request.json, comparison_json(comparisons(checks)));
-  if (!request.junit.empty()) write_report(request.junit, junit({suite_of(checks)}));
-  return exit_code(checks);
-}
-
-int command_baseline_bless(const CommandLine& line, const BaselineBlessRequest& request) {
-  std::vector<std::string> names = request.names;
-  const bool all = names == std::vector<std::string>{"all"};
-  if ((all || names.size() > 1) && !(request.run.empty() && request.sweep.empty()))
-    throw InputError("--run, --sweep", "expected with one name only");
-  if (all) {
-    names.clear();
-    for (const Baseline& baseline : read_manifest(request.folder).baselines) names.push_back(baseline.name);
-    if (names.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
-  }
-  for (const std::string& name : names) {
-    const std::string done = bless({request.folder, name, request.reason, request.run, request.sweep,
-                                    request.overrides, request.also, request.one_compiler, line.stop});
-    std::printf("%s\n", done.c_str());
-    std::fflush(stdout);
-  }
-  print_replaced(request.overrides);
   return kDone;
 }
 

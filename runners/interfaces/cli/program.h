@@ -17,8 +17,6 @@
 
 namespace remote_touch {
 
-// The command line: options, help, and which command they select.
-
 // Parses the arguments and runs the command. Returns the exit code; throws InputError for arguments that are
 // not understood. choose_kernels is called once, before a command runs.
 int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)());

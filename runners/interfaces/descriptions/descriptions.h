@@ -26,8 +26,8 @@ std::string meaning_of(const TraceColumn& column);
 const char* runs_with(TracePart part);  // "every run", "a run with a tool", ...
 
 // Prints all parameters of an entry of a catalog, the configuration of an experiment, and so on, for every
-// kind that has the name. NAME.PARAMETER prints one parameter, see parameter_description.h. Throws InputError
-// if no kind has the name, and then writes nothing.
+// kind that has the name. NAME.PARAMETER prints one parameter, see describe_parameter(). Throws
+// InputError if no kind has the name, and then writes nothing.
 void describe(const std::string& name, std::FILE* out);
 
 // Returns the meaning, the unit, the better direction, and the runs that have the measure.

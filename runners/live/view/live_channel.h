@@ -157,16 +157,16 @@ class LiveChannel {
   void tell_parameters(const std::string& refused = {});
   bool is_open() const { return is_open_; }
   bool has_hand() const { return is_open_ && role_ == PageRole::hand; }
-  // tell(): queues a text for the page, see view_messages.h. end(): queues the last text; the server closes
-  // the connection after it, or at once if the text is empty. is_over(): true if the connection is to be
-  // closed. Any thread may call them.
+  // tell(): queues a text for the page, see the messages above. end(): queues the last text; the server
+  // closes the connection after it, or at once if the text is empty. is_over(): true if the connection is to
+  // be closed. Any thread may call them.
   void tell(std::string text);
   void end(std::string last);
   bool is_over();
   // Handles a message from the page. Returns false if it is malformed or if this page may not send it.
   bool receive(std::string_view bytes);
   // Stores the next message for the page in `message`. Returns false if there is none now. Texts are JSON,
-  // see view_messages.h. The columns are sent before all other texts; only the text of end() may come
+  // see the messages above. The columns are sent before all other texts; only the text of end() may come
   // earlier.
   struct Message {
     std::string bytes;

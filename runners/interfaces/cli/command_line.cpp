@@ -1,0 +1,87 @@
+// The command line: options, help, and which command they select.
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "analysis/storage/digest.h"
+#include "core/parameters/input_error.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/interfaces/cli/program.h"
+#include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/plugins/plugin_library.h"
+#include "runners/sweep/threads/work_pool.h"
+
+namespace remote_touch {
+namespace {
+
+// Adds the renderers of the plug-ins to the catalog. Results record the plug-ins and their hashes.
+void load_plugins(const std::vector<std::string>& files) {
+  if (files.empty()) return;
+  Catalog catalog = catalog_in_use();
+  ProgramIdentity program = program_identity();
+  for (const std::string& file : files) {
+    for (RendererEntry& entry : load_plugin(file)) catalog.add(std::move(entry));
+    program.plugins.push_back({file, sha256_of_file(file)});
+  }
+  use_catalog(std::move(catalog));
+  identify_program(std::move(program));
+}
+
+// Returns an error that names an unknown command, because CLI11's own error does not.
+InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> left = app.remaining(true);
+  CLI::App* place = &app;
+  std::string called = "remote-touch";
+  while (!place->get_subcommands().empty()) {
+    place = place->get_subcommands().front();
+    called += " " + place->get_name();
+  }
+  if (place->get_subcommands(nullptr).empty() || left.empty())
+    return InputError(error.what(), "see " + called + " --help");
+  std::string known;
+  for (const CLI::App* command : place->get_subcommands(nullptr))
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  return InputError(left.front(), "unknown: expected " + known);
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)()) {
+  CLI::App app{"Haptic rendering of streaming point clouds: simulate, evaluate, reproduce figures."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", [] {
+    return "remote-touch " + version() + ", " + commit_text(provenance({}, std::string(), {}));
+  });
+  app.fallthrough();
+  app.add_flag("-q,--quiet", line.quiet, "do not show progress");
+  app.add_flag_callback("--progress-json", Progress::use_json,
+                        "show progress as JSON for other programs, one object in a line");
+  app.add_flag(
+      "--force", line.force,
+      "also overwrite files that are not results of this program; an input file is never overwritten");
+  app.add_option(
+         "--plugin", line.plugins,
+         "a shared library with renderers, one for each --plugin; see runners/interfaces/plugins/README.md")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  std::function<int()> act;
+  int threads = -1;
+  Subcommands commands{app, line, act, threads};
+  // The commands are added in the order of --help.
+  add_commands_of_experiments(commands);
+  add_commands_of_comparisons(commands);
+  add_commands_of_machines(commands);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw usage_error(app, error);
+  }
+  if (threads >= 0) use_threads(threads);
+  line.kernels = &choose_kernels();
+  load_plugins(line.plugins);
+  return act();
+}
+
+}  // namespace remote_touch

@@ -1,0 +1,204 @@
+// The commands that show and cite results and what is built in: `view`, `export`, `list`, `describe`, `cite`
+// and `cache`.
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/result_file.h"
+#include "analysis/scorecard/scorecard.h"
+#include "analysis/storage/atomic_file.h"
+#include "analysis/storage/digest.h"
+#include "analysis/storage/hdf5_file.h"
+#include "analysis/trace/column.h"
+#include "analysis/trace/sequence_log.h"
+#include "core/geometry/rotation.h"
+#include "core/kernels/isa.h"
+#include "core/parameters/input_error.h"
+#include "runners/evaluation/regression/result_comparison.h"
+#include "runners/evaluation/regression/stored_result.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/provenance/cache_file.h"
+#include "runners/experiment/provenance/citation.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/stored_configuration.h"
+#include "runners/experiment/simulation/run_report.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/descriptions/descriptions.h"
+#include "runners/presentation/export/export_formats.h"
+#include "runners/presentation/view/sweep_page.h"
+#include "runners/presentation/view/trace_page.h"
+#include "runners/sweep/stored_sweep.h"
+#include "scenarios/text_files/text_file.h"
+
+namespace remote_touch {
+namespace {
+
+bool is_sweep_file(const std::string& file) {
+  const Hdf5Reader result(file);
+  if (attribute(result.attributes(), "schema").starts_with("remote-touch-session/"))
+    throw InputError(file, "is a recorded live session: expected its trace, made by remote-touch run " +
+                               file + " -o TRACE.h5");
+  const std::string kind = kind_of(result);
+  if (kind != "trace" && kind != "sweep")
+    throw InputError(file, "is a " + kind + ": expected a trace or a sweep");
+  return kind == "sweep";
+}
+
+ViewPage page_of(const ViewRequest& request, const ViewOptions& options) {
+  bool is_sweep = false;
+  for (const std::string& file : request.results) is_sweep |= is_sweep_file(file);
+  if (is_sweep && request.results.size() > 1)
+    throw InputError(request.results.back(),
+                     "a sweep cannot be shown with another result: expected one sweep alone, or two traces");
+  if (!is_sweep && !request.cells.empty())
+    throw InputError("--cells " + request.cells.front(),
+                     "only for a sweep, but " + request.results.front() + " is a trace: expected a sweep");
+  if (is_sweep && !request.claims.empty())
+    throw InputError("--claims " + request.claims,
+                     "only for traces, but " + request.results.front() + " is a sweep: expected a trace");
+  if (is_sweep) return sweep_page(request.results.front(), request.cells, options);
+  return trace_page({request.results.begin(), request.results.end()}, options);
+}
+
+}  // namespace
+
+void write_view(const CommandLine& line, const ViewRequest& request) {
+  std::vector<std::string> inputs = request.results;
+  inputs.push_back(request.claims);
+  require_report(line, request.output, inputs, kPage);
+  ViewOptions options;
+  options.max_bytes = static_cast<std::size_t>(1e6 * request.max_MB);
+  options.claims = request.claims;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  const ViewPage page = page_of(request, options);
+  write_file_atomically(request.output, page.html.data(), page.html.size());
+  std::printf("%s: %.1f MB\n%s", printable(request.output).c_str(),
+              1e-6 * static_cast<double>(page.html.size()), page.shown.c_str());
+}
+
+int command_view(const CommandLine& line, const ViewRequest& request) {
+  write_view(line, request);
+  return kDone;
+}
+
+int command_export(const CommandLine& line, const ExportRequest& request) {
+  const ExportFormat& format = export_format(request.output);
+  require_different_file(request.output, request.file);
+  require_writable(request.output);
+  const Hdf5Reader result(request.file);
+  const FileLock lock(request.output);
+  NewFiles files;
+  const auto require_allowed = [&](const std::filesystem::path& file, const std::string& opening) {
+    require_export(line, file.string(), {request.file}, opening);
+  };
+  export_result(format, {result, request.output, files, require_allowed, line.kernels, line.stop});
+  const std::size_t count = files.count();
+  files.finish();
+  std::printf("%s: %zu file%s, %.1f MB\n", printable(request.output).c_str(), count, count == 1 ? "" : "s",
+              1e-6 * static_cast<double>(files.size()));
+  return kDone;
+}
+
+namespace {
+
+void print(const NamedKind& kind) {
+  std::puts(kind.kind.c_str());
+  for (const NamedKind::Row& row : kind.rows)
+    std::printf("  %-18s %s\n", row.name.c_str(), row.summary.c_str());
+}
+
+}  // namespace
+
+int command_list(const CommandLine&, const ListRequest& request) {
+  if (!request.kind.empty())
+    print(named_kind(joined(request.kind, " ")));
+  else
+    for (const NamedKind& kind : named_kinds()) print(kind);
+  return kDone;
+}
+
+int command_describe(const CommandLine&, const DescribeRequest& request) {
+  describe(request.name, stdout);
+  return kDone;
+}
+
+namespace {
+
+// Figures have a title of their own. Other results have the title of their configuration; empty if there is
+// none.
+std::string title_of(const std::string& file, const TextAttributes& attributes) {
+  if (const std::string title = attribute(attributes, "title"); !title.empty()) return title;
+  const Json config = parse_json(stored_configuration(attribute(attributes, "config")), file + " config");
+  const auto title = config.is_object() ? config.find("title") : config.end();
+  return title != config.end() && title->is_string() ? title->get<std::string>() : std::string();
+}
+
+// Hashes and sessions store no digest.
+std::string digest_text(const std::string& file, const TextAttributes& attributes) {
+  const std::string digest = attribute(attributes, "digest");
+  return digest.empty() ? "file with SHA-256 " + sha256_of_file(file) : "digest " + digest;
+}
+
+void print_entries(CitedResult cited, const TextAttributes& attributes) {
+  cited.title = title_of(cited.file, attributes);
+  cited.digest = digest_text(cited.file, attributes);
+  std::printf("%s\n%s\n%s", dissertation_entry().c_str(), program_entry(attributes).c_str(),
+              result_entry(cited, attributes).c_str());
+}
+
+void print_session_entries(const std::string& file, const TextAttributes& attributes) {
+  CitedResult cited{file, "recording of a live session"};
+  cited.remark = "what happened live cannot be repeated, but " +
+                 shell_command({"remote-touch", "run", file, "-o", "again.h5"}) + " computes its trace again";
+  print_entries(cited, attributes);
+}
+
+void print_result_entries(const StoredResult& result) {
+  if (!result.of("plan_digest").empty())
+    throw InputError(result.file(), "is a sweep in progress: expected a finished one");
+  const bool is_figure = result.kind() == "figure";
+  CitedResult cited{result.file(), result.kind()};
+  if (is_figure) cited.kind += " " + result.of("figure");
+  if (is_figure && result.of("figure") == kScorecardFigure) cited.kind = "scorecard";
+  Remaking again = result.remaking();
+  cited.commands = std::move(again.commands), cited.remark = std::move(again.reason);
+  print_entries(cited, result.attributes());
+}
+
+}  // namespace
+
+int command_cite(const CommandLine&, const CiteRequest& request) {
+  if (request.file.empty()) {
+    std::printf("%s\n%s", dissertation_entry().c_str(),
+                program_entry(provenance({}, std::string(), {})).c_str());
+    return kDone;
+  }
+  const Hdf5Reader file(request.file);
+  if (is_schema_of(attribute(file.attributes(), "schema"), "session"))
+    print_session_entries(request.file, file.attributes());
+  else
+    print_result_entries(StoredResult(file));
+  return kDone;
+}
+
+int command_cache(const CommandLine& line, const CacheRequest& request) {
+  const std::filesystem::path folder = cache_folder();
+  if (folder.empty())
+    throw InputError("REMOTE_TOUCH_CACHE", "is not set, nor is HOME: expected a folder for the cache");
+  constexpr double kBytes_per_MB = 1e6;
+  const CacheSize size =
+      request.max_MB ? shrink_cache(folder, static_cast<std::uintmax_t>(*request.max_MB * kBytes_per_MB))
+                     : cache_size(folder);
+  std::printf("%s: %zu files, %.1f MB; the maximum is %.1f MB\n", folder.c_str(), size.files,
+              static_cast<double>(size.bytes) / kBytes_per_MB,
+              static_cast<double>(max_cache_bytes()) / kBytes_per_MB);
+  std::printf("instruction set of the inner loops: %s\n", line.kernels->isa);
+  return kDone;
+}
+
+}  // namespace remote_touch
