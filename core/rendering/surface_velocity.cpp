@@ -14,7 +14,7 @@ Vec3 SurfaceVelocity::on_frame(double captured_s, const Vec3& normal) {
   normal_ = normal;
   awaits_step_ = interval_s_ > 0;
   set_horizon();
-  return carried * normal_;
+  return carried * normal_;  // (4.3)
 }
 
 // Updates the estimate. If (4.3) was not bounded, this is (4.13), v_hat + n.s / interval. If it was bounded,
@@ -24,7 +24,7 @@ void SurfaceVelocity::on_step(const Vec3& step) {
   if (!awaits_step_) return;
   awaits_step_ = false;
   const double moved_m = frame_correction_m_ + normal_.dot(step) - std::exchange(growth_m_, 0);
-  velocity_m_per_s_ = std::max(0.0, moved_m / interval_s_);
+  velocity_m_per_s_ = std::max(0.0, moved_m / interval_s_);  // (4.13)
 }
 
 void SurfaceVelocity::set_horizon() {

@@ -167,6 +167,24 @@ KnownStep ProxyRenderer::state_at_proxy() {
           .stiffness_N_per_m = stiffness(here.query)};
 }
 
+// Notes what the force (4.16) and the way out of regions need of the position at which a step begins.
+void ProxyRenderer::note_state(const KnownStep& here) {
+  if (!here.normal_W.isZero(0)) normal_W_ = here.normal_W;
+  if (here.state == ContactState::contact) {
+    in_contact_ = true;
+    contact_proxy_W_ = proxy_W_;
+    contact_stiffness_N_per_m_ = here.stiffness_N_per_m;
+  }
+  if (here.state != ContactState::entrenched) clear_W_ = proxy_W_, is_clear_ = true;
+}
+
+// Computes the motion of a step and keeps it for the next time that the proxy is here. A step from a position
+// without a normal (4.1), or with the rule for creases, also depends on earlier steps and is not kept.
+void ProxyRenderer::find_motion(KnownStep& here, const Vec3& u) {
+  here.motion_m = next_step(local_query_, u);
+  if (!here.normal_W.isZero(0) && p_.contact_motion != ContactMotion::creases) known_steps_.remember(here);
+}
+
 // Runs the proxy movement algorithm, 4.2.3, and returns the number of steps. It ends before its budget when a
 // step leaves the proxy where it is, bit for bit, because every further step would do the same. A step that
 // known_steps_ holds is not computed again.
@@ -176,30 +194,16 @@ int ProxyRenderer::move(const Vec3& hip_W) {
   for (int k = 1; k <= p_.steps_per_tick; ++k) {
     const Vec3 u = hip_W - proxy_W_;
     const KnownStep* const known = known_steps_.from(proxy_W_);
-    KnownStep here = known ? *known : state_at_proxy();
-    const bool has_normal = !here.normal_W.isZero(0);
-    if (has_normal) normal_W_ = here.normal_W;
-    if (here.state == ContactState::contact) {
-      in_contact_ = true;
-      contact_proxy_W_ = proxy_W_;
-      contact_stiffness_N_per_m_ = here.stiffness_N_per_m;
-    }
+    KnownStep here = known ? *known : state_at_proxy();  // the state of 4.2.1 and the normal (4.1)
+    note_state(here);
     touched |= here.state != ContactState::free;
-    if (here.state != ContactState::entrenched) clear_W_ = proxy_W_, is_clear_ = true;
-
     if (stops_at_convergence_ && here.state == ContactState::contact &&
-        has_converged(here.state, normal_W_, u, p_))
+        has_converged(here.state, normal_W_, u, p_))  // (4.8)
       return k - 1;
-
-    if (!known) {
-      here.motion_m = next_step(local_query_, u);
-      // A step from a position without a normal (4.1), or with the rule for creases, also depends on earlier
-      // steps.
-      if (has_normal && p_.contact_motion != ContactMotion::creases) known_steps_.remember(here);
-    }
-    const Vec3& s = here.motion_m;
-    velocity_.on_step(s);  // (4.13)
-    const Vec3 moved = here.state == ContactState::free && s == u ? hip_W : Vec3(proxy_W_ + s);
+    if (!known) find_motion(here, u);  // (4.4) to (4.12)
+    velocity_.on_step(here.motion_m);  // (4.13)
+    const bool arrives = here.state == ContactState::free && here.motion_m == u;
+    const Vec3 moved = arrives ? hip_W : Vec3(proxy_W_ + here.motion_m);
     if (here.state == ContactState::free && moved == hip_W)
       in_contact_ = false;  // the proxy reaches the HIP freely
     const bool settled = moved == proxy_W_;

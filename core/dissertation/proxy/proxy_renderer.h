@@ -84,6 +84,8 @@ class ProxyRenderer final : public Renderer {
   };
   const LocalQuery& local_query();
   KnownStep state_at_proxy();
+  void note_state(const KnownStep& here);
+  void find_motion(KnownStep& here, const Vec3& u);
   int move(const Vec3& hip_W);
   int leave_regions(const Vec3& hip_W);
   bool update_region_rule(const LocalQuery& here);

@@ -119,7 +119,8 @@ Vec3 along(const Vec3& direction, double length, double norm) {
 Vec3 step_towards(const Vec3& goal, const ProxyParameters& p) {
   const double distance = goal.norm();
   if (p.step_rule == StepRule::fixed) return along(goal, std::min(p.fixed_step_m, distance), distance);
-  return distance < p.r1_m ? Vec3(p.gamma * goal) : along(goal, p.xi * p.r1_m, distance);
+  return distance < p.r1_m ? Vec3(p.gamma * goal)                   // (4.11)
+                           : along(goal, p.xi * p.r1_m, distance);  // (4.12)
 }
 
 }  // namespace
@@ -145,7 +146,7 @@ Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyP
                           : printed_free_root(near.within(p_W, distance + p.contact_radius_m()).view(), p_W,
                                               direction, p.contact_radius_m(), distance);
   // A step without an obstacle is u itself, so that P meets the HIP bit for bit.
-  return step >= distance ? u : Vec3(step * direction);
+  return step >= distance ? u : Vec3(step * direction);  // (4.4) with d_k of (4.9)
 }
 
 Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec3& p_W, const Vec3& normal,
@@ -154,14 +155,16 @@ Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec
   if (out.isZero(0)) out = along(-u, 1, u.norm());
   if (out.isZero(0)) return Vec3::Zero();
   if (p.step_rule == StepRule::fixed) return p.fixed_step_m * out;
-  return kernels.proxy.exit_distance(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m) * out;
+  const double d = kernels.proxy.exit_distance(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m);
+  return d * out;  // (4.5) with d_k of (4.10)
 }
 
 Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
   const double height = u.dot(normal);
   if (p.exit_rule == ExitRule::out_of_contact && height >= 0 && !u.isZero(0))
-    return (p.r2_m - p.r1_m) * normal;
-  return step_towards(height < 0 ? Vec3(u - height * normal) : u, p);
+    return (p.r2_m - p.r1_m) * normal;                          // (5.17)
+  if (height < 0) return step_towards(u - height * normal, p);  // (4.6), in the tangent plane
+  return step_towards(u, p);                                    // (4.7)
 }
 
 Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const Vec3& u,
@@ -190,7 +193,7 @@ bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const 
   if (state == ContactState::free) return u.isZero(0);
   if (state == ContactState::entrenched || !(u.dot(normal) < 0)) return false;
   const Vec3 tangential = u - u.dot(normal) * normal;
-  return tangential.squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();
+  return tangential.squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();  // (4.8)
 }
 
 namespace {

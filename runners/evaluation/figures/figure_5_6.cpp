@@ -17,12 +17,12 @@ constexpr double kRegionRadius_m = 0.01;
 constexpr double kMin_N = 0.01;  // a force above this is felt
 
 // The ticks of a run in which the HIP moves towards larger x: positions, force, and force over stretch.
-struct Crossing {
+struct RegionCrossing {
   std::vector<double> hip_x, hip_y, proxy_y, contact_x, contact_y, force, stiffness;
 };
 
-Crossing crossing(const Trace& trace) {
-  Crossing c;
+RegionCrossing crossing(const Trace& trace) {
+  RegionCrossing c;
   for (std::size_t i = 1; i < trace.length(); ++i) {
     if (!(trace.hip_position_m[i].x() > trace.hip_position_m[i - 1].x())) continue;
     const Vec3 contact = contact_point(trace, i, kContactRadius_m);
@@ -36,7 +36,7 @@ Crossing crossing(const Trace& trace) {
   return c;
 }
 
-Table crossing_table(const std::string& name, const Crossing& c) {
+Table crossing_table(const std::string& name, const RegionCrossing& c) {
   Table table{name, "contact point, HIP and force while the HIP moves along x"};
   table.add("hip_x", "m", "HIP along the plane", c.hip_x);
   table.add("hip_y", "m", "height of the HIP", c.hip_y);
@@ -48,18 +48,18 @@ Table crossing_table(const std::string& name, const Crossing& c) {
 
 // Returns the x of the HIP when the condition on the row holds for the first time; NaN if it never holds.
 template <class Condition>
-double first_x(const Crossing& c, Condition&& holds) {
+double first_x(const RegionCrossing& c, Condition&& holds) {
   for (std::size_t i = 0; i < c.hip_x.size(); ++i)
     if (holds(i)) return c.hip_x[i];
   return kNoValue;
 }
 
-std::size_t row_of_max_force(const Crossing& c) {
+std::size_t row_of_max_force(const RegionCrossing& c) {
   return static_cast<std::size_t>(std::max_element(c.force.begin(), c.force.end()) - c.force.begin());
 }
 
 // Returns the mean force over the rows with the HIP between from_x and to_x; NaN if there are none.
-double mean_force(const Crossing& c, double from_x, double to_x) {
+double mean_force(const RegionCrossing& c, double from_x, double to_x) {
   return mean(values_where(
       c.hip_x.size(), [&](std::size_t i) { return c.hip_x[i] >= from_x && c.hip_x[i] <= to_x; },
       [&](std::size_t i) { return c.force[i]; }));
@@ -98,7 +98,7 @@ double assigned_N_per_m(double x) {
   return 300 + 600 * std::clamp((x + 0.03) / 0.03, 0.0, 1.0);
 }
 
-Table stiffness_table(const Crossing& c) {
+Table stiffness_table(const RegionCrossing& c) {
   TableRows rows;
   for (std::size_t i = 0; i < c.contact_x.size(); ++i)
     rows.push_back({c.contact_x[i], c.stiffness[i], assigned_N_per_m(c.contact_x[i])});
@@ -111,7 +111,7 @@ Table stiffness_table(const Crossing& c) {
 
 // Returns the largest relative error of the felt stiffness, over contact points that are farther from the
 // ends of the ramp and from the step than a ball of r_3 reaches; NaN if there are none.
-double max_stiffness_error(const Crossing& c) {
+double max_stiffness_error(const RegionCrossing& c) {
   const auto is_far = [&](std::size_t i) {
     const auto far_from = [&](double place) { return std::abs(c.contact_x[i] - place) > 0.01; };
     return far_from(-0.03) && far_from(0) && far_from(0.02);
@@ -136,9 +136,9 @@ void claim_second(const Claims& claims, const std::string& claim, double measure
 }  // namespace
 
 Figure figure_5_6(FigureContext& context) {
-  const Crossing at_zero = crossing(context.run(Experiment::load("fig5.6")));
-  const Crossing below = crossing(context.run(Experiment::load("fig5.6-below")));
-  const Crossing stiffness = crossing(context.run(Experiment::load("fixture-stiffness")));
+  const RegionCrossing at_zero = crossing(context.run(Experiment::load("fig5.6")));
+  const RegionCrossing below = crossing(context.run(Experiment::load("fig5.6-below")));
+  const RegionCrossing stiffness = crossing(context.run(Experiment::load("fixture-stiffness")));
 
   Figure figure{
       "5.6", "Virtual fixtures with varying radius and stiffness",

@@ -31,14 +31,14 @@ std::size_t tick_count(const Experiment& experiment, const Trajectory& trajector
 
 Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double time_s, std::uint64_t frame_hash,
                    WallWatch& proxy_walls) {
-  const double proxy_position_m =
+  const double proxy_distance_m =
       proxy_walls.side_m(out.proxy_W, scenario.signed_distance(out.proxy_W, time_s), time_s);
-  double slave_command_m = proxy_position_m;
+  double slave_distance_m = proxy_distance_m;
   if (!out.slave_W.allFinite())
-    slave_command_m = std::numeric_limits<double>::quiet_NaN();
+    slave_distance_m = std::numeric_limits<double>::quiet_NaN();
   else if (out.slave_W != out.proxy_W)
-    slave_command_m = scenario.signed_distance(out.slave_W, time_s);
-  Trace::Truth truth{proxy_position_m, slave_command_m, frame_hash};
+    slave_distance_m = scenario.signed_distance(out.slave_W, time_s);
+  Trace::Truth truth{proxy_distance_m, slave_distance_m, frame_hash};
   if (scenario.has_measured_distance())
     truth.measured_distance_m = scenario.measured_distance(out.proxy_W, time_s);
   return truth;

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/dissertation/proxy/proxy_equations.h"
 #include "core/kernels/gather_kernels.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/proxy_kernels.h"
@@ -48,17 +49,20 @@ Real radius_of(const PointCloud& cloud, std::size_t i) {
   return cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i];
 }
 
-// (4.1), (4.2), (5.8) as printed, with r_n of (5.5).
+using Vec = equations::Vec<Real>;
+
+// Agrees with (4.1), (4.2), (5.5) and (5.8).
 void expect_query(const ContactQuery& got, const PointCloud& cloud, const Vec3& p) {
-  Real nearest = kInfinity, normal[3] = {0, 0, 0}, weights = 0, stiffness = 0;
+  const Vec P = p.cast<Real>();
+  Real nearest = kInfinity, weights = 0, stiffness = 0;
+  Vec normal = Vec::Zero();
   int touching = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Real d[3] = {Real{p.x()} - cloud.x[i], Real{p.y()} - cloud.y[i], Real{p.z()} - cloud.z[i]};
-    const Real distance = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    const Real r = distance - radius_of(cloud, i), t = (r - kRegions.r1) / (Real{kRegions.r3} - kRegions.r1);
-    const Real psi = r <= kRegions.r1 ? 1 : r >= kRegions.r3 ? 0 : std::pow(1 - t, Real{4}) * (4 * t + 1);
+    const Vec x = cloud.point(i).cast<Real>();
+    const Real r1 = kRegions.r1, r3 = kRegions.r3, r_f = radius_of(cloud, i);
+    const Real r = equations::distance(P, x, r_f), psi = equations::weight(r, r1, r3);
     nearest = std::min(nearest, r), touching += r <= kRegions.r2;
-    for (int k = 0; k < 3; ++k) normal[k] += distance > 0 ? d[k] / distance * psi : 0;
+    normal += equations::normal_term(P, x, r_f, r1, r3);
     if (cloud.stiffness_N_per_m.empty()) continue;
     weights += psi, stiffness += psi * cloud.stiffness_N_per_m[i];
   }
@@ -168,21 +172,6 @@ TEST(ContactQuery, TouchingIncludesR2) {
     EXPECT_EQ(kernels->proxy.contact_query(points.view(), kOrigin.data(), kRegions).touching_count, 4);
 }
 
-// Roots of |x - p - d u| = r by the quadratic formula, which is accurate enough in long double.
-struct Roots {
-  bool real;
-  Real along, near, far;
-};
-Roots roots(const Vec3& x, const Vec3& p, const Vec3& u, Real r) {
-  Real a = 0, b = 0, c = -r * r;
-  for (int k = 0; k < 3; ++k) {
-    const Real e = Real{x[k]} - p[k];
-    a += Real{u[k]} * u[k], b += e * u[k], c += e * e;
-  }
-  const Real d = b * b - a * c, root = std::sqrt(std::max(d, Real{0}));
-  return {d >= 0, b, (b - root) / a, (b + root) / a};
-}
-
 TEST(FirstHit, AgreesWithTheClosedFormForOnePoint) {
   for (const Kernels* kernels : supported_kernels()) {
     const auto hit = [&](const Vec3& x, double r_f = 0) {
@@ -224,10 +213,13 @@ TEST(Roots, AreTheSmallestAheadAndTheLargestWithinR1) {
       const Vec3 p = at.point(i), u = displacement.point(i).normalized();
       Real first = kInfinity, max_length = 0;
       for (std::size_t j = 0; j < cloud.size(); ++j) {
+        const Vec P = p.cast<Real>(), x = cloud.point(j).cast<Real>();
+        const Vec direction = u.cast<Real>().normalized();
         const Real r_f = radius_of(cloud, j);
-        const Roots r = roots(cloud.point(j), p, u, kReach + r_f);
-        if (r.real && r.along > 0 && r.near > 0) first = std::min(first, r.near);
-        if ((cloud.point(j) - p).norm() < kRegions.r1 + r_f) max_length = std::max(max_length, r.far);
+        const auto d = equations::first_hit<Real>(P, x, direction, kReach + r_f);
+        first = std::min(first, d.value_or(first));
+        max_length = std::max(
+            max_length, equations::exit_distance<Real>(P, x, direction, kReach + r_f, kRegions.r1 + r_f));
       }
       for (const Kernels* kernels : supported_kernels()) {
         const double hit = kernels->proxy.first_hit(points.view(), p.data(), u.data(), kReach);

@@ -27,7 +27,7 @@ MotionProgram::MotionProgram(const Eigen::Matrix3d& inertia_m2)
 
 Vector6 MotionProgram::row_of(const ToolContact& contact) const {
   Row row;
-  row << contact.n_T, inverse_root_ * contact.r_T.cross(contact.n_T);
+  row << contact.n_T, inverse_root_ * contact.r_T.cross(contact.n_T);  // (6.3), a row of J M^(-1/2)
   return row;
 }
 
@@ -64,7 +64,7 @@ void MotionProgram::add_rows(std::span<const ToolContact> contacts) {
 ConstrainedMotion MotionProgram::read(const Vector6& y, int active_count, const int* active,
                                       const double* multiplier, std::span<const ToolContact> contacts) const {
   ConstrainedMotion motion;
-  motion.a_g << y.head<3>(), inverse_root_ * y.tail<3>();
+  motion.a_g << y.head<3>(), inverse_root_ * y.tail<3>();  // back from M^(1/2) a_g
   for (int i = 0; i < active_count; ++i) {
     if (!(multiplier[i] > 0)) continue;
     const ToolContact& contact = contacts[static_cast<std::size_t>(number_[active[i]])];
@@ -77,9 +77,9 @@ ConstrainedMotion MotionProgram::read(const Vector6& y, int active_count, const 
 
 ConstrainedMotion MotionProgram::solve(const Vector6& desired_T, std::span<const ToolContact> contacts) {
   Vector6 target;
-  target << desired_T.head<3>(), root_ * desired_T.tail<3>();
-  add_rows(contacts);
-  const ProgramResult<6> result = rigid_.nearest(target);
+  target << desired_T.head<3>(), root_ * desired_T.tail<3>();  // M^(1/2) a_gu, so that (6.4) is a distance
+  add_rows(contacts);                                          // (6.5): J a_g >= d
+  const ProgramResult<6> result = rigid_.nearest(target);      // (6.4); (6.7) if a_gu = 0, (6.6)
   if (result.status == ProgramStatus::optimal)
     return read(result.y, result.active_count, result.active, result.multiplier, contacts);
 

@@ -6,6 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "core/dissertation/depth/filter_equations.h"
+#include "core/dissertation/proxy/proxy_equations.h"
+
 namespace remote_touch {
 namespace {
 
@@ -37,22 +40,14 @@ Points unprojected(const CameraIntrinsics& camera, const Depth& depth) {
   return points;
 }
 
-// (7.1), (7.2)
 Points filtered(const DepthPipelineSettings& settings, const Points& raw) {
   return unprojected(raw.camera, [&](int u, int v) {
     const Vec3& p0 = raw.p[static_cast<std::size_t>(v * raw.camera.width + u)];
     if (!p0.allFinite()) return kNoValue;
-    double sum = 0, total = 0;
-    raw.window(u, v, settings.filter_window, 1, [&](const Vec3& p, int, int) {
-      const double phi = std::exp(-(p - p0).squaredNorm() / (2 * settings.sigma_f_m * settings.sigma_f_m));
-      sum += p.z() * phi, total += phi;
-    });
-    return sum / total;
+    std::vector<Vec3> window;
+    raw.window(u, v, settings.filter_window, 1, [&](const Vec3& p, int, int) { window.push_back(p); });
+    return equations::filtered_depth(window, p0, settings.sigma_f_m);  // (7.1)
   });
-}
-
-double wendland(double q) {
-  return q < 1 ? std::pow(1 - q, 4) * (4 * q + 1) : 0;
 }
 
 struct Plane {
@@ -72,7 +67,7 @@ Plane plane(const DepthPipelineSettings& settings, const Points& points, int u, 
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   points.window(u, v, settings.normal_window, settings.normal_step, [&](const Vec3& p, int, int) {
     const Vec3 d = p - p0;
-    const double psi = wendland(d.norm() / settings.normal_radius_m);
+    const double psi = equations::weight(d.norm(), 0.0, settings.normal_radius_m);
     total += psi, mean += psi * d, squares += psi * d * d.transpose();
   });
   mean /= total;

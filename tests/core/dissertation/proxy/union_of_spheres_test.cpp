@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/dissertation/proxy/proxy_equations.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::union_of_spheres_test {
@@ -256,13 +257,12 @@ PointCloud one_and_more(int count, unsigned seed) {
   return cloud;
 }
 
-// (4.2), (5.5), (5.8) by a plain loop. A stiffness of NaN counts as `own`.
+// Returns (5.8) by a plain loop. A stiffness of NaN counts as `own`.
 double mean_stiffness(const PointCloud& cloud, const Vec3& p, double own) {
   long double weights = 0, sum = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const long double r = (p - cloud.point(i)).norm() - cloud.fixture_radius_m[i];
-    const long double t = (r - kDefault.r1_m) / (kDefault.r3_m - kDefault.r1_m), q = 1 - t;
-    const long double psi = t <= 0 ? 1 : t >= 1 ? 0 : q * q * q * q * (4 * t + 1);
+    const double r = equations::distance(p, cloud.point(i), cloud.fixture_radius_m[i]);
+    const long double psi = equations::weight<long double>(r, kDefault.r1_m, kDefault.r3_m);
     const double k = cloud.stiffness_N_per_m[i];
     weights += psi, sum += psi * (std::isnan(k) ? own : k);
   }
