@@ -48,14 +48,11 @@ def caches():
     return ", ".join(texts) or "not visible"
 
 
-def describe_machine():
+def describe_machine(name=""):
+    """name: added to the title, if it is not that of the processor alone."""
     described = processor_of(pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"))
+    described["title"] += f", {name}" if name else ""
     return described | {"cores": os.cpu_count(), "caches": caches()}
-
-
-def name_of(title):
-    """The name of the stored file of a machine: amd-epyc-zen-4."""
-    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
 
 
 def compiler():

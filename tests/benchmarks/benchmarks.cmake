@@ -3,22 +3,20 @@ set(CMAKE_UNITY_BUILD OFF)  # the naive versions have the names of what they sta
 find_package(benchmark REQUIRED)
 find_package(NLopt QUIET)
 add_executable(proxy_benchmark
-  benchmarks/assignment_benchmark.cpp benchmarks/checked_benchmark.cpp benchmarks/fixture_benchmark.cpp
-  benchmarks/fixture_scene.cpp benchmarks/naive_proxy.cpp benchmarks/naive_regions.cpp
-  benchmarks/noise_benchmark.cpp benchmarks/program_benchmark.cpp benchmarks/proxy_benchmark.cpp
-  benchmarks/query_benchmark.cpp benchmarks/slide.cpp benchmarks/step_benchmark.cpp benchmarks/tick_benchmark.cpp)
+  benchmarks/checked_benchmark.cpp benchmarks/naive_proxy.cpp benchmarks/program_benchmark.cpp
+  benchmarks/proxy_benchmark.cpp)
 target_link_libraries(proxy_benchmark PRIVATE runners benchmark::benchmark)
 if(TARGET NLopt::nlopt)
   target_link_libraries(proxy_benchmark PRIVATE NLopt::nlopt)
   target_compile_definitions(proxy_benchmark PRIVATE REMOTE_TOUCH_NLOPT)
 endif()
 add_executable(map_benchmark
-  benchmarks/full_lift.cpp benchmarks/map_benchmark.cpp benchmarks/naive_lift.cpp benchmarks/naive_proxy.cpp)
-target_link_libraries(map_benchmark PRIVATE runners)
+  benchmarks/checked_benchmark.cpp benchmarks/map_benchmark.cpp benchmarks/naive_lift.cpp
+  benchmarks/naive_proxy.cpp)
+target_link_libraries(map_benchmark PRIVATE runners benchmark::benchmark)
 
 add_executable(tool_benchmark
-  benchmarks/checked_benchmark.cpp benchmarks/tool_benchmark.cpp benchmarks/tool_landing.cpp
-  benchmarks/tool_scene.cpp)
+  benchmarks/checked_benchmark.cpp benchmarks/tool_benchmark.cpp benchmarks/tool_scene.cpp)
 target_link_libraries(tool_benchmark PRIVATE core benchmark::benchmark)
 
 add_executable(sphere_tree_benchmark
@@ -26,35 +24,9 @@ add_executable(sphere_tree_benchmark
   benchmarks/tool_scene.cpp)
 target_link_libraries(sphere_tree_benchmark PRIVATE core benchmark::benchmark)
 
-add_executable(tracked_sheet_benchmark benchmarks/checked_benchmark.cpp benchmarks/tracked_sheet_benchmark.cpp)
-target_link_libraries(tracked_sheet_benchmark PRIVATE core scenarios benchmark::benchmark)
-
-add_executable(raster_benchmark benchmarks/checked_benchmark.cpp benchmarks/raster_benchmark.cpp)
-target_link_libraries(raster_benchmark PRIVATE core scenarios benchmark::benchmark)
-
-add_executable(mesh_distance_benchmark benchmarks/checked_benchmark.cpp benchmarks/mesh_distance_benchmark.cpp)
-target_link_libraries(mesh_distance_benchmark PRIVATE runners benchmark::benchmark)
-
-add_executable(sweep_growth benchmarks/sweep_growth.cpp)
-target_link_libraries(sweep_growth PRIVATE runners)
-
-add_executable(slave_benchmark benchmarks/checked_benchmark.cpp benchmarks/slave_benchmark.cpp)
-target_link_libraries(slave_benchmark PRIVATE runners benchmark::benchmark)
-
 add_executable(depth_benchmark
   benchmarks/checked_benchmark.cpp benchmarks/depth_benchmark.cpp core/dissertation/depth/reference_depth_pipeline.cpp)
 target_link_libraries(depth_benchmark PRIVATE core benchmark::benchmark)
-
-add_executable(opencl_benchmark benchmarks/checked_benchmark.cpp benchmarks/opencl_benchmark.cpp)
-target_link_libraries(opencl_benchmark PRIVATE runners benchmark::benchmark)
-
-add_executable(plugin_benchmark benchmarks/checked_benchmark.cpp benchmarks/plugin_benchmark.cpp)
-target_link_libraries(plugin_benchmark PRIVATE runners benchmark::benchmark)
-target_compile_definitions(plugin_benchmark PRIVATE PLUGIN_RENDERERS="$<TARGET_FILE:plugin_renderers>")
-add_dependencies(plugin_benchmark plugin_renderers)
-
-add_executable(bag_benchmark benchmarks/bag_benchmark.cpp benchmarks/checked_benchmark.cpp)
-target_link_libraries(bag_benchmark PRIVATE scenarios test_bags benchmark::benchmark)
 
 # Benchmarks beside others' libraries are built only when asked for, and say so where those are not installed.
 function(peers_missing name packages)
@@ -67,16 +39,16 @@ find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp)
 find_package(PCL QUIET COMPONENTS common search kdtree)
 if(PCL_FOUND AND NANOFLANN_INCLUDE_DIR)
   add_executable(peer_search_benchmark EXCLUDE_FROM_ALL
-    benchmarks/checked_benchmark.cpp benchmarks/peers/peer_search_benchmark.cpp benchmarks/naive_proxy.cpp)
+    benchmarks/checked_benchmark.cpp benchmarks/peers/peer_search_benchmark.cpp)
   target_include_directories(peer_search_benchmark SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${NANOFLANN_INCLUDE_DIR})
-  target_link_libraries(peer_search_benchmark PRIVATE runners benchmark::benchmark ${PCL_LIBRARIES})
+  target_link_libraries(peer_search_benchmark PRIVATE core benchmark::benchmark ${PCL_LIBRARIES})
 else()
   peers_missing(peer_search_benchmark "libpcl-dev and libnanoflann-dev")
 endif()
 
-# The filters and normals of others. Their headers get none of our settings.
-find_package(PCL QUIET COMPONENTS common search kdtree features filters)
-find_package(OpenCV QUIET COMPONENTS core imgproc rgbd)
+# The normals of others. Their headers get none of our settings.
+find_package(PCL QUIET COMPONENTS common search kdtree features)
+find_package(OpenCV QUIET COMPONENTS core rgbd)
 if(PCL_FOUND AND OpenCV_FOUND)
   add_library(peer_depth OBJECT EXCLUDE_FROM_ALL benchmarks/peers/peer_depth.cpp)
   target_include_directories(peer_depth PRIVATE ${PROJECT_SOURCE_DIR})
@@ -86,17 +58,8 @@ if(PCL_FOUND AND OpenCV_FOUND)
   add_executable(peer_depth_benchmark EXCLUDE_FROM_ALL
     benchmarks/checked_benchmark.cpp benchmarks/peers/peer_depth_benchmark.cpp $<TARGET_OBJECTS:peer_depth>)
   target_link_libraries(peer_depth_benchmark PRIVATE core benchmark::benchmark ${PCL_LIBRARIES} ${OpenCV_LIBS})
-  # As fast as a user of this machine has them.
-  set_source_files_properties(benchmarks/peers/published_normals.cpp PROPERTIES COMPILE_OPTIONS
-    "-O3;-march=native;-fno-math-errno;-fno-trapping-math")
-  target_sources(peer_depth_benchmark PRIVATE benchmarks/peers/published_normals.cpp)
-  add_executable(depth_trade_benchmark EXCLUDE_FROM_ALL
-    benchmarks/checked_benchmark.cpp benchmarks/peers/depth_trade_benchmark.cpp benchmarks/peers/depth_trade_scene.cpp
-    benchmarks/peers/published_normals.cpp $<TARGET_OBJECTS:peer_depth>)
-  target_link_libraries(depth_trade_benchmark PRIVATE core benchmark::benchmark ${PCL_LIBRARIES} ${OpenCV_LIBS})
 else()
   peers_missing(peer_depth_benchmark "libpcl-dev, libopencv-dev and libopencv-contrib-dev")
-  peers_missing(depth_trade_benchmark "libpcl-dev, libopencv-dev and libopencv-contrib-dev")
 endif()
 
 # The collision detection of others, likewise.
@@ -111,17 +74,8 @@ if(BULLET_FOUND AND fcl_FOUND AND octomap_FOUND)
   target_compile_options(peer_tool PRIVATE -O3)
   add_executable(peer_tool_benchmark EXCLUDE_FROM_ALL
     benchmarks/checked_benchmark.cpp benchmarks/peers/peer_tool_benchmark.cpp benchmarks/tool_scene.cpp
-    benchmarks/peers/voxmap_pointshell.cpp $<TARGET_OBJECTS:peer_tool>)
+    $<TARGET_OBJECTS:peer_tool>)
   target_link_libraries(peer_tool_benchmark PRIVATE core benchmark::benchmark fcl ${BULLET_LIBRARIES})
 else()
   peers_missing(peer_tool_benchmark "libbullet-dev, libfcl-dev and liboctomap-dev")
-endif()
-
-# How punctual the live loop is: nothing in it passes or fails.
-add_executable(live_benchmark benchmarks/live_benchmark.cpp)
-target_link_libraries(live_benchmark PRIVATE runners test_support)
-vendor_devices(live_benchmark)
-if(TARGET haply_service)
-  target_link_libraries(live_benchmark PRIVATE haply_service)
-  target_compile_definitions(live_benchmark PRIVATE REMOTE_TOUCH_HAPLY_SERVICE)
 endif()

@@ -44,7 +44,6 @@ void LeastTimes::count_slowest(benchmark::State& state) const {
   std::erase(timed, std::numeric_limits<double>::infinity());
   std::sort(timed.begin(), timed.end());
   state.counters["p99_9_ns"] = timed[static_cast<std::size_t>(0.999 * (timed.size() - 1) + 0.5)];
-  state.counters["max_ns"] = timed.back();
 }
 
 double cpu_ns() {

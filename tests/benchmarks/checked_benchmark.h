@@ -39,7 +39,7 @@ class LeastTimes {
     const Stopwatch stopwatch{ns[static_cast<std::size_t>(part)], cpu_ns()};
     return work();
   }
-  // Sets the counters p99_9_ns and max_ns, of the parts that were timed.
+  // Sets the counter p99_9_ns, of the parts that were timed.
   void count_slowest(benchmark::State& state) const;
 
   std::vector<double> ns;

@@ -1,5 +1,5 @@
-// Quadratic programs of six variables, compared with those of NLopt and with a trial of all subsets of rows.
-// The answers are first compared with those of least distance programming.
+#include "tests/benchmarks/program_benchmark.h"
+
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -11,7 +11,6 @@
 
 #include "core/numeric/quadratic_program.h"
 #include "tests/benchmarks/checked_benchmark.h"
-#include "tests/benchmarks/proxy_benchmark.h"
 #include "tests/core/numeric/program_peers.h"
 #ifdef REMOTE_TOUCH_NLOPT
 #include "tests/core/numeric/nlopt_program.h"
@@ -25,8 +24,6 @@ using Vector = peers::Vector<6>;
 
 // The programs are many, in turn, so that the processor cannot learn their branches.
 constexpr int kProblems = 64;
-// The subsets of more rows are too many to wait for.
-constexpr int kMaxRowsOfSubsets = 6;
 
 // Random rows around a point near the origin that fulfils them, and a random target.
 struct Problems {
@@ -76,22 +73,11 @@ void add_solver(const std::string& name, const std::shared_ptr<const Problems>& 
 }  // namespace
 
 void add_programs() {
-  for (const int rows : {1, 6, 25, 50, 256}) {
+  for (const int rows : {6, 50}) {
     const auto problems = std::make_shared<const Problems>(rows);
     const std::string count = std::to_string(rows);
     add_solver("program_ours/" + count, problems, 1e-10,
                [](const Problems& p, std::size_t i) { return p.programs[i].nearest(p.all[i].target).y; });
-    add_solver("program_with_rows/" + count, problems, 1e-10, [](const Problems& p, std::size_t i) {
-      static thread_local QuadraticProgram<6> program(256);
-      program.clear();
-      for (std::size_t j = 0; j < p.all[i].rows.size(); ++j)
-        program.add(p.all[i].rows[j], p.all[i].bounds[j]);
-      return program.nearest(p.all[i].target).y;
-    });
-    if (rows <= kMaxRowsOfSubsets)
-      add_solver("program_subsets/" + count, problems, 1e-10, [](const Problems& p, std::size_t i) {
-        return peers::nearest_of_all_subsets(p.all[i]).value_or(Vector::Zero());
-      });
 #ifdef REMOTE_TOUCH_NLOPT
     add_solver("program_nlopt/" + count, problems, 1e-6,
                [](const Problems& p, std::size_t i) { return peers::nlopt_nearest(p.all[i]); });

@@ -53,14 +53,6 @@ double depth_of_wheels(const Vec3& ray, double nearer_m) {
   return depth;
 }
 
-SphereTree tree_of(const std::vector<Sphere>& leaves) {
-  SphereTree tree;
-  for (std::size_t first = 0; first < leaves.size(); first += 8)
-    tree.add(std::span(leaves).subspan(first, std::min<std::size_t>(8, leaves.size() - first)));
-  tree.finish();
-  return tree;
-}
-
 double reach_of(const SphereTree& tree) {
   double reach_m = 0;
   for (const Sphere& leaf : tree.leaves()) reach_m = std::max(reach_m, leaf.centre.norm() + leaf.radius_m);
@@ -88,27 +80,6 @@ SphereTool generated_sphere_tool(const std::string& name, int max_leaves) {
   const auto body = generated_tool(name);
   const auto leaves = std::make_shared<const SphereTree>(make_tool_spheres(*body, max_leaves).spheres);
   return {body, leaves, reach_of(*leaves)};
-}
-
-SphereTool arm_of_leaves(int leaves) {
-  constexpr double kLength_m = 0.8, kArm_m = 0.03, kLeaf_m = 0.012;
-  constexpr int kAround = 10;
-  const double bend = 0.3;  // slope of the first and last link against the middle one
-  std::vector<Sphere> all;
-  for (int i = 0; i < leaves; ++i) {
-    const double along = kLength_m * ((i / kAround) / std::ceil(1.0 * leaves / kAround) - 0.5);
-    const double angle = 2 * std::numbers::pi * (i % kAround) / kAround;
-    const double aside = bend * std::max(0.0, std::abs(along) - kLength_m / 6);
-    all.push_back(
-        {{(kArm_m - kLeaf_m) * std::cos(angle), aside + (kArm_m - kLeaf_m) * std::sin(angle), along},
-         kLeaf_m});
-  }
-  auto body = std::make_shared<VoxelTool>();
-  const double across = kArm_m * kArm_m / 4 + kLength_m * kLength_m / 12;
-  body->inertia_m2 = Vec3(across, across, kArm_m * kArm_m / 2).asDiagonal();
-  const auto tree = std::make_shared<const SphereTree>(tree_of(all));
-  body->reach_m = reach_of(*tree);
-  return {body, tree, body->reach_m};
 }
 
 ToolPose device_around_wheel(int tick) {

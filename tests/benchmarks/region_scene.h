@@ -26,8 +26,6 @@ struct SphereTool {
   double reach_m;
 };
 SphereTool generated_sphere_tool(const std::string& name, int max_leaves);
-// Three links of 0.27 m length and 30 mm radius, one after the other, with leaves of 12 mm all around them.
-SphereTool arm_of_leaves(int leaves);
 
 // Pose of the device on its way around the first wheel at 0.1 m/s. It turns on the way, 10 mm inside the
 // regions.

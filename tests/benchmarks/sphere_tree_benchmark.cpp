@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,14 +27,6 @@ constexpr double kSettled_m = 1e-4;
 constexpr double kAtRest_m = 1e-5;  // both are the defaults of the renderer sphere-tree
 constexpr int kDetections = 30;
 constexpr int kLeaves = 112;
-
-// A tool is made when it is first needed, because some take seconds.
-const SphereTool& tool_of(const std::string& name, int leaves) {
-  static std::map<std::pair<std::string, int>, SphereTool> made;
-  const auto [entry, is_new] = made.try_emplace({name, leaves});
-  if (is_new) entry->second = name == "arm" ? arm_of_leaves(leaves) : generated_sphere_tool(name, leaves);
-  return entry->second;
-}
 
 struct NamedPose {
   std::string name;
@@ -83,8 +73,6 @@ void add_tree(const PointCloud& cloud) {
           tree.assign(cloud);
           benchmark::ClobberMemory();
         }
-        state.counters["leaves"] = static_cast<double>(tree.points().size());
-        state.counters["patches"] = static_cast<double>(tree.spheres().level(0).size());
       });
 }
 
@@ -102,26 +90,18 @@ bool detection_right(const SphereTool& tool, const PointCloud& cloud, const Tool
          contacts.near(pose, 0).deepest_m == deepest_m(expected);
 }
 
-void add_detection(const std::string& name, const PointCloud& cloud, const NamedPose& named) {
+void add_detection(const SphereTool& tool, const PointCloud& cloud, const NamedPose& named) {
   const ToolPose pose = named.pose;
   for (const Kernels* kernels : supported_kernels())
     add(
         "region_contacts/" + named.name + "/" + kernels->isa,
-        [=, &cloud] { return detection_right(tool_of(name, kLeaves), cloud, pose, *kernels); },
-        [=, &cloud](benchmark::State& state) {
-          const SphereTool& tool = tool_of(name, kLeaves);
+        [=, &tool, &cloud] { return detection_right(tool, cloud, pose, *kernels); },
+        [=, &tool, &cloud](benchmark::State& state) {
           RegionContacts contacts(tool.leaves, kLookAhead_m, *kernels);
           contacts.on_frame(formatted<RegionTree>(cloud));
-          TreeCollision collision(*tool.leaves, *kernels);
-          collision.on_frame(contacts.regions().spheres());
-          std::size_t chosen = 0;
-          for (auto _ : state) chosen = contacts.near(pose, 0).contacts.size();
-          state.counters["pairs"] = static_cast<double>(near_pairs(collision, pose, kLookAhead_m).size());
-          state.counters["leaves"] = static_cast<double>(contacts.regions().points().size());
-          state.counters["contacts"] = static_cast<double>(chosen);
+          for (auto _ : state) benchmark::DoNotOptimize(contacts.near(pose, 0).contacts.size());
         });
-  add("region_contacts_naive/" + named.name, [=, &cloud](benchmark::State& state) {
-    const SphereTool& tool = tool_of(name, kLeaves);
+  add("region_contacts_naive/" + named.name, [=, &tool, &cloud](benchmark::State& state) {
     RegionTree regions;
     regions.assign(cloud);
     for (auto _ : state) {
@@ -219,30 +199,24 @@ bool ride_right(const SphereTool& tool, const Course& course, const Kernels& ker
 void time_ride(benchmark::State& state, const SphereTool& tool, const Course& course,
                const Kernels& kernels) {
   LeastTimes least(course.ticks);
-  double detections = 0, max = 0, rides = 0;
   for (auto _ : state) {
     state.PauseTiming();
     Ride ride(tool, course, kernels);
     state.ResumeTiming();
     for (int tick = 0; tick < course.ticks; ++tick) {
       ride.begin(tick);
-      const ToolMotionReport report = least.time(tick, [&] { return ride.step(tick); });
-      detections += report.detections, max = std::max(max, double(report.detections));
+      least.time(tick, [&] { return ride.step(tick); });
     }
-    ++rides;
   }
-  state.counters["mean_ns"] = std::accumulate(least.ns.begin(), least.ns.end(), 0.0) / course.ticks;
   least.count_slowest(state);
-  state.counters["detections"] = detections / rides / course.ticks;
-  state.counters["max_detections"] = max;
 }
 
-void add_ride(const std::string& name, int leaves, const std::string& kind, const Course& course) {
+void add_ride(const SphereTool& tool, const std::string& name, const Course& course) {
   for (const Kernels* kernels : supported_kernels())
     add(
-        "region_tick/" + name + "_" + std::to_string(leaves) + "_" + kind + "/" + kernels->isa,
-        [=, &course] { return ride_right(tool_of(name, leaves), course, *kernels); },
-        [=, &course](benchmark::State& state) { time_ride(state, tool_of(name, leaves), course, *kernels); });
+        "region_tick/" + name + "/" + kernels->isa,
+        [=, &tool, &course] { return ride_right(tool, course, *kernels); },
+        [=, &tool, &course](benchmark::State& state) { time_ride(state, tool, course, *kernels); });
 }
 
 }  // namespace
@@ -250,13 +224,13 @@ void add_ride(const std::string& name, int leaves, const std::string& kind, cons
 
 int main(int argc, char** argv) {
   using namespace remote_touch::benchmarks;
+  const SphereTool key = generated_sphere_tool("key", kLeaves),
+                   husky = generated_sphere_tool("husky", kLeaves);
   add_tree(wheels());
-  for (const NamedPose& named : named_poses()) add_detection("key", wheels(), named);
-  for (const std::string name : {"key", "husky"}) {
-    add_ride(name, kLeaves, "slide", kSlide);
-    add_ride(name, kLeaves, "swallowed", kSwallow);
-  }
-  for (const int leaves : {28, 56, 250, 500, 1000}) add_ride("husky", leaves, "slide", kSlide);
-  add_ride("arm", 2000, "slide", kSlide);
+  for (const NamedPose& named : named_poses()) add_detection(key, wheels(), named);
+  add_ride(key, "key_slide", kSlide);
+  add_ride(key, "key_swallowed", kSwallow);
+  add_ride(husky, "husky_slide", kSlide);
+  add_ride(husky, "husky_swallowed", kSwallow);
   return run_benchmarks(argc, argv);
 }

@@ -2,14 +2,12 @@
 
 #include <pcl/features/integral_image_normal.h>
 #include <pcl/features/normal_3d_omp.h>
-#include <pcl/filters/fast_bilateral.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 #include <pcl/search/organized.h>
 
 #include <memory>
 #include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 #include <opencv2/rgbd.hpp>
 
 namespace remote_touch::peers {
@@ -36,13 +34,12 @@ std::vector<float> numbers(const Normals& normals) {
 using Integral = pcl::IntegralImageNormalEstimation<pcl::PointXYZ, pcl::Normal>;
 
 // The smoothing over 10 pixels and 0.02 is that of PCL's own example.
-Peer integral_image(const std::string& name, Integral::NormalEstimationMethod method,
-                    const Points::Ptr& points) {
+Peer integral_image(const Points::Ptr& points) {
   const auto normals = std::make_shared<Normals>();
-  return {name,
+  return {"pcl_covariance",
           [=] {
             Integral estimation;
-            estimation.setNormalEstimationMethod(method);
+            estimation.setNormalEstimationMethod(Integral::COVARIANCE_MATRIX);
             estimation.setMaxDepthChangeFactor(0.02f);
             estimation.setNormalSmoothingSize(10.0f);
             estimation.setInputCloud(points);
@@ -91,67 +88,7 @@ Peer fals(int window, const OrganisedPoints& from) {
 std::vector<Peer> normals_of_others(const OrganisedPoints& from) {
   cv::setNumThreads(1);
   const Points::Ptr points = pcl_points(from);
-  return {integral_image("pcl_covariance", Integral::COVARIANCE_MATRIX, points),
-          integral_image("pcl_3d_gradient", Integral::AVERAGE_3D_GRADIENT, points), organised_search(points),
-          fals(5, from), fals(7, from)};
-}
-
-// The filters use sigma_f = 0.025 m. The dissertation's filter does not use the distance between pixels.
-std::vector<Peer> filters_of_others(const OrganisedPoints& from) {
-  cv::setNumThreads(1);
-  const Points::Ptr points = pcl_points(from);
-  const auto filtered = std::make_shared<Points>();
-  const auto fast = [=] {
-    pcl::FastBilateralFilter<pcl::PointXYZ> filter;
-    filter.setSigmaS(4.5f), filter.setSigmaR(0.025f);
-    filter.setInputCloud(points);
-    filter.filter(*filtered);
-  };
-  const auto points_of_pcl = [=] {
-    std::vector<float> all;
-    for (const pcl::PointXYZ& p : *filtered) all.insert(all.end(), {p.x, p.y, p.z});
-    return all;
-  };
-  cv::Mat depth;
-  cv::extractChannel(cv_points(from), depth, 2);
-  const auto smooth = std::make_shared<cv::Mat>();
-  const auto points_of_opencv = [=] {
-    cv::Mat all;
-    cv::merge(std::vector<cv::Mat>{cv::Mat::zeros(depth.size(), CV_32F), cv::Mat::zeros(depth.size(), CV_32F),
-                                   *smooth},
-              all);
-    return numbers(all);
-  };
-  return {
-      {"pcl_fast_bilateral", fast, points_of_pcl},
-      {"opencv_bilateral_9", [=] { cv::bilateralFilter(depth, *smooth, 9, 0.025, 100); }, points_of_opencv}};
-}
-
-std::vector<std::pair<std::string, std::function<void(std::vector<float>&)>>> prefilters(
-    const DepthOfCamera& depth) {
-  cv::setNumThreads(1);
-  const auto from = std::make_shared<DepthOfCamera>(depth);
-  std::vector<std::pair<std::string, std::function<void(std::vector<float>&)>>> all;
-  for (const int window : {1, 3, 5, 7, 9, 13, 17}) {
-    const auto box = std::make_shared<BoxFilter>();
-    all.emplace_back(window == 1 ? "raw" : "box_" + std::to_string(window),
-                     [=](std::vector<float>& to) { box->run(*from, window, to); });
-  }
-  for (const int window : {5, 9})
-    all.emplace_back("bilateral_" + std::to_string(window), [=](std::vector<float>& to) {
-      to.resize(from->z_m.size());
-      const cv::Mat z(from->height, from->width, CV_32F, from->z_m.data());
-      cv::Mat smooth(from->height, from->width, CV_32F, to.data());
-      cv::bilateralFilter(z, smooth, window, 0.025, 100);
-    });
-  for (const int window : {3, 5})
-    all.emplace_back("median_" + std::to_string(window), [=](std::vector<float>& to) {
-      to.resize(from->z_m.size());
-      const cv::Mat z(from->height, from->width, CV_32F, from->z_m.data());
-      cv::Mat smooth(from->height, from->width, CV_32F, to.data());
-      cv::medianBlur(z, smooth, window);
-    });
-  return all;
+  return {integral_image(points), organised_search(points), fals(5, from), fals(7, from)};
 }
 
 }  // namespace remote_touch::peers

@@ -1,13 +1,10 @@
-// Filters and normals of other libraries for organised clouds, behind plain numbers, because their headers
+// Normals of other libraries for organised clouds, behind plain numbers, because their headers
 // and ours need different settings of Eigen.
 #pragma once
 
 #include <functional>
 #include <string>
-#include <utility>
 #include <vector>
-
-#include "tests/benchmarks/peers/published_normals.h"
 
 namespace remote_touch::peers {
 
@@ -18,7 +15,7 @@ struct OrganisedPoints {
 };
 
 // run() does the work that is timed, on a copy of the points in the peer's own form. result() then has three
-// numbers per pixel: a normal with any sign, or a point of a filter.
+// numbers per pixel: a normal with any sign.
 struct Peer {
   std::string name;
   std::function<void()> run;
@@ -27,9 +24,5 @@ struct Peer {
 
 // Each peer uses one thread.
 std::vector<Peer> normals_of_others(const OrganisedPoints& points);
-std::vector<Peer> filters_of_others(const OrganisedPoints& points);
-// Filters of depths by name, for the normals that are computed from a depth image. Each writes its image.
-std::vector<std::pair<std::string, std::function<void(std::vector<float>&)>>> prefilters(
-    const DepthOfCamera& depth);
 
 }  // namespace remote_touch::peers

@@ -1,11 +1,12 @@
-// Filters and normals compared with those of PCL and OpenCV: one scene with known normals and 1.5 mm of
-// noise. The rms angle to the truth is reported beside each time. raw: every method receives the points as
-// measured (ours without its filter); filtered: all receive our filtered points; both: our filter and our
-// normals.
+// Normals compared with those of PCL and OpenCV: one scene with known normals and 1.5 mm of noise. The others
+// receive the points as measured; ours is the filter and the normals. Before a method is timed, its normals
+// are compared with the true ones; it also reports their rms angle.
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,7 +15,6 @@
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peers/peer_depth.h"
-#include "tests/benchmarks/peers/peer_points.h"
 #include "tests/support/depth_scenes.h"
 
 namespace remote_touch::benchmarks {
@@ -22,56 +22,47 @@ namespace {
 
 const RigidTransform kIdentity = RigidTransform::Identity();
 constexpr int kRim = 12;  // width of the image's border, whose pixels are not judged
+// Normals that follow the surface at all. Directions at random are 57 degrees apart on average.
+constexpr double kMostError_deg = 30, kLeastFraction = 0.5;
 
-// Reports the root of the mean square of error(i) over the pixels inside the rim that have a number, and
-// their fraction.
-template <class Error>
-void report(benchmark::State& state, const CameraIntrinsics& camera, const std::string& unit,
-            const Error& error) {
+using NormalAt = std::function<Vec3(std::size_t)>;
+
+// The root of the mean square of the angles to the true normals, over the pixels inside the rim that have a
+// normal; infinite if these are too few. The sign of a normal does not matter.
+double rms_deg(const scenes::DepthScene& truth, const NormalAt& normal_at) {
   double sum = 0, count = 0, all = 0;
-  for (int v = kRim; v < camera.height - kRim; ++v)
-    for (int u = kRim; u < camera.width - kRim; ++u, ++all) {
-      const double e = error(static_cast<std::size_t>(v * camera.width + u));
-      if (!std::isnan(e)) sum += e * e, ++count;
+  for (int v = kRim; v < truth.camera.height - kRim; ++v)
+    for (int u = kRim; u < truth.camera.width - kRim; ++u, ++all) {
+      const auto i = static_cast<std::size_t>(v * truth.camera.width + u);
+      const Vec3 n = normal_at(i), expected = truth.normals[i];
+      const double angle = std::atan2(n.cross(expected).norm(), std::abs(n.dot(expected)));
+      if (!std::isnan(angle)) sum += angle * angle, ++count;
     }
-  state.counters["rms_" + unit] = std::sqrt(sum / count);
-  state.counters["fraction"] = count / all;
+  if (count < kLeastFraction * all) return std::numeric_limits<double>::infinity();
+  return std::sqrt(sum / count) * 180 / 3.14159265358979323846;
 }
 
-Vec3 vector(const std::vector<float>& numbers, std::size_t i) {
-  return {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+void add_normals(const std::string& name, const std::function<void()>& run,
+                 const std::function<double()>& error_deg) {
+  add(
+      name,
+      [=] {
+        run();
+        return error_deg() < kMostError_deg;
+      },
+      [=](benchmark::State& state) {
+        omp_set_num_threads(1);
+        for (auto _ : state) run();
+        state.counters["rms_deg"] = error_deg();
+      });
 }
 
-void add_ours(const scenes::DepthScene& truth, const DepthImage& depth, const std::string& name,
-              bool filter) {
-  for (const Kernels* kernels : supported_kernels()) {
-    DepthPipelineSettings settings;
-    settings.filter = filter;
-    const auto pipeline = std::make_shared<DepthPipeline>(settings, *kernels);
-    const auto cloud = std::make_shared<PointCloud>();
-    benchmark::RegisterBenchmark(
-        (name + "/ours/" + kernels->isa).c_str(), [=, &truth](benchmark::State& state) {
-          omp_set_num_threads(1);
-          for (auto _ : state) pipeline->process(depth, truth.camera, kIdentity, *cloud);
-          report(state, truth.camera, "deg",
-                 [&](std::size_t i) { return angle_deg(cloud->normal(i), truth.normals[i]); });
-        });
-  }
-}
-
-void add_peers(const scenes::DepthScene& truth, const std::string& name, const std::vector<peers::Peer>& all,
-               bool normals) {
-  for (const peers::Peer& peer : all)
-    benchmark::RegisterBenchmark((name + "/" + peer.name).c_str(), [=, &truth](benchmark::State& state) {
-      for (auto _ : state) peer.run();
-      const std::vector<float> got = peer.result();
-      if (normals)
-        report(state, truth.camera, "deg",
-               [&](std::size_t i) { return angle_deg(vector(got, i), truth.normals[i]); });
-      else
-        report(state, truth.camera, "mm",
-               [&](std::size_t i) { return 1e3 * (vector(got, i).z() - truth.depth.z_m[i]); });
-    });
+peers::OrganisedPoints organised(const PointCloud& cloud) {
+  const CameraIntrinsics& camera = cloud.image->camera;
+  peers::OrganisedPoints points{camera.width, camera.height, camera.fx, camera.cx, camera.cy, {}};
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    for (const double x : {cloud.x[i], cloud.y[i], cloud.z[i]}) points.xyz.push_back(static_cast<float>(x));
+  return points;
 }
 
 }  // namespace
@@ -83,15 +74,19 @@ int main(int argc, char** argv) {
   const scenes::DepthScene truth = scenes::waves(scenes::kinect(), 0.8, 0.02, 0.3);
   DepthImage depth = truth.depth;
   scenes::add_noise(depth, 0.0015, 1);
-  const PointCloud measured = cloud_from_depth(depth, truth.camera, kIdentity);
-  const PointCloud filtered =
-      DepthPipeline({}, *supported_kernels().back()).process(depth, truth.camera, kIdentity);
-  const peers::OrganisedPoints raw_points = organised(measured), filtered_points = organised(filtered);
-  add_ours(truth, depth, "both", true);
-  add_ours(truth, depth, "raw", false);
-  add_ours(truth, {depth.width, depth.height, filtered.z}, "filtered", false);
-  add_peers(truth, "raw", peers::normals_of_others(raw_points), true);
-  add_peers(truth, "filtered", peers::normals_of_others(filtered_points), true);
-  add_peers(truth, "filter", peers::filters_of_others(raw_points), false);
+  for (const Kernels* kernels : supported_kernels()) {
+    const auto pipeline = std::make_shared<DepthPipeline>(DepthPipelineSettings{}, *kernels);
+    const auto cloud = std::make_shared<PointCloud>();
+    add_normals(
+        std::string("normals/ours/") + kernels->isa,
+        [=, &truth, &depth] { pipeline->process(depth, truth.camera, kIdentity, *cloud); },
+        [=, &truth] { return rms_deg(truth, [&](std::size_t i) { return cloud->normal(i); }); });
+  }
+  for (const peers::Peer& peer :
+       peers::normals_of_others(organised(cloud_from_depth(depth, truth.camera, kIdentity))))
+    add_normals("normals/" + peer.name, peer.run, [&truth, result = peer.result] {
+      const std::vector<float> n = result();
+      return rms_deg(truth, [&](std::size_t i) { return Vec3(n[3 * i], n[3 * i + 1], n[3 * i + 2]); });
+    });
   return run_benchmarks(argc, argv);
 }

@@ -124,7 +124,7 @@ double max_diagonal(const MeshAndPoints& from) {
 // pairs that cross.
 ToolPeer gimpact(const std::string& name, const MeshAndPoints& from, double side_m) {
   const double radius = side_m / std::sqrt(3.0);
-  ToolPeer peer{name, {}, radius, std::sqrt(3.0) * radius + max_diagonal(from), true, {}, {}};
+  ToolPeer peer{name, {}, radius, std::sqrt(3.0) * radius + max_diagonal(from), {}, {}};
   for (std::size_t i = 0; i < from.points_W.size(); ++i)
     peer.bodies_W.push_back(triangle_around(from.points_W[i], from.normals_W[i], side_m));
   const auto collision = std::make_shared<GImpact>(from, peer.bodies_W);
@@ -205,12 +205,12 @@ class Octree {
 };
 
 // The peer finds pairs of cell and triangle without the points of contact, as our list does.
-ToolPeer octree(const std::string& name, const MeshAndPoints& from, std::size_t max_contacts) {
+ToolPeer octree(const MeshAndPoints& from) {
   const auto collision = std::make_shared<Octree>(from);
   const double diagonal = std::sqrt(3.0) * kCell_m;
-  ToolPeer peer{name, {}, diagonal, diagonal, max_contacts > 1, {}, {}};
+  ToolPeer peer{"fcl_octree", {}, diagonal, diagonal, {}, {}};
   for (const Coordinates& p : from.points_W) peer.bodies_W.push_back(collision->cell_of(p));
-  const fcl::CollisionRequestd request(max_contacts, false);
+  const fcl::CollisionRequestd request(1'000'000, false);
   peer.touch = [=](const Pose& pose) { return collision->touch(pose, request); };
   peer.touched = [=] { return collision->touched(); };
   return peer;
@@ -219,10 +219,9 @@ ToolPeer octree(const std::string& name, const MeshAndPoints& from, std::size_t 
 }  // namespace
 
 std::vector<ToolPeer> tool_peers(const MeshAndPoints& from) {
-  constexpr std::size_t kMaxContacts = 1'000'000;
   // The triangles are as wide as a voxel of ours, and as wide as the points are apart.
   return {gimpact("bullet_gimpact_0.5mm", from, 5e-4), gimpact("bullet_gimpact_2mm", from, 2e-3),
-          octree("fcl_octree_all", from, kMaxContacts), octree("fcl_octree_first", from, 1)};
+          octree(from)};
 }
 
 }  // namespace remote_touch::peers

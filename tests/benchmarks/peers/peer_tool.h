@@ -28,7 +28,6 @@ struct ToolPeer {
   std::vector<std::vector<Coordinates>> bodies_W;  // corners of the convex body of every point
   // Largest distance from the surface, outside and inside, of a point whose body is found.
   double max_outside_m, max_inside_m;
-  bool all;  // false: the search ends at the first contact
   // Does the work that is timed, and returns the number of contacts. A body has one with each triangle that
   // it meets.
   std::function<std::size_t(const Pose&)> touch;

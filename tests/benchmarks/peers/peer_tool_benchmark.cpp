@@ -1,4 +1,4 @@
-// The collision list compared with the collision detection of Bullet, FCL and a voxmap with a pointshell.
+// The collision list compared with the collision detection of Bullet and FCL.
 // There are 2500 points, and the tool touches them and is pressed in. Other libraries find the points that
 // the surface passes through, and ours finds those in shell and interior voxels, so there is no one right
 // list. Each is judged by the exact distance of the points to the mesh, in poses that are raised, lowered and
@@ -7,7 +7,6 @@
 //   and is the list of the plain loop over all points;
 // - others find every body with corners on both sides of the surface, and none whose point is farther from
 //   the surface than ToolPeer states;
-// - the first contact alone is one of those, and there is one as soon as any body has corners on both sides;
 // - all find nothing away from the points.
 #include <benchmark/benchmark.h>
 
@@ -23,7 +22,6 @@
 #include "core/mesh/triangle_tree.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peers/peer_tool.h"
-#include "tests/benchmarks/peers/voxmap_pointshell.h"
 #include "tests/benchmarks/tool_scene.h"
 #include "tests/support/formatted.h"
 
@@ -32,7 +30,6 @@ namespace {
 
 constexpr double kUndecided_m = 1e-5;  // others compute in float, or iterate up to 1e-6
 constexpr double kPressed_m = 2e-3;
-constexpr double kSpacing_m = 2e-3, kDiskOfSpacing = 0.75;
 constexpr int kMinCrossing = 100;  // bodies in all poses; the comparison shows too little with fewer
 
 peers::Coordinates coordinates(const Vec3& p) {
@@ -117,20 +114,17 @@ bool ours_right(const TouchFinder& finder, const Surface& surface) {
 bool right(const peers::ToolPeer& peer, const Surface& surface) {
   int crossing = 0;
   for (const ToolPose& pose : surface.poses()) {
-    const std::size_t contacts = peer.touch(plain(pose));
+    peer.touch(plain(pose));
     const std::vector<std::size_t> touched = peer.touched();
     const std::set<std::size_t> found(touched.begin(), touched.end());
-    int crossing_here = 0;
     for (std::size_t i = 0; i < peer.bodies_W.size(); ++i) {
       const double d = surface.signed_m(pose, surface.scene().cloud.point(i));
       const bool in_reach = d <= peer.max_outside_m + kUndecided_m && -d <= peer.max_inside_m + kUndecided_m;
       if (found.contains(i) && !in_reach) return false;
       if (!in_reach || !surface.crosses(pose, peer.bodies_W[i])) continue;
-      if (peer.all && !found.contains(i)) return false;
-      ++crossing_here;
+      if (!found.contains(i)) return false;
+      ++crossing;
     }
-    if (!peer.all && (contacts > 1 || (contacts == 0 && crossing_here > 0))) return false;
-    crossing += crossing_here;
   }
   return crossing >= kMinCrossing && peer.touch(plain(surface.scene().separated)) == 0;
 }
@@ -149,7 +143,6 @@ void add_ours(const Surface& surface, const std::string& where, const ToolPose& 
             finder->in_tool(shaken(pose, i++));
             benchmark::ClobberMemory();
           }
-          state.counters["found"] = static_cast<double>(finder->in_tool(pose).size());
         });
   }
 }
@@ -161,41 +154,6 @@ void add_peer(const peers::ToolPeer& peer, const Surface& surface, const std::st
       [=, &peer](benchmark::State& state) {
         int i = 0;
         for (auto _ : state) benchmark::DoNotOptimize(peer.touch(plain(shaken(pose, i++))));
-        state.counters["contacts"] = static_cast<double>(peer.touch(plain(pose)));
-        const std::vector<std::size_t> touched = peer.touched();
-        state.counters["found"] =
-            static_cast<double>(std::set<std::size_t>(touched.begin(), touched.end()).size());
-      });
-}
-
-// The voxmap's points are those of the tool, so the list cannot be the same. It is compared with a plain
-// search in the list of its own surface voxels, and its shell with the mesh. A point on the border of two
-// voxels may count for either.
-bool voxmap_right(VoxmapPointshell& voxmap, const Surface& surface) {
-  std::size_t touched = 0;
-  for (const ToolPose& pose : surface.poses()) {
-    const auto found = voxmap.touch(pose), expected = voxmap.plain_touch(pose);
-    const double scale = 1e-9 + expected.force_W.norm();
-    if (found.points != expected.points || (found.force_W - expected.force_W).norm() > 1e-9 * scale ||
-        (found.torque_W - expected.torque_W).norm() > 1e-9 * scale)
-      return false;
-    touched += found.points;
-  }
-  return touched >= kMinCrossing && voxmap.touch(surface.scene().separated).points == 0 &&
-         voxmap.shell_error_m() < kUndecided_m + 0.1 * surface.scene().tool->grid.size_m;
-}
-
-void add_voxmap(const Surface& surface, const std::string& where, const ToolPose& pose, const char* name,
-                double voxel_m) {
-  const auto voxmap = std::make_shared<VoxmapPointshell>(*surface.scene().tool, surface.scene().cloud,
-                                                         voxel_m, kDiskOfSpacing * kSpacing_m);
-  add(
-      "list/" + where + "/" + name, [=, &surface] { return voxmap_right(*voxmap, surface); },
-      [=](benchmark::State& state) {
-        int i = 0;
-        for (auto _ : state) benchmark::DoNotOptimize(voxmap->touch(shaken(pose, i++)).points);
-        state.counters["found"] = static_cast<double>(voxmap->touch(pose).points);
-        state.counters["contacts"] = static_cast<double>(voxmap->shell_size());
       });
 }
 
@@ -205,7 +163,7 @@ void add_voxmap(const Surface& surface, const std::string& where, const ToolPose
 int main(int argc, char** argv) {
   using namespace remote_touch;
   using namespace remote_touch::benchmarks;
-  const ToolScene scene = tool_scene("2500", generated_tool("husky"), 50, kSpacing_m);
+  const ToolScene scene = tool_scene("2500", generated_tool("husky"), 50, 2e-3);
   const Surface surface(scene);
   const std::vector<peers::ToolPeer> others = peers::tool_peers(plain(scene));
   const std::vector<std::pair<std::string, ToolPose>> poses = {
@@ -213,8 +171,6 @@ int main(int argc, char** argv) {
   for (const auto& [where, pose] : poses) {
     add_ours(surface, where, pose);
     for (const peers::ToolPeer& peer : others) add_peer(peer, surface, where, pose);
-    add_voxmap(surface, where, pose, "voxmap_0.5mm", 5e-4);
-    add_voxmap(surface, where, pose, "voxmap_2mm", kSpacing_m);
   }
   return run_benchmarks(argc, argv);
 }
