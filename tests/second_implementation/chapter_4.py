@@ -1,6 +1,6 @@
 """Chapter 4 from its equations: the proxy of 4.2 on many clouds at once, and the lifts of 4.3.2.
 
-Readings, where the print leaves a choice (analysis/README.md has the evidence for each):
+Readings, where the print leaves a choice (analysis/theory/README.md has the evidence for each):
 - (4.3) uses the estimate and the normal from before the update; (4.13) then takes the first step, whatever the state.
 - (4.9): the nearer root of the points ahead, never further than the HIP.
 - (4.7): the length of (4.11) and (4.12), with u in place of its projection.

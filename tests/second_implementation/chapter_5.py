@@ -1,6 +1,6 @@
 """Chapter 5 from its equations: one proxy among points with forbidden regions, and the crossings of 5.3.2.
 
-Readings, where the print leaves a choice (analysis/README.md has the evidence for each):
+Readings, where the print leaves a choice (analysis/theory/README.md has the evidence for each):
 - xi of 5.3 is 1/3: (5.13) multiplies it by r_1 once more. (5.7), (5.8): weighted means, without the factor M.
 - (5.9): the nearer root of the points ahead, never further than the HIP. A tick that would end in a region goes on
   with (5.11) until it does not.

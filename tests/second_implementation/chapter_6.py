@@ -4,7 +4,7 @@ The tool is turned about the axis along which the walls stand, so the plane acro
 there, the hull of four discs (core/dissertation/tool/shape/generated_tools.cpp, "husky" and "block"); a motion is two
 displacements and a rotation.
 
-Readings, where the print leaves a choice (analysis/README.md has the evidence for each):
+Readings, where the print leaves a choice (analysis/theory/README.md has the evidence for each):
 - 6.2.2: a point less than a voxel deep in the tool is in contact, a deeper one in collision.
 - (6.1): a displacement per unit step. (6.4): the factor 1/2 changes nothing.
 - 6.2.5: the motion that is found is limited to s_max; sub-steps are half a voxel.

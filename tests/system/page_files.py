@@ -12,9 +12,10 @@ class PageError(Exception):
 
 
 def pages(root):
-    """Every .md below the root, in order. Folders with a dot are those of programs, such as .git and .pytest_cache."""
+    """Every .md below the root, in order. Folders with a dot are those of programs, except .github."""
     for folder, subfolders, files in os.walk(root):
-        subfolders[:] = sorted(name for name in subfolders if name not in FOLDERS_WITHOUT_PAGES and name[0] != ".")
+        subfolders[:] = sorted(name for name in subfolders if name not in FOLDERS_WITHOUT_PAGES
+                               and (name[0] != "." or name == ".github"))
         yield from (pathlib.Path(folder, name) for name in sorted(files) if name.endswith(".md"))
 
 
