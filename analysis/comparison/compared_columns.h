@@ -52,17 +52,10 @@ class StoredTrace final : public StoredColumns {
   std::vector<std::uint64_t> running_hash() const;  // kRunningHash
 };
 
-// The tables of a figure; columns are named table/column. Those of a figure of schema /2 have their present
-// names.
+// The tables of a figure; columns are named table/column.
 class StoredFigure final : public StoredColumns {
  public:
   explicit StoredFigure(Hdf5Reader hdf5);
-  Column column(const std::string& name) const override;
-  Column rows(const std::string& name, std::size_t first, std::size_t count) const override;
-
- private:
-  std::string stored_name(const std::string& name) const;
-  std::vector<std::string> stored_names_;  // as in the file, in the order of column_names()
 };
 
 class ColumnsInMemory final : public ColumnSource {

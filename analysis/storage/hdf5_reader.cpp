@@ -141,17 +141,12 @@ void Hdf5Reader::require_kind(const std::string& kind, const std::string& made_b
                               ": expected " + schema_name(kind) + ", " + made_by);
 }
 
-// Other versions have other names of columns and keys. Those of the version before this one are translated,
-// so its files are read; other versions are refused.
+// Other versions have other names of columns and keys.
 void Hdf5Reader::require_version() const {
   const std::string schema = attribute(attributes_, "schema");
-  const std::string current = std::string(1, '/') + std::to_string(kSchemaVersion);
-  if (!schema.starts_with(kSchemaPrefix) || schema.ends_with(current) || is_earlier_schema(schema)) return;
-  const std::string readable = schema.substr(0, schema.rfind('/')) + current;
-  if (schema.ends_with("/1"))
-    throw InputError(file_, "written by version 0.1 (schema " + schema + "); this version reads " + readable +
-                                ": run it again");
-  throw InputError(file_, "is of schema " + schema + ": expected " + readable);
+  const std::string present = present_schema(schema);
+  if (!schema.starts_with(kSchemaPrefix) || schema == present || is_earlier_schema(schema)) return;
+  throw InputError(file_, "is of schema " + schema + ": expected " + present + "; make the result again");
 }
 
 Hdf5Reader::Hdf5Reader(std::string file, std::shared_ptr<const Hdf5Source> content)

@@ -28,10 +28,6 @@ Column state_column(const SweepResult& result) {
           {"not_sampled", "pending", "done", "failed", "elsewhere"}};
 }
 
-Column notes_column(const SweepResult& result) {
-  return {"notes", "1", "notes on the run, one bit for each of note_kinds", result.notes};
-}
-
 std::vector<std::uint64_t> note_numbers(const Column& notes) {
   if (const auto* numbers = std::get_if<std::vector<std::uint64_t>>(&notes.values)) return *numbers;
   std::vector<std::uint64_t> numbers;
@@ -39,6 +35,12 @@ std::vector<std::uint64_t> note_numbers(const Column& notes) {
     for (const std::int32_t bits : *narrow)
       numbers.push_back(static_cast<std::uint64_t>(static_cast<std::int64_t>(bits)));
   return numbers;
+}
+
+namespace {
+
+Column notes_column(const SweepResult& result) {
+  return {"notes", "1", "notes on the run, one bit for each of note_kinds", result.notes};
 }
 
 Column error_column(const SweepResult& result) {
@@ -49,6 +51,7 @@ Column round_column(const SweepResult& result) {
   return {"round", "1", "round of refinement that added the run; -1 if none did", result.round};
 }
 
+// pre: the result is a part.
 Column run_column(const SweepResult& result) {
   return {"run", "1", "number of the run in the whole sweep", *result.part};
 }
@@ -58,8 +61,6 @@ Column replicate_column(const SweepResult& result) {
   for (int i = 0; i < result.replicates; ++i) numbers.push_back(i);
   return {"replicate", "1", "repetition with other noise", numbers};
 }
-
-namespace {
 
 using Storage = Hdf5Writer::Storage;
 

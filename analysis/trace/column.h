@@ -52,12 +52,6 @@ std::vector<std::string> split_names(const std::string& joined);
 // std::bad_variant_access if the column is not of type double.
 const std::vector<double>& numbers(const Table& table, const std::string& column);
 
-// Columns of figures that earlier versions wrote under other names.
-
-// Returns the present name of a column that a figure of schema /2 has; any other name is returned as it is.
-// name: that of the column, or table/column.
-std::string present_column(const std::string& name);
-
 // Allowed deviation of a number from the number of a baseline.
 
 // The deviation |candidate - baseline| may be at most absolute + relative * |baseline|. If both are zero, the

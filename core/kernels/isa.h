@@ -1,6 +1,4 @@
-// The x86-64 levels of the kernels that the running machine supports. A program may use
-// kernels_for(best_isa()), but only a measurement (runners/experiment/provenance/kernel_choice.h) shows which
-// level is the fastest. All levels compute the same bits.
+// The x86-64 levels of the kernels that the running machine supports. All levels compute the same bits.
 #pragma once
 
 #include <span>

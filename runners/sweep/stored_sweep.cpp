@@ -90,38 +90,14 @@ std::vector<std::size_t> rows_of(const Column& axis, const std::string& value) {
   return same_text.empty() ? rows_with(axis, six_digits(*number)) : same_text;
 }
 
-// Returns the end of a refusal of a value that was renamed; nothing for other values.
-std::string value_hint(const Column& axis, const std::string& value) {
-  std::optional<std::string> renamed = new_value(axis.name, value, axis.value_names);
-  if (!renamed) renamed = new_value(axis.long_name, value, axis.value_names);  // of scenario.name
-  return renamed ? "; " + value + " is now " + *renamed : "";
-}
-
 std::size_t row_of(const NamedCell& cell, const Column& axis, const std::string& value) {
   const std::vector<std::size_t> rows = rows_of(axis, value);
-  if (rows.empty())
-    refuse_cell(cell, "for " + axis.name + " one of " + values_text(axis) + value_hint(axis, value));
+  if (rows.empty()) refuse_cell(cell, "for " + axis.name + " one of " + values_text(axis));
   if (rows.size() > 1)
     refuse_cell(cell, "for " + axis.name + " a number with more digits, or the indices on the axes: " +
                           std::to_string(rows.size()) + " values are " + value_text(axis, rows.front()) +
                           " with six digits");
   return rows.front();
-}
-
-// Returns the present name of the axis that the item "NAME=VALUE" gives by an earlier name.
-std::optional<std::string> present_axis(const std::string& item, const std::vector<Column>& axes) {
-  const std::size_t equals = item.find('=');
-  if (equals == std::string::npos) return {};
-  return new_name(item.substr(0, equals), names_of(axes));
-}
-
-// Returns the end of a refusal with the present names of axes that have earlier names in the text.
-std::string axes_hint(const std::string& text, const std::vector<Column>& axes) {
-  std::string hint;
-  for (const std::string& item : items_of(text))
-    if (const std::optional<std::string> renamed = present_axis(item, axes))
-      hint.append("; ").append(item, 0, item.find('=')).append(" is now ").append(*renamed);
-  return hint;
 }
 
 // Splits "NAME=VALUE,NAME=VALUE" at the commas before the name of an axis. Other commas belong to a value:
@@ -131,7 +107,7 @@ std::vector<std::string> assignments_of(const std::string& text, const std::vect
   for (const std::string& item : items_of(text)) {
     const bool begins = std::any_of(axes.begin(), axes.end(),
                                     [&](const Column& axis) { return item.starts_with(axis.name + "="); });
-    if (begins || assignments.empty() || present_axis(item, axes))
+    if (begins || assignments.empty())
       assignments.push_back(item);
     else
       assignments.back() += "," + item;
@@ -159,8 +135,7 @@ std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
     names.append(names.empty() ? "" : ",").append(result.axes[i].name + "=VALUE");
     if (indices[i]) found.push_back(*indices[i]);
   }
-  if (!are_known || found.size() != indices.size())
-    refuse_cell(cell, names + axes_hint(cell.text, result.axes));
+  if (!are_known || found.size() != indices.size()) refuse_cell(cell, names);
   return result.cell_at(found);
 }
 

@@ -14,7 +14,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/sweep/sweep_axis.h"
 #include "runners/sweep/sweep_parts.h"

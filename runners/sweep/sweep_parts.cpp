@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
@@ -256,10 +255,7 @@ std::vector<Measure> read_measures(const Json& json, const std::string& label) {
   for (const Json& name : *found) {
     const auto is_it = [&](const Measure& measure) { return name == measure.name; };
     const auto measure = std::find_if(measures().begin(), measures().end(), is_it);
-    if (measure == measures().end()) {
-      const auto renamed = new_name(name.is_string() ? name.get<std::string>() : "", names);
-      refuse(name.dump() + " is unknown" + (renamed ? "; it is now " + *renamed : ""));
-    }
+    if (measure == measures().end()) refuse(name.dump() + " is unknown");
     if (std::any_of(chosen.begin(), chosen.end(), is_it)) refuse(name.dump() + " appears twice");
     chosen.push_back(*measure);
   }

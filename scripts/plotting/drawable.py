@@ -1,12 +1,11 @@
 """Reads what can be drawn: a figure, or a trace or a sweep as one."""
-from plotting.figure_file import SCHEMAS, Figure, open_file, read_figure, text
+from plotting.figure_file import SCHEMA, Figure, open_file, read_figure, text
 from plotting.plot_error import PlotError
 from plotting.results import trace_panels
 from plotting.sweeps import left_out, sweep_panels
 
-VERSIONS = [schema.split("/")[1] for schema in SCHEMAS]
-TRACES = [f"remote-touch-trace/{version}" for version in VERSIONS]
-SWEEPS = [f"remote-touch-sweep/{version}" for version in VERSIONS]
+TRACES = ("remote-touch-trace/3", "remote-touch-trace/2")  # baselines are of the earlier version
+SWEEPS = ("remote-touch-sweep/3", "remote-touch-sweep/2")
 
 
 def read_drawable(path, wanted=()):
@@ -21,6 +20,6 @@ def read_drawable(path, wanted=()):
             return Figure(path.stem, {name: text(file.attrs, name) for name in file.attrs} | {"heading": heading}, panels)
     if schema.startswith("remote-touch-tally/"):
         raise PlotError(f"{path}: is a tally: expected a figure, which `remote-touch analyse {path} -o FILE.h5` makes of it")
-    if schema not in SCHEMAS:
+    if schema != SCHEMA:
         raise PlotError(f"{path}: schema {schema!r}: expected a figure, a trace or a sweep of this program")
     return read_figure(path)

@@ -9,7 +9,6 @@ import numpy as np
 from plotting.plot_error import PlotError
 
 SCHEMA = "remote-touch-figure/3"
-SCHEMAS = (SCHEMA, "remote-touch-figure/2")  # the second is of an earlier version, and is still read
 STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "intervals", "image", "surface",
           "letters")
 NEED_Z = ("map", "band", "intervals", "image", "surface", "letters")

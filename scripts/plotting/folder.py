@@ -7,7 +7,7 @@ import sys
 
 from plotting.claims import is_set_up, read_claims, verdict
 from plotting.drawable import read_drawable
-from plotting.figure_file import SCHEMA, SCHEMAS, schema_of
+from plotting.figure_file import SCHEMA, schema_of
 from plotting.layout import draw_figure
 from plotting.page import page, write_page
 from plotting.plot_error import PlotError
@@ -24,9 +24,9 @@ def sort_key(path):
 def is_figure(path):
     """A note about every file that is none."""
     schema = schema_of(path)
-    if schema not in SCHEMAS:
+    if schema != SCHEMA:
         print(f"plot: {path} skipped: schema {schema!r}, expected {SCHEMA!r}", file=sys.stderr)
-    return schema in SCHEMAS
+    return schema == SCHEMA
 
 
 def plot_file(path, files, titled=False, wanted=()):

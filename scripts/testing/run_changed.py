@@ -29,7 +29,7 @@ OF_THE_PROGRAM = [
     (r"runners/presentation/view/|tests/system/viewer/", ["command_line_view", "viewer_.*"]),
     (r"runners/interfaces/python/|tests/runners/interfaces/python/", ["python_module"]),
     (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "plot_style", "scorecard_page", "figures_quick"]),
-    (r"scripts/benchmark|data/benchmarks/|tests/benchmarks/README\.md$", ["benchmark_page", "benchmark_tables"]),
+    (r"scripts/benchmark|data/benchmarks/|tests/benchmarks/README\.md$", ["benchmark_tables"]),
     (r".*\.md$", ["page_links", "reference"]),
     (r"scripts/testing/|tests/(system/(run|evidence)_\w+|allowed_skips)$", ["run_ctest", "run_changed", "evidence"]),
     (r"data/sweeps/", ["figures_quick", "page_commands"]),

@@ -104,15 +104,6 @@ void judge_columns(ResultComparison& result) {
   conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
 }
 
-// Returns the end of a refusal of a column or measure that was renamed; nothing for other names.
-std::string rename_hint(const std::string& name, const std::vector<std::string>& known) {
-  if (const std::optional<std::string> renamed = new_name(name, known))
-    return "; " + name + " is now " + *renamed;
-  const std::string column = present_column(name);
-  const bool is_renamed = column != name && std::find(known.begin(), known.end(), column) != known.end();
-  return is_renamed ? "; " + name + " is now " + column : "";
-}
-
 // Throws InputError for a tolerance that is of no column or measure: a misspelt one would leave its column
 // exact without a message.
 void check_names(const Tolerances& tolerances, const std::vector<std::string>& names,
@@ -120,11 +111,8 @@ void check_names(const Tolerances& tolerances, const std::vector<std::string>& n
   for (const auto& [name, tolerance] : tolerances) {
     if (name == "*" || measures.contains(name) || std::find(names.begin(), names.end(), name) != names.end())
       continue;
-    std::vector<std::string> known = names;
-    for (const auto& measure : measures) known.push_back(measure.first);
     throw InputError("tolerance of " + name, "there is no such column: expected " + joined(names, ", ") +
-                                                 (measures.empty() ? "" : ", or a measure") +
-                                                 rename_hint(name, known));
+                                                 (measures.empty() ? "" : ", or a measure"));
   }
 }
 

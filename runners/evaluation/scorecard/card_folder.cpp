@@ -16,7 +16,6 @@
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
@@ -31,9 +30,6 @@ void require_all_of(const std::filesystem::path& file, const BenchmarkPlan& plan
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return;
   const TextAttributes attributes = Hdf5Reader(file).attributes();
-  if (const std::string schema = attribute(attributes, "schema"); is_earlier_schema(schema))
-    throw InputError(file.string(), "was written with the earlier schema " + schema +
-                                        ": expected another folder, in which the scorecard starts again");
   const Json stored = Json::parse(attribute(attributes, "config"), nullptr,
                                   false);  // a broken text gives no object
   const Json wanted = Json::parse(configuration_of(plan));
@@ -74,14 +70,10 @@ constexpr const char* kMadeBy = "a card that `remote-touch scorecard store` wrot
 Table table_in(const Hdf5Reader& file, const std::string& name) {
   Table table{name, {}};
   const std::string folder = "/tables/" + name + "/";
-  const bool is_earlier = is_earlier_schema(attribute(file.attributes(), "schema"));
-  const auto present_name = [&](const std::string& column) {
-    return is_earlier ? present_column(column) : column;
-  };
   for (const std::string& path : file.datasets()) {
     if (!path.starts_with(folder)) continue;
     table.columns.push_back(file.column(path));
-    table.columns.back().name = present_name(path.substr(folder.size()));
+    table.columns.back().name = path.substr(folder.size());
   }
   if (table.columns.empty()) file.damaged("has no table " + name);
   return table;
@@ -235,7 +227,7 @@ std::string write_stored_card(const std::filesystem::path& file, const Scorecard
 
 StoredCard read_stored_card(const std::filesystem::path& file) {
   const Hdf5Reader hdf5 = stored_card_file(file);
-  StoredCard stored{stored_configuration(attribute(hdf5.attributes(), "config")), 0, {}, {}, {}};
+  StoredCard stored{attribute(hdf5.attributes(), "config"), 0, {}, {}, {}};
   try {
     const Json all = Json::parse(stored.configuration);
     stored.replicates = all.at("replicates").get<int>();

@@ -10,6 +10,7 @@
 #include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "runners/experiment/sessions/session_scene.h"
+#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/tool_files/loaded_tool.h"
 #include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/camera_scene.h"

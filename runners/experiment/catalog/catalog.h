@@ -22,7 +22,6 @@
 #include "core/rivals/proxy_variants.h"
 #include "core/rivals/surfel_renderer.h"
 #include "runners/experiment/catalog/factory.h"
-#include "runners/experiment/settings/stored_configuration.h"
 
 namespace remote_touch {
 
@@ -130,16 +129,12 @@ Directions directions();  // the better direction of each measure
 // Returns the entry of that name. Throws InputError with the known names if there is none.
 template <class Entry>
 const Entry& find_entry(std::span<const Entry> entries, const std::string& name, const std::string& path) {
-  std::vector<std::string> names;
   std::string known;
   for (const Entry& entry : entries) {
     if (name == entry.name) return entry;
-    names.push_back(entry.name);
     known += (known.empty() ? "" : ", ") + entry.name;
   }
-  const std::optional<std::string> renamed = new_value(path, name, names);
-  throw InputError(path + " = \"" + name + "\"",
-                   "expected " + known + (renamed ? "; " + name + " is now " + *renamed : ""));
+  throw InputError(path + " = \"" + name + "\"", "expected " + known);
 }
 
 }  // namespace remote_touch

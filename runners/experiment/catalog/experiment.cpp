@@ -13,7 +13,6 @@
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 #include "scenarios/camera/depth_sensor.h"
 #include "scenarios/text_files/text_file.h"
@@ -273,7 +272,7 @@ std::optional<Experiment> Experiment::recorded_experiment() const {
     if (const auto* const path = std::get_if<std::string*>(&p.value)) {
       const SessionReader session{find_recording(**path)};
       if (session.depth() != kSimulatedDepth) return {};
-      return from_json(parse_json(stored_configuration(session.config()), **path + " config"));
+      return from_json(parse_json(session.config(), **path + " config"));
     }
   return {};
 }

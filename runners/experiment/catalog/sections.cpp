@@ -42,7 +42,7 @@ Settings read_settings(const Json& json, const std::string& path) {
   if (!json.is_object())
     throw InputError(path, "expected an object of parameters; leave the section out otherwise");
   Settings settings;
-  read_parameters(json, parameters(settings), path, {}, "");
+  read_parameters(json, parameters(settings), path);
   const std::string problem = validate(settings);
   if (!problem.empty()) throw InputError(path + "." + problem);
   return settings;
@@ -78,7 +78,7 @@ Part<Entry> read_part(const Json& json, std::span<const Entry> catalog, const st
   Part<Entry> part;
   part.name = json["name"].template get<std::string>();
   part.factory = find_entry(catalog, part.name, path + ".name").make();
-  read_parameters(json, part.factory->settings(), path, {"name"}, part.name);
+  read_parameters(json, part.factory->settings(), path, {"name"});
   const std::string problem = part.factory->validate();
   if (!problem.empty()) throw InputError(path + "." + problem);
   return part;

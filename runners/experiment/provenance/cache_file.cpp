@@ -45,7 +45,7 @@ struct CachedFile {
 };
 
 bool is_ours(const fs::path& file) {
-  return file.extension() == ".tool" || file.extension() == ".spheres" || file.extension() == ".levels";
+  return file.extension() == ".tool" || file.extension() == ".spheres";
 }
 
 bool is_abandoned(const CachedFile& file) {
@@ -72,11 +72,6 @@ bool removed(const CachedFile& file) {
   return fs::remove(file.path, refused);
 }
 
-void remove_abandoned(const std::vector<CachedFile>& files) {
-  for (const CachedFile& file : files)
-    if (is_abandoned(file)) removed(file);
-}
-
 }  // namespace
 
 std::uintmax_t max_cache_bytes() {
@@ -98,13 +93,10 @@ CacheSize cache_size(const fs::path& folder) {
   return size;
 }
 
-void remove_abandoned(const fs::path& folder) {
-  remove_abandoned(files_in(folder));
-}
-
 CacheSize shrink_cache(const fs::path& folder, std::uintmax_t max_bytes) {
   std::vector<CachedFile> files = files_in(folder);
-  remove_abandoned(files);
+  for (const CachedFile& file : files)
+    if (is_abandoned(file)) removed(file);
   std::erase_if(files, [](const CachedFile& file) { return !is_ours(file.path); });
   std::ranges::sort(files, [](const CachedFile& a, const CachedFile& b) { return a.used_ns < b.used_ns; });
   CacheSize left{files.size(), 0};
@@ -127,12 +119,11 @@ std::string first_line(const CacheKind& kind) {
 // The bytes of a file, mapped rather than read: large tools are in memory once only.
 class MappedFile {
  public:
-  MappedFile(const fs::path& path, std::size_t max_bytes) {
+  explicit MappedFile(const fs::path& path) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0) return;
     struct stat about {};
-    if (::fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0 &&
-        (max_bytes == 0 || static_cast<std::size_t>(about.st_size) <= max_bytes)) {
+    if (::fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0) {
       size_ = static_cast<std::size_t>(about.st_size);
       data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file, 0);
       if (data_ == MAP_FAILED) data_ = nullptr, size_ = 0;
@@ -185,7 +176,7 @@ bool read_cache_file(const fs::path& folder, const CacheKind& kind, const std::s
                      const std::function<void(Unpacker&)>& take) {
   if (folder.empty()) return false;
   const fs::path path = folder / (key + "." + kind.name);
-  const MappedFile file(path, kind.max_bytes);
+  const MappedFile file(path);
   const std::string_view bytes = file.bytes();
   const std::string line = first_line(kind);
   if (bytes.size() < line.size() + kHash || !bytes.starts_with(line)) return false;
@@ -229,8 +220,7 @@ bool write_cache_file(const fs::path& folder, const CacheKind& kind, const std::
   bool good = ::close(file) == 0 && pack.good();
   good = good && ::rename(temporary.c_str(), (folder / (key + "." + kind.name)).c_str()) == 0;
   if (!good) ::unlink(temporary.c_str());
-  if (good && kind.max_bytes == 0) shrink_cache(folder, max_cache_bytes());
-  if (good && kind.max_bytes > 0) remove_abandoned(folder);
+  if (good) shrink_cache(folder, max_cache_bytes());
   return good;
 }
 

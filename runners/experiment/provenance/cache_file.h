@@ -32,11 +32,8 @@ std::uintmax_t max_cache_bytes();
 CacheSize cache_size(const std::filesystem::path& folder);
 
 // Removes temporary files of programs that were killed while they wrote them, if they were not used for an
-// hour.
-void remove_abandoned(const std::filesystem::path& folder);
-
-// Removes these temporary files, and then the cache files that were used longest ago, until their size is at
-// most max_bytes. Other files are kept. Returns the number and size of the cache files that are left.
+// hour, and then the cache files that were used longest ago, until their size is at most max_bytes. Other
+// files are kept. Returns the number and size of the cache files that are left.
 CacheSize shrink_cache(const std::filesystem::path& folder, std::uintmax_t max_bytes);
 
 // Cache files of objects that take long to make: a line with their kind, the key that they were made for,
@@ -64,7 +61,6 @@ class CacheWriter final : public Packer {
 struct CacheKind {
   std::string name;
   int version;
-  std::size_t max_bytes = 0;  // maximum size of a file; 0: no maximum. A larger file is not read
 };
 
 // Returns version, digest of the sources, compiler and flags of this program as a text for keys. Everything
@@ -77,9 +73,9 @@ bool read_cache_file(const std::filesystem::path& folder, const CacheKind& kind,
                      const std::function<void(Unpacker&)>& take);
 
 // Writes the file under a temporary name and renames it, so that other processes see the whole file or none.
-// Creates the folder. Then removes the files that make the folder too large, unless the kind has a maximum
-// size: such files are small. Returns false if the file cannot be written, which is not an error. Throws
-// InputError as max_cache_bytes() does. If put() throws, the temporary file is removed.
+// Creates the folder. Then removes the files that make the folder too large. Returns false if the file cannot
+// be written, which is not an error. Throws InputError as max_cache_bytes() does. If put() throws, the
+// temporary file is removed.
 bool write_cache_file(const std::filesystem::path& folder, const CacheKind& kind, const std::string& key,
                       const std::function<void(CacheWriter&)>& put);
 

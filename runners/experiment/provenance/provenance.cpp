@@ -8,6 +8,7 @@
 
 #include "analysis/storage/digest.h"
 #include "build_info.h"  // written by the build: version, commit, compiler, flags
+#include "core/kernels/isa.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
@@ -72,6 +73,14 @@ std::string cpu_name() {
     if (line.starts_with("model name") && value != std::string::npos) return line.substr(value + 2);
   }
   return {};
+}
+
+const Kernels& kernels_of_level(const std::string& level) {
+  for (const Kernels* kernels : supported_kernels())
+    if (kernels->isa == level) return *kernels;
+  if (level.empty()) return kernels_for(best_isa());
+  throw InputError("REMOTE_TOUCH_ISA = " + level, std::string("expected x86-64 up to ") +
+                                                      supported_kernels().back()->isa + " on this machine");
 }
 
 std::string commit_text(const TextAttributes& attributes) {

@@ -1,4 +1,5 @@
 // The provenance of a result, as attributes: program, build, command, recipe and the hashes of its inputs.
+// The x86-64 level of the inner loops is one of them.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/input_error.h"
 #include "scenarios/recordings/recording.h"
 
@@ -48,6 +50,11 @@ std::optional<Recipe> recipe_of(const TextAttributes& attributes);
 
 std::string version();   // "0.3.0"
 std::string cpu_name();  // name that the system reports; empty if it reports none
+
+// Returns the kernels of that x86-64 level or, if it is empty, of the highest level of this processor. No
+// result depends on the level: all give the same bits. Throws InputError if the machine does not have the
+// level.
+const Kernels& kernels_of_level(const std::string& level);
 
 // The program and the plug-ins that made a result, in addition to the sources of this project.
 struct ProgramIdentity {

@@ -7,7 +7,6 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/sensor_frame.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/text_files/text_file.h"
 
@@ -123,7 +122,7 @@ void add_changes(const SessionReader& session, Json& experiment) {
 }  // namespace
 
 std::string session_experiment(const SessionReader& session, const std::string& path) {
-  Json json = parse_json(stored_configuration(session.config()), path + " config");
+  Json json = parse_json(session.config(), path + " config");
   if (!json.is_object())
     throw InputError(path, "damaged (its configuration): expected a file of remote-touch live --record");
   for (const char* part : {"scenario", "trajectory"}) json[part] = {{"name", "live-session"}, {"path", path}};

@@ -8,8 +8,6 @@
 #include <numeric>
 #include <sstream>
 
-#include "runners/experiment/settings/stored_configuration.h"
-
 namespace remote_touch {
 
 std::string without_subject(const std::string& subject, const std::string& line) {
@@ -189,23 +187,11 @@ std::string expected_text(const Parameter& p, const Json& value) {
   return (lacks_number ? "expected a number from " : "expected ") + allowed(p);
 }
 
-// Returns the end of a refusal of a value that was renamed; nothing for other values.
-std::string rename_hint(const Parameter& p, const Json& value, const std::optional<std::string>& entry) {
-  const auto* const choice = std::get_if<Choice>(&p.value);
-  if (!choice) return {};
-  const std::string old_value = value.is_string() ? value.get<std::string>() : shown(value);
-  const std::optional<std::string> renamed = new_value(p.name, old_value, choice->names, entry);
-  return renamed ? "; " + old_value + " is now " + *renamed : "";
-}
-
 }  // namespace
 
-void refuse_key(const std::string& key, const std::vector<std::string>& known, const std::string& prefix,
-                const std::optional<std::string>& entry) {
+void refuse_key(const std::string& key, const std::vector<std::string>& known, const std::string& prefix) {
   if (known.empty()) throw InputError(prefix + key, "unknown; no parameters here");
-  const std::optional<std::string> renamed = new_name(key, known, entry);
-  const std::string hint = renamed ? "unknown; it is now " : "unknown; did you mean ";
-  throw InputError(prefix + key, hint + without_label(prefix) + renamed.value_or(nearest_key(key, known)));
+  throw InputError(prefix + key, "unknown; did you mean " + without_label(prefix) + nearest_key(key, known));
 }
 
 std::string allowed(const Parameter& parameter) {
@@ -216,7 +202,7 @@ std::string value_text(const Parameter& parameter) {
 }
 
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
-                     const std::vector<std::string>& elsewhere, const std::optional<std::string>& entry) {
+                     const std::vector<std::string>& elsewhere) {
   if (!object.is_object()) throw InputError(path, "not an object: expected {\"name\": ..., ...}");
   const std::string prefix = path.empty() ? "" : path + ".";
   for (const auto& item : object.items()) {
@@ -224,10 +210,9 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
     const Json& value = item.value();
     if (std::ranges::find(elsewhere, key) != elsewhere.end()) continue;
     const auto found = std::ranges::find_if(parameters, [&](const auto& p) { return p.name == key; });
-    if (found == parameters.end()) refuse_key(key, all_keys(parameters, elsewhere), prefix, entry);
+    if (found == parameters.end()) refuse_key(key, all_keys(parameters, elsewhere), prefix);
     if (!std::visit(Reader{value, *found}, found->value))
-      throw InputError(prefix + key + " = " + shown(value),
-                       expected_text(*found, value) + rename_hint(*found, value, entry));
+      throw InputError(prefix + key + " = " + shown(value), expected_text(*found, value));
   }
 }
 

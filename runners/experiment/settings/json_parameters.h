@@ -52,15 +52,14 @@ auto with_file_in_refusal(const std::string& file, const std::vector<std::string
 
 // Sets every parameter that the object names. Throws InputError for an unknown key (with the nearest known
 // one), a value of the wrong kind or one out of range; path is the name of the object, for example
-// "renderer". elsewhere: keys that the caller reads itself. entry: for hints about old names, see new_name().
+// "renderer". elsewhere: keys that the caller reads itself.
 void read_parameters(const Json& object, const Parameters& parameters, const std::string& path,
-                     const std::vector<std::string>& elsewhere = {},
-                     const std::optional<std::string>& entry = {});
+                     const std::vector<std::string>& elsewhere = {});
 
 // Throws InputError for a key that is none of the known ones: "PREFIXKEY: unknown; did you mean
-// PREFIXNEAREST", or "it is now" if the key was renamed. entry: for hints about old names, see new_name().
+// PREFIXNEAREST".
 [[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
-                             const std::string& prefix, const std::optional<std::string>& entry = {});
+                             const std::string& prefix);
 
 // Writes all parameters with their present values, in the order of the list.
 void write_parameters(const Parameters& parameters, Json& object);

@@ -5,7 +5,6 @@
 #include <initializer_list>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
@@ -157,23 +156,6 @@ void print_attributes(const std::string& file, const TextAttributes& attributes)
   }
 }
 
-std::string last_name(const std::string& path) {
-  return path.substr(path.rfind('/') + 1);
-}
-
-// Returns the names in a result of an earlier schema that are translated when the result is used.
-std::vector<std::string> translated_names_in(const Hdf5Content& content) {
-  std::vector<std::string> names = translated_names(attribute(content.attributes, "config"));
-  std::set<std::string> of_columns;
-  for (const auto& dataset : content.datasets) {
-    const std::string& path = dataset.first;
-    if (path.starts_with("/tables/") && present_column(path) != path)
-      of_columns.insert(last_name(path) + " to " + last_name(present_column(path)));
-  }
-  names.insert(names.end(), of_columns.begin(), of_columns.end());
-  return names;
-}
-
 // Prints one line for a sweep in progress that has runs with a wrong checksum.
 void print_damaged_runs(const std::string& file, const Hdf5Content& content) {
   const auto is_checksum = [](const auto& dataset) { return dataset.first == "/sweep/checksum"; };
@@ -186,7 +168,7 @@ void print_damaged_runs(const std::string& file, const Hdf5Content& content) {
 void print_earlier_schema(const Hdf5Content& content) {
   const std::string schema = attribute(content.attributes, "schema");
   if (!is_earlier_schema(schema)) return;
-  const std::vector<std::string> names = translated_names_in(content);
+  const std::vector<std::string> names = translated_names(attribute(content.attributes, "config"));
   const std::string line =
       "earlier schema " + schema + "; " +
       (names.empty() ? "none of its names has changed"

@@ -17,7 +17,6 @@
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/settings/embedded_data.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/tool_files/loaded_tool.h"
 #include "runners/sweep/sweep.h"
 
@@ -285,9 +284,6 @@ void describe(const std::string& name, std::FILE* out) {
     if (name == measure.name)
       found = std::fprintf(out, "%s: a measure: %s\n", name.c_str(), summary_of(measure).c_str()) > 0;
   if (found || describe_parameter(name, out)) return;
-  for (const char* section : {"scenario", "trajectory"})
-    if (const auto renamed = renamed_entry(section, name))
-      throw InputError(name, "unknown; it is now " + *renamed);
   throw InputError(
       name, "unknown: expected a name from `remote-touch list`, or NAME.PARAMETER, such as proxy.r1_m");
 }

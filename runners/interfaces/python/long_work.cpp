@@ -12,8 +12,7 @@
 
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/cache_file.h"
-#include "runners/experiment/provenance/kernel_choice.h"
+#include "runners/experiment/provenance/provenance.h"
 
 namespace remote_touch {
 
@@ -130,7 +129,7 @@ void require_no_long_work(const char* subject) {
 }
 
 void choose_python_kernels(const std::string& forced) {
-  kernels_in_use() = &choose_kernels(forced, cache_folder());
+  kernels_in_use() = &kernels_of_level(forced);
 }
 
 const Kernels& chosen_python_kernels() {

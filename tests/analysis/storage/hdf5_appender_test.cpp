@@ -25,7 +25,7 @@ TEST_F(AppendedFile, GrownDatasetsAreReadAgainAndSealed) {
   const auto file = folder / "grown.h5";
   {
     Hdf5Appender out(file);
-    out.attributes("/", {{"schema", "remote-touch-test/2"}, {"empty", ""}});
+    out.attributes("/", {{"schema", "remote-touch-test/3"}, {"empty", ""}});
     out.group("/a");
     out.dataset({"/a/x", "m", "lengths", Number::f64, {3}, 7});
     out.dataset({"/a/image", "1", "pixels", Number::u16, {2, 4}, 1});
@@ -48,7 +48,7 @@ TEST_F(AppendedFile, GrownDatasetsAreReadAgainAndSealed) {
   EXPECT_EQ(seal_state_of(file), SealState::valid);
   EXPECT_EQ(files_in(folder.path()).size(), 1u);
   const Hdf5Reader in(file);
-  EXPECT_EQ(attribute(in.attributes(), "schema"), "remote-touch-test/2");
+  EXPECT_EQ(attribute(in.attributes(), "schema"), "remote-touch-test/3");
   const Column x = in.column("/a/x");
   EXPECT_EQ(x.width, 3);
   EXPECT_EQ(x.units, "m");

@@ -131,8 +131,8 @@ void write_old(const std::filesystem::path& file, const SweepResult& result, con
   hdf5.save(file);
 }
 
-// Writes an old sweep over the contact rule of the proxy, and returns its configuration.
-std::string write_contact_rules(const std::filesystem::path& file) {
+// Writes an old sweep over the contact rule of the proxy.
+void write_contact_rules(const std::filesystem::path& file) {
   const std::string config =
       old_configuration(R"({"parameter": "renderer.contact_rule", "values": ["tangent_plane", "regions"]})");
   write_old(file,
@@ -143,12 +143,11 @@ std::string write_contact_rules(const std::filesystem::path& file) {
                       1,
                       {"tangent_plane", "regions"}}),
             config);
-  return config;
 }
 
 TEST(StoredSweep, HasPresentNamesOfAxesAndValues) {
   const TestFolder folder("stored_sweep_test");
-  const std::string config = write_contact_rules(folder / "old.h5");
+  write_contact_rules(folder / "old.h5");
   EXPECT_EQ(read_sweep(folder / "old.h5").result.axes[0].name, "contact_rule");
   const StoredSweep stored = read_stored_sweep(folder / "old.h5");
   const Column& axis = stored.result.axes.at(0);
@@ -158,7 +157,6 @@ TEST(StoredSweep, HasPresentNamesOfAxesAndValues) {
   EXPECT_EQ(stored.result.measure("max_force"), (std::vector<double>{1, 2}));
   const Sweep sweep = Sweep::from_json(attribute(stored.attributes, "config"), "old.h5");
   EXPECT_NO_THROW(sweep.require_fits(stored.result, "old.h5"));
-  EXPECT_HAS(refusal([&] { Sweep::from_json(config, "old.json"); }), "; it is now ");
 }
 
 TEST(StoredSweep, ASwitchThatIsNowAChoiceHasItsNames) {

@@ -418,24 +418,6 @@ TEST(Cells, MayBeNamedByValuesWithCommas) {
   EXPECT_HAS(refusal([&] { cell_of({"--cell", start + ",other=1"}, plan); }), "expected for start_m one of ");
 }
 
-// `inspect` shows the earlier names in a result of schema /2.
-TEST(Cells, ARefusalNamesWhatWasRenamed) {
-  const SweepResult plan = sweep_over({axis("renderer.contact_motion", R"(["tangent-plane", "regions"])"),
-                                       axis("trajectory.surface", R"(["newest-frame", "moving"])")})
-                               .plan();
-  const auto refused = [&](const std::string& text) {
-    return refusal([&] { cell_of({"--cell", text}, plan); });
-  };
-  EXPECT_HAS(refused("contact_rule=tangent_plane,per_frame=true"),
-             "expected contact_motion=VALUE,surface=VALUE; contact_rule is now contact_motion; per_frame is "
-             "now surface");
-  EXPECT_HAS(refused("contact_motion=tangent-plane,per_frame=true"), "; per_frame is now surface");
-  EXPECT_HAS(refused("contact_motion=tangent-plane,surface=true"),
-             "expected for surface one of newest-frame, moving; true is now newest-frame");
-  EXPECT_TRUE(refused("contact_motion=regions").ends_with("expected contact_motion=VALUE,surface=VALUE"));
-  EXPECT_EQ(cell_of({"--cell", "contact_motion=regions,surface=moving"}, plan), 3u);
-}
-
 TEST(Statements, OneNumberInTwoSpellingsComesTwice) {
   EXPECT_HAS(why({axis("scenario.noise_sigma_m", "[0, 0.0]")}),
              "axes.0.values: 0.0 appears twice: expected once");

@@ -250,14 +250,6 @@ TEST(Axes, CanListAnyValues) {
   EXPECT_EQ(cells("seed", "[3, 18446744073709551615]").units, "1");
 }
 
-TEST(Axes, WithAnOldNameAreRefusedWithTheNewOne) {
-  EXPECT_HAS(refusal([] { along(R"({"parameter": "renderer.contact_rule", "values": ["regions"]})"); }),
-             "renderer.contact_rule: unknown; it is now renderer.contact_motion");
-  EXPECT_HAS(
-      refusal([] { along(R"({"parameter": "renderer.contact_motion", "values": ["tangent_plane"]})"); }),
-      "tangent_plane is now tangent-plane");
-}
-
 // A range may be used for a parameter that accepts only integers, if all its values are integers.
 TEST(Axes, MustMeetIntegers) {
   const Sweep sweep = along(R"({"parameter": "seed", "from": 1, "to": 9, "count": 5})");

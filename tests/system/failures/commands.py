@@ -213,16 +213,13 @@ COMMANDS = [
 
 
 def state_of(folder):
-    """Every file below the folder with its bytes, and every folder. Without the times of the instruction sets in the
-    cache: each start that finds none measures them, and they are never the same."""
+    """Every file below the folder with its bytes, and every folder."""
     state = {}
     for place, folders, files in os.walk(folder):
         below = os.path.relpath(place, folder)
         for name in folders:
             state[os.path.normpath(os.path.join(below, name)) + "/"] = b""
         for name in files:
-            if name.endswith(".levels"):
-                continue
             state[os.path.normpath(os.path.join(below, name))] = read(os.path.join(place, name))
     return state
 

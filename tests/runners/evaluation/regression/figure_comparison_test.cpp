@@ -23,18 +23,6 @@ class CompareFigures : public Compare {
   }
 };
 
-TEST_F(CompareFigures, AToleranceOfARenamedColumnIsRefusedWithItsNewName) {
-  Table edge{"edge", ""};
-  edge.add("voxels_first_lost", "m/s", "", {1, 2});
-  write_figure(folder_ / "edge.h5", {"4.99", "A figure", "for tests", {edge}}, {{"config", "[]"}});
-  ComparisonRules rules;
-  rules.tolerances = {{"edge/voxels_lost", {0.5, 0}}};
-  EXPECT_HAS(refusal([&] { compare("edge.h5", "edge.h5", rules); }),
-             "; edge/voxels_lost is now edge/voxels_first_lost");
-  rules.tolerances = {{"edge/voxels_found", {0.5, 0}}};
-  EXPECT_EQ(refusal([&] { compare("edge.h5", "edge.h5", rules); }).find("is now"), std::string::npos);
-}
-
 TEST_F(CompareFigures, ComparesTableByTable) {
   write("a.h5", {1, 2, 3}), write("same.h5", {1, 2, 3}), write("other.h5", {1, 2, 3.5});
   const ResultComparison same = compare("a.h5", "same.h5");

@@ -307,13 +307,12 @@ TEST_F(CompareTraceFiles, OtherVersionsOfTheLayoutAreRefused) {
   write("a.h5");
   for (const auto& [schema, why] :
        {std::pair("remote-touch-trace/1",
-                  "written by version 0.1 (schema remote-touch-trace/1); this version reads "
-                  "remote-touch-trace/3: run it again"),
+                  "is of schema remote-touch-trace/1: expected remote-touch-trace/3; make the result again"),
         {"remote-touch-trace/4", "is of schema remote-touch-trace/4: expected remote-touch-trace/3"},
         {"remote-touch-figure/9", "expected remote-touch-figure/3"},
-        {"remote-touch-hashes/0", "expected remote-touch-hashes/3"},
-        {"remote-touch-sweep/1", "reads remote-touch-sweep/3: run it again"},
-        {"remote-touch-session/1", "reads remote-touch-session/3: run it again"},
+        {"remote-touch-hashes/2", "expected remote-touch-hashes/3"},
+        {"remote-touch-sweep/1", "expected remote-touch-sweep/3; make the result again"},
+        {"remote-touch-session/2", "expected remote-touch-session/3; make the result again"},
         {"of-another/1", "is of schema of-another/1: expected a trace, a sweep, a figure or hashes"},
         {"", "has no attribute schema: expected a trace"}}) {
     Hdf5Writer hdf5;

@@ -11,7 +11,6 @@
 #include "analysis/measures/measures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sections_test {
@@ -140,16 +139,6 @@ TEST(Sections, LeftOutAndNullAreTheSame) {
       EXPECT_HAS(missing, std::string(section.key) + ": missing");
     }
   }
-}
-
-// A hint that a key was renamed must give a name that exists.
-TEST(Sections, RenamedNamesAreThoseOfParametersMeasuresAndColumns) {
-  std::set<std::string> names = {"max_replicates", "guidance_active", "tool_penetration"};
-  for (const ExperimentSection& section : experiment_sections())
-    for (const SectionEntry& entry : section.entries())
-      for (const Parameter& p : entry.make()->settings()) names.insert(p.name);
-  for (const Measure& measure : measures()) names.insert(measure.name);
-  for (const RenamedName& name : renamed_names()) EXPECT_TRUE(names.contains(name.new_name)) << name.new_name;
 }
 
 // Passivity control and waves would balance another motion than the hand has. They know the limit of a force.

@@ -16,6 +16,13 @@
 namespace remote_touch::provenance_test {
 namespace {
 
+TEST(KernelsOfLevel, AreTheHighestIfNoneIsForced) {
+  EXPECT_EQ(&kernels_of_level(""), supported_kernels().back());
+  for (const Kernels* kernels : supported_kernels()) EXPECT_EQ(&kernels_of_level(kernels->isa), kernels);
+  EXPECT_HAS(refusal([] { kernels_of_level("x86-64-v9"); }),
+             "REMOTE_TOUCH_ISA = x86-64-v9: expected x86-64 up to x86-64");
+}
+
 // Commands that are stored in results can be typed into a shell.
 
 using Words = std::vector<std::string>;

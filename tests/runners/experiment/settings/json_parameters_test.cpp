@@ -74,6 +74,19 @@ TEST(ReadParameters, AnIntegerMadeInMemoryMayBeSigned) {
   EXPECT_HAS(read(-1), "seed = -1: expected integers 0 to 10");
 }
 
+TEST(ReadParameters, AnUnknownKeyIsRefusedWithTheNearest) {
+  double longest_force_N = 0;
+  const Parameters parameters = {{"longest_force_N", &longest_force_N, 0, 1, ""}};
+  EXPECT_EQ(refusal([&] {
+              read_parameters({{"longst_force_N", 1}}, parameters, "method mine: safety");
+            }),
+            "method mine: safety.longst_force_N: unknown; did you mean safety.longest_force_N");
+  EXPECT_EQ(refusal([&] {
+              read_parameters({{"longst_force_N", 1}}, {}, "safety");
+            }),
+            "safety.longst_force_N: unknown; no parameters here");
+}
+
 TEST(ReadParameters, AKeyOfAnyBytesIsShown) {
   Json object = Json::object();
   object[std::string("a\0\xff", 3)] = 1;
