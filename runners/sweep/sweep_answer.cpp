@@ -94,6 +94,7 @@ CellStreams known_streams(const SweepResult& result, const std::string& config) 
 
 // True if the cell has several finished runs, and they are equal to the last bit in all measures.
 bool has_equal_runs(const SweepResult& result, std::size_t cell) {
+  if (result.state.empty()) return false;  // an outline has no runs
   std::optional<std::size_t> first;
   std::size_t done = 0;
   for (int replicate = 0; replicate < result.replicates; ++replicate) {

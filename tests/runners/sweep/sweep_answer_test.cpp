@@ -316,5 +316,15 @@ TEST(AnswerText, SaysWhatIsLeftOut) {
   EXPECT_EQ(text_of(sweep_answer(sweep(), kConfig, {}), sweep()).find("note:"), std::string::npos);
 }
 
+// `inspect` reads an outline, which has no runs.
+TEST(StreamsOf, DoubtsAnOutlineWhoseConfigurationCannotBeRead) {
+  SweepResult outline = sweep();
+  outline.state.clear();
+  for (Column& measure : outline.measures) measure.values = std::vector<double>{};
+  const CellStreams streams = streams_of(outline, "{}");
+  EXPECT_FALSE(streams.doubt.empty());
+  EXPECT_FALSE(streams.is_fixed(0));
+}
+
 }  // namespace
 }  // namespace remote_touch::sweep_answer_test
