@@ -26,7 +26,7 @@ namespace remote_touch {
 // The contact point of a renderer, and its height above the true surface: the quantity by which a ball, a
 // point and a spring without a proxy are compared.
 //
-// In contact, the centre of a ball is r_c above the surface, and a point proxy is on it. The height of the
+// The centre of a ball in contact is r_c above the surface, and a point proxy is on it. The height of the
 // contact point is therefore
 //
 //   height = d(x) - rest distance,

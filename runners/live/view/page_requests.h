@@ -1,4 +1,4 @@
-// What a page of a live run asks for: requests, which are checked, and messages, which are not trusted.
+// A page of a live run sends requests, which are checked, and messages, which are not trusted.
 #pragma once
 
 #include <cstdint>

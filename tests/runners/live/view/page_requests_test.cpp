@@ -12,7 +12,7 @@
 namespace remote_touch::page_requests_test {
 namespace {
 
-// Which requests the page server answers, and what it says to the others.
+// The page server answers some requests, and says to the others why it does not.
 
 TEST(RequestCheck, LoopbackNamesWithAnyPortAreAnswered) {
   for (const char* host : {"127.0.0.1:40123", "localhost:40123", "localhost:8000", "127.0.0.1:1",

@@ -69,7 +69,7 @@ TEST_F(OfABox, SlidesAlongAFaceAndLeavesIt) {
   EXPECT_EQ(fraction({0.002, -0.001, 0.005}, shift({1e-3, 0, -1e-6})), 1) << "from the surface itself";
 }
 
-// With a limit, a smaller fraction is the same, and a larger one is only known to be larger.
+// A fraction below the limit is the same as without one; one above it is only known to be above it.
 TEST_F(OfABox, FractionsUpToALimitAreThoseWithoutOne) {
   std::mt19937 random(29);
   std::uniform_real_distribution<double> any(-1, 1);
