@@ -88,9 +88,15 @@ struct RenderOutput {
   std::optional<GuidanceOutput> guidance;  // only in experiments with guidance or a sequence
 };
 
-class Renderer {
+// Receives the frames of a stream.
+class FrameReceiver {
  public:
-  virtual ~Renderer() = default;
+  virtual ~FrameReceiver() = default;
+  virtual void on_frame(const Frame& frame) = 0;
+};
+
+class Renderer : public FrameReceiver {
+ public:
   // Does the slow part of processing a frame, so that on_frame() is short. Sets frame.prepared for renderers
   // of the same kind and settings. May run in parallel to on_frame() and step(), so it reads no live
   // parameter. The results of the renderer do not depend on it.
@@ -102,7 +108,7 @@ class Renderer {
   virtual void reserve(std::size_t /*points*/) {}
   // Adds a new frame, prepared or not. A frame that is not newer than the last one is dropped, and the status
   // of the next output reports it.
-  virtual void on_frame(const Frame& frame) = 0;
+  void on_frame(const Frame& frame) override = 0;
   // Returns the settings that are marked live, with pointers to the renderer's own values. The thread of
   // step() may set these values between two steps, to others that validate() allows. parameters_changed()
   // then applies them, without an allocation.

@@ -1,4 +1,4 @@
-// A renderer that keeps the frames which it receives, and the frames that a stream delivers in a run.
+// A receiver that keeps the frames which it receives, and the frames that a stream delivers in a run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,10 +9,9 @@
 
 namespace remote_touch {
 
-class FrameRecorder final : public Renderer {
+class FrameRecorder final : public FrameReceiver {
  public:
   void on_frame(const Frame& frame) override { frames.push_back(frame); }
-  RenderOutput step(const DeviceState&, double) override { return {}; }
   std::vector<Frame> frames;
 };
 

@@ -118,7 +118,7 @@ void FrameStream::send(int frame) {
   in_transit_.insert(std::upper_bound(in_transit_.begin(), in_transit_.end(), sent, after), sent);
 }
 
-void FrameStream::deliver_until(double time_s, Renderer& renderer) {
+void FrameStream::deliver_until(double time_s, FrameReceiver& receiver) {
   const double now_s = time_s + kSameTime_s;
   while (exists(next_) && captured_s(next_) + transport_.latency_s <= now_s) send(next_++);
   while (!in_transit_.empty() && in_transit_.front().arrives_s <= now_s) {
@@ -129,7 +129,7 @@ void FrameStream::deliver_until(double time_s, Renderer& renderer) {
     fill(frame);
     processing_.needs.check(frame);
     if (hash_frames_) hash_ = hash_of(arrived.frame, *frame.points);
-    renderer.on_frame(frame);
+    receiver.on_frame(frame);
   }
 }
 

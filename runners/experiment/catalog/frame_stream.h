@@ -91,10 +91,10 @@ class FrameStream {
   FrameStream(const Scenario& scenario, FrameProcessing processing, const Transport& transport,
               const NoiseKey& key, bool hash_frames, bool generate_all_points = false);
 
-  // Passes the frames that have arrived by time_s to the renderer, in order of arrival, with the true surface
+  // Passes the frames that have arrived by time_s to the receiver, in order of arrival, with the true surface
   // for oracles. Throws InputError if a frame cannot be read, has no depth image to be processed, or lacks
   // what the renderer needs, or if a fixture rule cannot be applied to it. pre: times never decrease.
-  void deliver_until(double time_s, Renderer& renderer);
+  void deliver_until(double time_s, FrameReceiver& receiver);
   const FixtureAssignment& fixtures() const { return processing_.fixtures; }
   // Hash of the newest frame delivered; 0 before the first or without hash_frames.
   std::uint64_t newest_hash() const { return hash_; }

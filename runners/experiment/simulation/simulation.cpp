@@ -94,7 +94,7 @@ class StopWatch {
 
 // Passes each frame to a renderer and measures how long the renderer needs for it. Calls
 // SimulationOptions::on_frame before, and keeps the points of the first and of the newest frame.
-class ObservedFrames final : public Renderer {
+class ObservedFrames final : public FrameReceiver {
  public:
   ObservedFrames(Renderer& renderer, const SimulationOptions& options)
       : renderer_(renderer), duration_s_(options.frame_duration_s), observe_(options.on_frame) {}
@@ -105,9 +105,6 @@ class ObservedFrames final : public Renderer {
     StopWatch watch;
     renderer_.on_frame(frame);
     if (duration_s_) duration_s_->push_back(watch.lap_s());
-  }
-  RenderOutput step(const DeviceState& device, double time_s) override {
-    return renderer_.step(device, time_s);
   }
   // Null before the first frame.
   const ContactWatch::Points& first_points() const { return first_points_; }

@@ -168,20 +168,17 @@ class FrameSender {
   std::deque<std::pair<double, Vec3>> slave_;  // times and positions since the newest frame was captured
 };
 
-// Passes the frames that are sent on to a renderer, which must outlive it. Latency, jitter and loss of the
+// Passes the frames that are sent on to a receiver, which must outlive it. Latency, jitter and loss of the
 // frames are those of the run. A frame that is lost on its way does not reach the dead-band, so the next one
 // is compared with the last frame that was passed on.
-class FrameLink final : public Renderer {
+class FrameLink final : public FrameReceiver {
  public:
   // pre: validate(settings) is empty.
-  FrameLink(const FrameDeadBandSettings& settings, Renderer& renderer, const Kernels& kernels)
-      : sender_(settings, kernels), renderer_(renderer) {}
+  FrameLink(const FrameDeadBandSettings& settings, FrameReceiver& receiver, const Kernels& kernels)
+      : sender_(settings, kernels), receiver_(receiver) {}
 
   void on_frame(const Frame& frame) override {
-    if (sender_.sends(frame)) renderer_.on_frame(frame);
-  }
-  RenderOutput step(const DeviceState& device, double time_s) override {
-    return renderer_.step(device, time_s);
+    if (sender_.sends(frame)) receiver_.on_frame(frame);
   }
   // See FrameSender.
   void observe_slave(const Vec3& slave_W, double time_s) { sender_.observe_slave(slave_W, time_s); }
@@ -189,7 +186,7 @@ class FrameLink final : public Renderer {
 
  private:
   FrameSender sender_;
-  Renderer& renderer_;
+  FrameReceiver& receiver_;
 };
 
 }  // namespace remote_touch

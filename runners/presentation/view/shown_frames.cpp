@@ -17,12 +17,10 @@
 namespace remote_touch {
 namespace {
 
-// Receives the frames in place of the renderer.
-class FrameObserver final : public Renderer {
+class FrameObserver final : public FrameReceiver {
  public:
   explicit FrameObserver(const std::function<void(const Frame&)>& on_frame) : on_frame_(on_frame) {}
   void on_frame(const Frame& frame) override { on_frame_(frame); }
-  RenderOutput step(const DeviceState&, double) override { return {}; }
 
  private:
   const std::function<void(const Frame&)>& on_frame_;
