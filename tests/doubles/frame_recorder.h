@@ -1,4 +1,4 @@
-// A receiver that keeps the frames which it receives, and the frames that a stream delivers in a run.
+// Keeps the frames that it receives, and the frames that a stream delivers in a run.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 #include "core/dissertation/proxy/proxy_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <utility>
@@ -16,17 +17,17 @@ Vec3 VirtualCoupling::force(const Vec3& u, double since_frame_s, const Vec3& vel
   // The surface continues along v_hat between updates, and the proxy would continue with it. The term is
   // subtracted, because u = HIP - P.
   Vec3 u_hat = u;
-  if (p_.velocity_force == VelocityForce::minus) u_hat -= since_frame_s * velocity;
-  if (p_.velocity_force == VelocityForce::plus) u_hat += since_frame_s * velocity;
+  if (velocity_force_ == VelocityForce::minus) u_hat -= since_frame_s * velocity;
+  if (velocity_force_ == VelocityForce::plus) u_hat += since_frame_s * velocity;
 
   const double length = u_hat.norm();
   const double rate = has_previous_ ? haptic_rate_hz_ * (length - previous_length_) / ticks : 0;
   previous_length_ = length;
   has_previous_ = true;
-  if (!(length > p_.contact_radius_m())) return Vec3::Zero();
-  const double spring = stiffness_N_per_m * (length - p_.contact_radius_m());
-  const double damper = p_.damping_Ns_per_m * rate;
-  const double pull = p_.damping_sign == DampingSign::plus ? spring + damper : spring - damper;
+  if (!(length > contact_radius_m_)) return Vec3::Zero();
+  const double spring = stiffness_N_per_m * (length - contact_radius_m_);
+  const double damper = damping_Ns_per_m_ * rate;
+  const double pull = damping_sign_ == DampingSign::plus ? spring + damper : spring - damper;
   return u_hat * (-pull / length);
 }
 
@@ -90,7 +91,7 @@ void ProxyRenderer::displace(const Vec3& displacement_m) {
 void ProxyRenderer::set_radii(double r1_m, double r2_m, double r3_m) {
   p_.r1_m = r1_m, p_.r2_m = r2_m, p_.r3_m = r3_m;
   near_.set_reach(r3_m);
-  coupling_.set_radii(r1_m, r2_m);
+  coupling_.set_contact_radius(p_.contact_radius_m());
   known_steps_.forget();
   has_local_query_ = false;
 }
@@ -101,9 +102,6 @@ void ProxyRenderer::parameters_changed() {
   set_radii(p_.r1_m, p_.r2_m, p_.r3_m);
   is_clear_ = false;
   coupling_.release();  // or a change of settings would enter the next rate
-  if (contact_stiffness_N_per_m_ == own_stiffness_N_per_m_)  // not the k_s of points
-    contact_stiffness_N_per_m_ = p_.stiffness_N_per_m;
-  own_stiffness_N_per_m_ = p_.stiffness_N_per_m;
   if (!p_.velocity_estimate) velocity_ = SurfaceVelocity(p_.max_prediction_s);
 }
 
@@ -309,13 +307,16 @@ Vec3 ProxyRenderer::render_force(const Vec3& hip_W, double time_s, const RenderO
   const Vec3 p_W = p_.force_gate == ForceGate::latest_contact ? contact_proxy_W_ : proxy_W_;
   // The time is bounded, because the surface cannot be assumed to continue if frames stop coming.
   const double since_frame_s = std::min(time_s - frame_arrived_s_, velocity_.horizon_s());
-  return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), contact_stiffness_N_per_m_, ticks);
+  const double k_s =
+      std::isnan(contact_stiffness_N_per_m_) ? p_.stiffness_N_per_m : contact_stiffness_N_per_m_;
+  return coupling_.force(hip_W - p_W, since_frame_s, velocity_.vector(), k_s, ticks);
 }
 
-// Returns (5.8) as a weighted mean over the points that have a stiffness; the renderer's own stiffness if
-// none has.
+// Returns (5.8) as a weighted mean over the points; NaN, the renderer's own stiffness, if the cloud has no
+// column of k_s.
 double ProxyRenderer::stiffness(const ContactQuery& query) const {
-  return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum : p_.stiffness_N_per_m;
+  return query.weight_sum > 0 ? query.stiffness_sum / query.weight_sum
+                              : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace remote_touch

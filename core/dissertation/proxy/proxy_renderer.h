@@ -21,7 +21,11 @@ class VirtualCoupling {
  public:
   // haptic_rate_hz is f_h of (4.16).
   VirtualCoupling(const ProxyParameters& parameters, double haptic_rate_hz)
-      : p_(parameters), haptic_rate_hz_(haptic_rate_hz) {}
+      : velocity_force_(parameters.velocity_force),
+        damping_sign_(parameters.damping_sign),
+        damping_Ns_per_m_(parameters.damping_Ns_per_m),
+        contact_radius_m_(parameters.contact_radius_m()),
+        haptic_rate_hz_(haptic_rate_hz) {}
 
   // Returns the force on the hand by (4.15) and (4.16), N. It points towards the proxy, unless the damper
   // reverses it. It is zero while |u_hat| of (4.15) is at most r_c. u = HIP - P; since_frame_s = t - t_j;
@@ -32,12 +36,12 @@ class VirtualCoupling {
              double ticks = 1);
   // Ends a contact: the next force has a rate of zero, because there is no previous length to compare with.
   void release() { has_previous_ = false; }
-  // Sets r1 and r2 of Table 4.2, whose mean is r_c.
-  void set_radii(double r1_m, double r2_m) { p_.r1_m = r1_m, p_.r2_m = r2_m; }
+  void set_contact_radius(double radius_m) { contact_radius_m_ = radius_m; }
 
  private:
-  ProxyParameters p_;
-  double haptic_rate_hz_;
+  VelocityForce velocity_force_;
+  DampingSign damping_sign_;
+  double damping_Ns_per_m_, contact_radius_m_, haptic_rate_hz_;
   double previous_length_ = 0;
   bool has_previous_ = false;
 };
@@ -118,8 +122,7 @@ class ProxyRenderer final : public Renderer {
   bool in_contact_ = false;                // stays true until a free tick, or until free at the HIP
   bool in_crease_ = false;                 // last result of update_region_rule() under ContactMotion::creases
   Vec3 contact_proxy_W_ = Vec3::Zero();    // the latest proxy position in contact state
-  double contact_stiffness_N_per_m_ = 0;
-  double own_stiffness_N_per_m_ = p_.stiffness_N_per_m;  // k_s before the newest change
+  double contact_stiffness_N_per_m_ = 0;   // k_s there, see stiffness(); 0 before the first contact
   FrameOrder order_;
   double frame_arrived_s_ = 0;
   double force_time_s_ = 0;                 // time of the tick whose force was computed last

@@ -115,7 +115,7 @@ struct KnownStep {
   Vec3 normal_W;                 // (4.1) at this position; zero if it has no direction
   Vec3 motion_m = Vec3::Zero();  // (4.4) to (4.12)
   ContactState state;            // 4.2.1
-  double stiffness_N_per_m;      // (5.8)
+  double stiffness_N_per_m;      // (5.8); NaN: the renderer's own
 };
 
 // A table of steps, each of which is found by the position at which it begins. The table is a cache: it may

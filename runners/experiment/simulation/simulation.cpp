@@ -178,6 +178,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
     hand.apply(commanded_wrench(remote ? &*remote : nullptr, device, out, time_s));
+    if (remote) out.slave_W = remote->command(device, out);  // the trace shows what is sent
     std::optional<SlaveState> slave;
     if (remote) {
       remote->observe_exerted(hand.state()->force_N);

@@ -197,12 +197,6 @@ Wrench Teleoperation::tick(const DeviceState& device, const RenderOutput& out, d
   return wrench;
 }
 
-Wrench commanded_wrench(Teleoperation* remote, const DeviceState& device, RenderOutput& out, double time_s) {
-  if (!remote) return rendered_wrench(out);
-  out.slave_W = remote->command(device, out);
-  return remote->tick(device, out, time_s);
-}
-
 // Forgets older positions: a frame that is older than another one is dropped, so they are not asked for.
 std::optional<Vec3> FrameSender::slave_at(double time_s) {
   while (slave_.size() > 1 && slave_[1].first <= time_s + kSameArrival_s) slave_.pop_front();

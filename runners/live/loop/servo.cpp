@@ -150,7 +150,10 @@ void Servo::one_tick() {
   const double time_s = static_cast<double>(row_.number) / rate_hz_;
   row_.out = links_.renderer.step(row_.device, time_s);
   row_.command = commanded_wrench(links_.remote, row_.device, row_.out, time_s);
-  if (links_.remote) row_.slave = links_.remote->state(), row_.slave->frame_packets = frames_taken_;
+  if (links_.remote) {
+    row_.out.slave_W = links_.remote->command(row_.device, row_.out);  // the trace shows what is sent
+    row_.slave = links_.remote->state(), row_.slave->frame_packets = frames_taken_;
+  }
   if (SlavePlace* const place = links_.places ? links_.places->next_slot() : nullptr) {
     *place = {time_s, row_.slave->position_W};
     links_.places->push();
