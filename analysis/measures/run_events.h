@@ -29,7 +29,7 @@ inline double time_of(const Trace& trace, double tick) {
 // pop-through.
 //
 // The proxy is behind the surface if its signed distance d is less than -held_depth_m, and else in front of
-// it. The held depth (see held_depth_m() in factory.h) is 0 for a ball, whose centre stays in front.
+// it. The held depth (see held_depth_m() in renderer.h) is 0 for a ball, whose centre stays in front.
 // A proxy that rests on the surface itself is slightly behind it as often as in front of it.
 //
 // A proxy pops through if it moves from the front to the back while d is known in every tick.

@@ -69,7 +69,7 @@ struct Trace {
 #undef TRACE_COLUMN
 
   // Depth behind the true surface, m, down to which the proxy still counts as held by the surface. 0 for a
-  // ball, whose centre stays in front. See held_depth_m() in factory.h. Only measures use it, so it
+  // ball, whose centre stays in front. See held_depth_m() in renderer.h. Only measures use it, so it
   // is not a column.
   double held_depth_m = 0;
   // Rows that only measures use. They are not stored as columns. Empty unless they were computed.

@@ -132,6 +132,9 @@ std::string validate(const GodObjectParameters& p);
 inline double max_stiffness_N_per_m(const GodObjectParameters& p) {
   return p.stiffness_N_per_m;
 }
+inline RenderedContact rendered_contact(const GodObjectParameters& p) {
+  return {p.surface_offset_m};
+}
 
 class GodObjectRenderer final : public RivalRenderer {
  public:

@@ -41,6 +41,15 @@ Parameters parameters(ImplicitSurfaceParameters& p);
 inline double max_stiffness_N_per_m(const ImplicitSurfaceParameters& p) {
   return p.stiffness_N_per_m;
 }
+// Spacing of the points of most scenes (Grid). The surface of metaballs depends on the spacing, and their
+// rest distance is computed for this one. If the points of a scene are closer or wider apart, the difference
+// counts as an error of the method.
+inline constexpr double kReferenceSpacing_m = 0.0015;
+// The rest distance of surfels is 0, because they lie in the plane of the points. Metaballs lie around the
+// points: at the height h R over a plane of points of spacing s, the sum of the weights is pi R^2 / s^2 times
+// the integral of w(q) over q^2, from h^2 to 1. The rest distance is the height at which this sum is T, found
+// by bisection. It is 0 if the sum is less than T even on the plane.
+RenderedContact rendered_contact(const ImplicitSurfaceParameters& p);
 inline std::string validate(const ImplicitSurfaceParameters&) {
   return {};
 }

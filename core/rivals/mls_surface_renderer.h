@@ -51,6 +51,9 @@ std::string validate(const MlsSurfaceParameters& p);
 inline double max_stiffness_N_per_m(const MlsSurfaceParameters& p) {
   return p.stiffness_N_per_m;
 }
+inline RenderedContact rendered_contact(const MlsSurfaceParameters&) {
+  return {};
+}
 
 class MlsSurfaceRenderer final : public RivalRenderer {
  public:

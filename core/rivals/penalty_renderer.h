@@ -37,6 +37,9 @@ std::string validate(const PenaltyParameters& p);
 inline double max_stiffness_N_per_m(const PenaltyParameters& p) {
   return p.stiffness_N_per_m;
 }
+inline RenderedContact rendered_contact(const PenaltyParameters& p) {
+  return {p.contact_radius_m, p.stiffness_N_per_m};
+}
 
 class PenaltyRenderer final : public RivalRenderer {
  public:

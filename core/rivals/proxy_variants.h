@@ -156,6 +156,12 @@ struct DensityProxyParameters {
 
 Parameters parameters(DensityProxyParameters& p);
 std::string validate(const DensityProxyParameters& p);
+// This renderer reports the position of a ball with the nominal radius, whatever its current radius is. The
+// current radius grows with the spacing of the points, so that the ball does not fall through between them:
+// ball_radius_m is 0.
+inline RenderedContact rendered_contact(const DensityProxyParameters& p) {
+  return {p.proxy.contact_radius_m()};
+}
 
 class DensityProxyRenderer final : public Renderer {
  public:

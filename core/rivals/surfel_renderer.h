@@ -46,6 +46,9 @@ std::string validate(const SurfelParameters& p);
 inline double max_stiffness_N_per_m(const SurfelParameters& p) {
   return p.stiffness_N_per_m;
 }
+inline RenderedContact rendered_contact(const SurfelParameters&) {
+  return {};
+}
 
 class SurfelRenderer final : public RivalRenderer {
  public:

@@ -24,6 +24,10 @@ struct TrackedSheetParameters {
 
 Parameters parameters(TrackedSheetParameters& p);
 std::string validate(const TrackedSheetParameters& p);
+// A sheet that is fitted to the points holds the ball, also between the points, so ball_radius_m is 0.
+inline RenderedContact rendered_contact(const TrackedSheetParameters& p) {
+  return {p.proxy.contact_radius_m()};
+}
 
 class TrackedSheetRenderer final : public Renderer {
  public:

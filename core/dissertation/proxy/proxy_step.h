@@ -64,13 +64,21 @@ Parameters with_fixed_radii(Parameters list);
 inline double max_stiffness_N_per_m(const ProxyParameters& p) {
   return p.stiffness_N_per_m;
 }
-// The same for the settings of a method that has a proxy.
-template <class Settings>
-requires requires(const Settings& s) {
-  s.proxy.stiffness_N_per_m;
+inline RenderedContact rendered_contact(const ProxyParameters& p) {
+  return {p.contact_radius_m(), 0, p.contact_radius_m()};
 }
+// The settings of a method that has a proxy.
+template <class Settings>
+concept HasProxy = requires(const Settings& s) {
+  s.proxy.stiffness_N_per_m;
+};
+template <HasProxy Settings>
 double max_stiffness_N_per_m(const Settings& s) {
   return max_stiffness_N_per_m(s.proxy);
+}
+template <HasProxy Settings>
+RenderedContact rendered_contact(const Settings& s) {
+  return rendered_contact(s.proxy);
 }
 
 // Returns the state of 4.2.1: entrenched below r1, contact from r1 to r2 (both included), free above r2.

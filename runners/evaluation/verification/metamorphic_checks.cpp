@@ -15,7 +15,6 @@ namespace remote_touch {
 
 namespace {
 
-using RendererFactory = Factory<Renderer, double, const Kernels&>;
 using Outputs = std::vector<RenderOutput>;
 
 constexpr CheckName kTouch{

@@ -1,9 +1,14 @@
 #include "runners/experiment/catalog/catalog.h"
 
-#include <numbers>
-
+#include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
+#include "core/rivals/god_object_renderer.h"
+#include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/mls_surface_renderer.h"
+#include "core/rivals/penalty_renderer.h"
+#include "core/rivals/proxy_variants.h"
+#include "core/rivals/surfel_renderer.h"
 #include "runners/experiment/hand/contact_replay.h"
 #include "runners/experiment/hand/image_press.h"
 #include "runners/experiment/hand/image_scan.h"
@@ -22,31 +27,6 @@
 #include "scenarios/synthetic/resting_clouds.h"
 
 namespace remote_touch {
-namespace {
-
-// Returns the integral of the weight over q^2, from q = h to q = 1. q: distance in units of R. h: height in
-// the same units.
-double weight_above(SurfaceWeight weight, double h) {
-  if (weight == SurfaceWeight::wyvill) {
-    const double a = 1 - h * h;
-    return a * a * a * (5.0 / 27 + a / 9);
-  }
-  const double b = 1 - h, to_fifth = b * b * b * b * b;
-  return 2 * to_fifth * (1 - 1.5 * b + b * b * (4.0 / 7));
-}
-
-}  // namespace
-
-RenderedContact rendered_contact(const ImplicitSurfaceParameters& p) {
-  if (p.surface == SurfaceKind::surfels) return {};
-  const double points = std::numbers::pi * (p.support_radius_m / kReferenceSpacing_m) *
-                        (p.support_radius_m / kReferenceSpacing_m);
-  double low = 0, high = 1;
-  for (double middle = 0.5; middle > low && middle < high; middle = 0.5 * (low + high))
-    (points * weight_above(p.weight, middle) > p.threshold ? low : high) = middle;
-  return {p.support_radius_m * low};
-}
-
 namespace {
 
 std::vector<ScenarioEntry> built_in_scenarios() {

@@ -26,10 +26,8 @@ bool can_be_pressed(const ExperimentConfiguration& configuration, const Sequence
   return false;
 }
 
-using RendererFactory = decltype(Part<RendererEntry>::factory);
-
-RendererFactory copy_of(const Part<RendererEntry>& renderer) {
-  RendererFactory copy = find_entry(renderers(), renderer.name, "renderer.name").make();
+std::unique_ptr<RendererFactory> copy_of(const Part<RendererEntry>& renderer) {
+  auto copy = find_entry(renderers(), renderer.name, "renderer.name").make();
   Json values = Json::object();
   write_parameters(renderer.factory->settings(), values);
   read_parameters(values, copy->settings(), "renderer");
@@ -81,7 +79,7 @@ template <class Visit>
 void after_changes(const ExperimentConfiguration& configuration, Visit visit) {
   const std::vector<RendererChange>& changes = configuration.changes;
   if (changes.empty()) return;
-  const RendererFactory factory = copy_of(configuration.renderer);
+  const auto factory = copy_of(configuration.renderer);
   const Parameters live = live_ones(factory->settings());
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const std::string where = "changes." + std::to_string(i);

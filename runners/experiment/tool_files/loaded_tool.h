@@ -71,6 +71,10 @@ template <class MotionSettings>
 double max_stiffness_N_per_m(const MovedToolSettings<MotionSettings>& s) {
   return max_stiffness_N_per_m(s.motion);
 }
+template <class MotionSettings>
+RenderedContact rendered_contact(const MovedToolSettings<MotionSettings>&) {
+  return RenderedContact::unknown();
+}
 
 // The 6-DOF fixture renderer for experiments, chapter 7: a tool of spheres made from a mesh, and its motion.
 
@@ -108,6 +112,9 @@ std::string validate(const LoadedSpheres::Settings& s);
 std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s);
 inline double max_stiffness_N_per_m(const LoadedSpheres::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
+}
+inline RenderedContact rendered_contact(const LoadedSpheres::Settings&) {
+  return RenderedContact::unknown();
 }
 
 }  // namespace remote_touch

@@ -177,7 +177,7 @@ class PluginFactory final : public RendererFactory {
                    [&] { return functions_.max_stiffness_N_per_m(values_.data()); });
   }
   RenderedContact contact() const override {
-    if (!functions_.rest_distance_m) return {std::numeric_limits<double>::quiet_NaN()};
+    if (!functions_.rest_distance_m) return RenderedContact::unknown();
     return {
         guarded(functions_, "rest_distance_m", [&] { return functions_.rest_distance_m(values_.data()); })};
   }

@@ -58,8 +58,6 @@ class PluginRenderer final : public Renderer {
   std::shared_ptr<const FramePreparation> prepared_;  // newest frame's result; the library may point into it
 };
 
-using RendererFactory = Factory<Renderer, double, const Kernels&>;
-
 // Returns a factory with the default values of the settings.
 std::unique_ptr<RendererFactory> plugin_factory(const remote_touch_renderer& functions);
 

@@ -191,7 +191,7 @@ class PythonRenderer final : public Renderer {
   int newest_ = -1;
 };
 
-class PythonRendererFactory final : public PythonFactory<Renderer, double, const Kernels&> {
+class PythonRendererFactory final : public PythonFactory<RendererFactory> {
  public:
   PythonRendererFactory(const PythonEntry& entry, bool has_tool)
       : PythonFactory(entry), has_tool_(has_tool) {}
@@ -320,9 +320,9 @@ class PythonTrajectory final : public Trajectory {
 
 // A factory of objects that are made from the class, the settings and these arguments.
 template <class Made, class Interface, class... From>
-class FactoryOf final : public PythonFactory<Interface, From...> {
+class FactoryOf final : public PythonFactory<Factory<Interface, From...>> {
  public:
-  using PythonFactory<Interface, From...>::PythonFactory;
+  using PythonFactory<Factory<Interface, From...>>::PythonFactory;
   std::unique_ptr<Interface> build(From... from) const override {
     return std::make_unique<Made>(this->type_, this->settings_, from...);
   }

@@ -129,8 +129,8 @@ ScenarioEntry scenario_entry_of(PythonEntry entry);
 TrajectoryEntry trajectory_entry_of(PythonEntry entry);
 
 // The common part of all factories of such classes.
-template <class Seam, class... Arguments>
-class PythonFactory : public Factory<Seam, Arguments...> {
+template <class Base>
+class PythonFactory : public Base {
  public:
   explicit PythonFactory(const PythonEntry& entry) : type_(entry.type), settings_(entry.settings) {}
   Parameters settings() override { return settings_.parameters(); }
@@ -143,8 +143,6 @@ class PythonFactory : public Factory<Seam, Arguments...> {
     });
   }
   std::vector<RecordingPart> inputs() const override { return {}; }
-  double stiffness_N_per_m() const override { return 0; }
-  RenderedContact contact() const override { return {}; }
 
  protected:
   double number_of(const char* method) const {

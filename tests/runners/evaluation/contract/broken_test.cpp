@@ -57,6 +57,9 @@ std::string validate(const SpringSettings&) {
 double max_stiffness_N_per_m(const SpringSettings& s) {
   return s.stiffness_N_per_m;
 }
+RenderedContact rendered_contact(const SpringSettings&) {
+  return RenderedContact::unknown();
+}
 
 // Defaults outside their ranges.
 struct ManySteps : SpringSettings {

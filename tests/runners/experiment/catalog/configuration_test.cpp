@@ -41,6 +41,9 @@ std::string validate(const Boaster::Settings&) {
 double max_stiffness_N_per_m(const Boaster::Settings& s) {
   return s.stiffness == 0 ? std::nan("") : s.stiffness > 1e8 ? HUGE_VAL : s.stiffness - 1;
 }
+RenderedContact rendered_contact(const Boaster::Settings&) {
+  return RenderedContact::unknown();
+}
 
 std::string change(const char* time_s, const std::string& parameter, const char* value) {
   return std::string(R"({"time_s": )") + time_s + R"(, "parameter": ")" + parameter + R"(", "value": )" +
