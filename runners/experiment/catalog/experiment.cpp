@@ -68,12 +68,7 @@ void add_inputs(const Part<ScenarioEntry>& scenario, std::vector<RecordingPart>&
 // steps of the slave are too long for it. See load_tool() for the tool itself.
 std::optional<SlaveTool> slave_tool(const ExperimentConfiguration& configuration) {
   if (!renders_tool(configuration)) return {};
-  Json of_renderer = Json::object(), of_tool = Json::object();
-  write_parameters(configuration.renderer.factory->settings(), of_renderer);
-  ToolSettings settings;
-  for (const Parameter& p : parameters(settings)) of_tool[p.name] = of_renderer[p.name];
-  read_parameters(of_tool, parameters(settings), "renderer");
-  const auto tool = load_tool(settings);
+  const auto tool = load_tool(*configuration.renderer.factory->tool());
   SlaveTool made = make_slave_tool(tool->mesh, tool->inertia_m2);
   const std::string problem = validate(*configuration.slave, made, 1 / configuration.run.haptic_rate_hz);
   if (!problem.empty()) throw InputError("slave." + problem);
@@ -268,13 +263,10 @@ FrameDeadBandSettings Experiment::frame_dead_band() const {
 
 std::optional<Experiment> Experiment::recorded_experiment() const {
   if (configuration_.scenario.name != kRecordedSession) return {};
-  for (const Parameter& p : configuration_.scenario.factory->settings())
-    if (const auto* const path = std::get_if<std::string*>(&p.value)) {
-      const SessionReader session{find_recording(**path)};
-      if (session.depth() != kSimulatedDepth) return {};
-      return from_json(parse_json(session.config(), **path + " config"));
-    }
-  return {};
+  const std::string path = configuration_.scenario.factory->inputs().front().path;  // the recording
+  const SessionReader session{find_recording(path)};
+  if (session.depth() != kSimulatedDepth) return {};
+  return from_json(parse_json(session.config(), path + " config"));
 }
 
 std::unique_ptr<const Scenario> Experiment::build_recorded_scene(const Kernels& kernels) const {

@@ -19,6 +19,8 @@
 
 namespace remote_touch {
 
+struct ToolSettings;
+
 // Settings that can be read, listed and checked.
 class Configurable {
  public:
@@ -38,6 +40,7 @@ class RendererFactory : public Factory<Renderer, double, const Kernels&> {  // t
  public:
   virtual double stiffness_N_per_m() const = 0;  // see max_stiffness_N_per_m() below
   virtual RenderedContact contact() const = 0;
+  virtual const ToolSettings* tool() const { return nullptr; }  // the tool as settings, if it has one
 };
 
 // Builds a product that has a constructor (Settings, Arguments...). The namespace of the settings has these
@@ -71,12 +74,19 @@ class FactoryFor : public Base {
 // - double max_stiffness_N_per_m(const Settings&): an upper bound of the growth of |force| with the
 //   displacement of the HIP
 // - RenderedContact rendered_contact(const Settings&): RenderedContact::unknown() if it is not known
+// A renderer of a tool that a slave can have keeps the settings of the tool as Settings::tool.
 template <class Product, class Settings>
 class RendererFactoryFor final
     : public FactoryFor<Product, Settings, RendererFactory, Renderer, double, const Kernels&> {
  public:
   double stiffness_N_per_m() const override { return max_stiffness_N_per_m(this->values_); }
   RenderedContact contact() const override { return rendered_contact(this->values_); }
+  const ToolSettings* tool() const override {
+    if constexpr (requires(const ToolSettings* found) { found = &this->values_.tool; })
+      return &this->values_.tool;
+    else
+      return nullptr;
+  }
 };
 
 template <class Made>

@@ -141,11 +141,6 @@ void check_sequence(ExperimentConfiguration& configuration) {
 
 namespace {
 
-bool has_setting(const Part<RendererEntry>& renderer, const std::string& name) {
-  const Parameters settings = renderer.factory->settings();
-  return std::ranges::any_of(settings, [&](const Parameter& p) { return p.name == name; });
-}
-
 // The word of feedback.force.
 std::string name_of(FeedbackSettings feedback) {
   for (const Parameter& p : parameters(feedback))
@@ -157,7 +152,7 @@ std::string name_of(FeedbackSettings feedback) {
 
 // The slave has the tool of the renderer.
 void check_slave_tool(const ExperimentConfiguration& configuration) {
-  if (!has_setting(configuration.renderer, "tool_mesh"))
+  if (!configuration.renderer.factory->tool())
     throw InputError("slave", "the tool of the renderer " + configuration.renderer.name +
                                   " is not known: expected a built-in renderer, or one without a tool");
   const double radius_m = configuration.slave->radius_m;
