@@ -28,7 +28,7 @@ inline bool has_contact_force(const Trace& trace, std::size_t i) {
 }
 
 // The contact point of a ball: the point on the sphere of radius r_c around the proxy that faces the surface,
-// according to the renderer's normal. factory.h defines the contact point of every renderer, by the
+// according to the renderer's normal. renderer.h defines the contact point of every renderer, by the
 // true normal.
 
 // P - r_c n, world frame.
@@ -64,7 +64,7 @@ double force_fraction(const Trace& trace);
 double last_force_time_s(const Trace& trace);
 
 // Distance of the rendered surface from the true one, by one rule for every renderer: the height of the
-// contact point above the true surface, Trace::contact (factory.h defines the contact point). Both
+// contact point above the true surface, Trace::contact (renderer.h defines the contact point). Both
 // sides count, and so does every tick, not only the last.
 //
 // Only settled ticks are judged: those in which the renderer has had a frame and the HIP has been below the

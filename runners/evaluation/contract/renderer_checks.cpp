@@ -9,6 +9,7 @@
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/evaluation/contract/contract_tests.h"
 #include "runners/evaluation/contract/flat_scene.h"
+#include "runners/evaluation/verification/contact_model.h"
 #include "runners/experiment/catalog/configuration.h"
 
 namespace remote_touch {
@@ -23,7 +24,7 @@ std::unique_ptr<Renderer> build(const RendererEntry& entry, const FillSettings& 
 // of 5 mm, because it renders no others.
 PointCloud grid_for(const RendererEntry& entry, int n) {
   PointCloud cloud = scenes::flat_grid(n);
-  if (entry.contact_model.renders_only_regions) cloud.fixture_radius_m.assign(cloud.size(), 0.005);
+  if (contact_model_of(entry.name).renders_only_regions) cloud.fixture_radius_m.assign(cloud.size(), 0.005);
   return cloud;
 }
 
@@ -82,7 +83,8 @@ void is_as_stiff_as_it_says(const RendererEntry& entry, const FillSettings& fill
   const auto renderer = factory->build(1000, scenes::kernels());
   renderer->on_frame(scenes::frame(grid_for(entry, 60)));
   resting_force(*renderer, 0.02, 0);
-  const double high = entry.contact_model.pressed_hip_passes_through ? 0.003 : -0.008, deeper = 0.001;
+  const double high = contact_model_of(entry.name).pressed_hip_passes_through ? 0.003 : -0.008,
+               deeper = 0.001;
   const double before = resting_force(*renderer, high, 0.3);
   const double stiffness = (resting_force(*renderer, high - deeper, 0.6) - before) / deeper;
   EXPECT_GT(before, 0) << entry.name;
@@ -174,7 +176,7 @@ void a_live_parameter_may_change_in_contact(const RendererEntry& entry, const Fi
   renderer->reserve(4000);
   renderer->on_frame(scenes::frame(grid_for(entry, 60)));
   resting_force(*renderer, 0.02, 0);
-  const double height = entry.contact_model.pressed_hip_passes_through ? 0.003 : -0.008;
+  const double height = contact_model_of(entry.name).pressed_hip_passes_through ? 0.003 : -0.008;
   resting_force(*renderer, height, 0.3);
   double time_s = 0.6;
   for (const Parameter& parameter : renderer->live_parameters()) {
@@ -267,7 +269,7 @@ void without_a_frame_the_proxy_is_the_hip(const RendererEntry& entry, const Fill
 void a_device_that_is_not_finite_gets_no_force_and_does_no_harm(const RendererEntry& entry,
                                                                 const FillSettings& fill) {
   const auto renderer = build(entry, fill);
-  const double height = entry.contact_model.pressed_hip_passes_through ? 0.002 : -0.02;
+  const double height = contact_model_of(entry.name).pressed_hip_passes_through ? 0.002 : -0.02;
   renderer->on_frame(scenes::frame(grid_for(entry, 60)));
   // The HIP is pressed from 2 cm above until the proxy rests, because some proxies move by only millimetres a
   // tick.

@@ -26,7 +26,7 @@ constexpr CheckName kFinite{"finite", "all positions, directions, forces and tor
 class Subject {
  public:
   Subject(const RendererEntry& entry, const std::vector<std::string>& assignments, const Kernels& kernels)
-      : entry_(entry), assignments_(assignments), kernels_(kernels) {}
+      : entry_(entry), model_(contact_model_of(entry.name)), assignments_(assignments), kernels_(kernels) {}
 
   std::unique_ptr<RendererFactory> factory() const {
     Json configuration = Json::object();
@@ -53,21 +53,20 @@ class Subject {
   // True if the scene determines the output of a renderer of tools; always true for other renderers.
   bool is_for(const MetamorphicScene& scene) const {
     if (!is_tool()) return true;
-    const ContactModel& model = entry_.contact_model;
-    if (model.renders_only_regions && scene.views.front().cloud.fixture_radius_m.empty()) return false;
-    if (model.motion_amplifies_rounding && !scene.cloud_rests) return false;
-    return !(model.smooths_creases && scene.has_crease);
+    if (model_.renders_only_regions && scene.views.front().cloud.fixture_radius_m.empty()) return false;
+    if (model_.motion_amplifies_rounding && !scene.cloud_rests) return false;
+    return !(model_.smooths_creases && scene.has_crease);
   }
   DegreesOfFreedom degrees_of_freedom() const { return entry_.degrees_of_freedom; }
   bool is_tool() const { return degrees_of_freedom() == DegreesOfFreedom::six; }
   // Returns the smallest fraction of the ticks that must have a force.
-  double min_touch_fraction() const { return entry_.contact_model.may_lose_contact ? 0.02 : 0.5; }
+  double min_touch_fraction() const { return model_.may_lose_contact ? 0.02 : 0.5; }
   Variation unvaried(const MetamorphicScene& scene, const Outputs& outputs) const {
     const auto settings_of = factory();
     const Parameters parameters = settings_of->settings();
     Variation run{scene, outputs, &kernels_};
     run.reach_m = max_length_m(parameters);
-    run.contact_model = entry_.contact_model;
+    run.contact_model = model_;
     run.can_be_mirrored = !is_tool() || (!run.contact_model.renders_only_regions && !names_a_tool());
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
     return run;
@@ -87,6 +86,7 @@ class Subject {
   }
 
   const RendererEntry& entry_;
+  const ContactModel model_;
   const std::vector<std::string>& assignments_;
   const Kernels& kernels_;
 };

@@ -8,8 +8,8 @@
 
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
+#include "runners/evaluation/verification/contact_model.h"
 #include "runners/evaluation/verification/verification_scenes.h"
-#include "runners/experiment/catalog/factory.h"
 
 namespace remote_touch {
 

@@ -98,57 +98,56 @@ std::vector<TrajectoryEntry> built_in_trajectories() {
 
 std::vector<RendererEntry> built_in_renderers() {
   return {
-      renderer_entry<ProxyRenderer, ProxyParameters>("proxy", DegreesOfFreedom::three, ContactModel::points,
+      renderer_entry<ProxyRenderer, ProxyParameters>("proxy", DegreesOfFreedom::three,
                                                      "3-DOF point cloud proxy, chapters 4 and 5"),
       renderer_entry<TrackedSheetRenderer, TrackedSheetParameters>(
-          "tracked-sheet", DegreesOfFreedom::three, ContactModel::sheet,
+          "tracked-sheet", DegreesOfFreedom::three,
           "3-DOF proxy on a surface that is tracked from frame to frame and denoised; beyond the dissertation"),
       renderer_entry<PenaltyRenderer, PenaltyParameters>(
-          "penalty", DegreesOfFreedom::three, ContactModel::nothing,
+          "penalty", DegreesOfFreedom::three,
           "3-DOF method for comparison: direct (penalty) rendering, a spring without a proxy"),
       renderer_entry<ImplicitSurfaceRenderer, ImplicitSurfaceParameters>(
-          "implicit-surface", DegreesOfFreedom::three, ContactModel::points,
+          "implicit-surface", DegreesOfFreedom::three,
           "3-DOF method for comparison: a proxy on an implicit surface, Leeper, Chan and Salisbury 2012 [84]"),
       renderer_entry<SurfelRenderer, SurfelParameters>(
-          "surfels", DegreesOfFreedom::three, ContactModel::oriented,
+          "surfels", DegreesOfFreedom::three,
           "3-DOF method for comparison: a proxy on surfels with normals towards the sensor, after the program of [84]",
           {FrameNeed::view}),
       renderer_entry<MlsSurfaceRenderer, MlsSurfaceParameters>(
-          "mls-surface", DegreesOfFreedom::three, ContactModel::oriented,
+          "mls-surface", DegreesOfFreedom::three,
           "3-DOF method for comparison: a proxy on a moving least squares surface, Alexa 2003 and Adamson 2003",
           {FrameNeed::view}),
       renderer_entry<AveragedProxyRenderer, AveragedProxyParameters>(
-          "averaged-proxy", DegreesOfFreedom::three, ContactModel::oriented,
+          "averaged-proxy", DegreesOfFreedom::three,
           "3-DOF method for comparison: the proxy of chapter 4 on points averaged over the last frames",
           {FrameNeed::view}),
       renderer_entry<DensityProxyRenderer, DensityProxyParameters>(
-          "density-proxy", DegreesOfFreedom::three, ContactModel::points,
+          "density-proxy", DegreesOfFreedom::three,
           "3-DOF method for comparison: the proxy of chapter 4, its radius adapted to the density of the points"),
       renderer_entry<OracleProxyRenderer, OracleProxyParameters>(
-          "oracle-proxy", DegreesOfFreedom::three, ContactModel::points,
+          "oracle-proxy", DegreesOfFreedom::three,
           "3-DOF oracle, simulations only: the proxy of chapter 4, given the true velocity of the surface"),
       renderer_entry<GodObjectRenderer, GodObjectParameters>(
-          "god-object", DegreesOfFreedom::three, ContactModel::mesh,
+          "god-object", DegreesOfFreedom::three,
           "3-DOF method for comparison: a god-object on the mesh of an organised frame, Zilles and Salisbury 1995",
           {FrameNeed::organised}),
-      renderer_entry<LoadedTool, LoadedTool::Settings>("tool", DegreesOfFreedom::six, ContactModel::points,
-                                                       "6-DOF rendering of a rigid tool, chapter 6",
-                                                       {FrameNeed::normals}),
+      renderer_entry<LoadedTool, LoadedTool::Settings>(
+          "tool", DegreesOfFreedom::six, "6-DOF rendering of a rigid tool, chapter 6", {FrameNeed::normals}),
       renderer_entry<LoadedTrackedTool, LoadedTrackedTool::Settings>(
-          "tracked-tool", DegreesOfFreedom::six, ContactModel::sheet,
+          "tracked-tool", DegreesOfFreedom::six,
           "6-DOF rendering of a rigid tool on surfaces that are tracked from frame to frame and denoised; beyond the dissertation",
           {FrameNeed::normals}),
       renderer_entry<LoadedToolPenalty, LoadedToolPenalty::Settings>(
-          "tool-penalty", DegreesOfFreedom::six, ContactModel::points,
+          "tool-penalty", DegreesOfFreedom::six,
           "6-DOF method for comparison: points push a tool that nothing constrains, McNeely, Puterbaugh and Troy 1999"),
       renderer_entry<LoadedToolGodObject, LoadedToolGodObject::Settings>(
-          "tool-god-object", DegreesOfFreedom::six, ContactModel::resting_points,
+          "tool-god-object", DegreesOfFreedom::six,
           "6-DOF method for comparison: a god-object held by the contacts of its pose, Ortega, Redon and Coquillart 2007"),
       renderer_entry<LoadedToolInnerSpheres, LoadedToolInnerSpheres::Settings>(
-          "tool-inner-spheres", DegreesOfFreedom::six, ContactModel::points,
+          "tool-inner-spheres", DegreesOfFreedom::six,
           "6-DOF method for comparison: the volume of inner spheres behind the points pushes a tool, Weller and Zachmann 2009, Kaluschke et al. 2017"),
       renderer_entry<LoadedSpheres, LoadedSpheres::Settings>(
-          "sphere-tree", DegreesOfFreedom::six, ContactModel::regions,
+          "sphere-tree", DegreesOfFreedom::six,
           "6-DOF forbidden regions: a tool made of spheres is kept out of the balls around points, chapter 7",
           {FrameNeed::regions}),
   };

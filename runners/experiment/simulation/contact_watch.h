@@ -12,7 +12,6 @@
 #include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/rendering/renderer.h"
-#include "runners/experiment/catalog/factory.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

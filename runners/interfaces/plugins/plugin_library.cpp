@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/search/neighbour_search.h"
+#include "runners/evaluation/verification/contact_model.h"
 
 namespace remote_touch {
 namespace {
@@ -343,7 +344,7 @@ std::vector<RendererEntry> load_plugin(const std::string& file) {
     entry.make = [functions] { return plugin_factory(*functions); };
     entry.degrees_of_freedom =
         functions->degrees_of_freedom == 6 ? DegreesOfFreedom::six : DegreesOfFreedom::three;
-    entry.contact_model = kContactModels[functions->contact_model];
+    declare_contact_model(entry.name, kContactModels[functions->contact_model]);
     entries.push_back(std::move(entry));
   }
   if (entries.size() == kMaxRenderers && renderer_with(kMaxRenderers) != nullptr)

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
+#include "runners/evaluation/verification/contact_model.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/python/bindings.h"
@@ -109,10 +110,11 @@ void add_renderer(PythonEntry entry, const py::object& type, PythonClasses& all)
   for (const py::handle need : type.attr("needs"))
     needs.push_back(choice_of<FrameNeed>(
         need.cast<std::string>(), {"normals", "organised", "regions", "view"}, entry.name + ": needs"));
+  declare_contact_model(entry.name, kContactModels[model]);
   replace_or_add(
       all.renderers,
       renderer_entry_of(std::move(entry), freedom == 6 ? DegreesOfFreedom::six : DegreesOfFreedom::three,
-                        kContactModels[model], std::move(needs)));
+                        std::move(needs)));
 }
 
 // A class replaces an earlier one of the same name, because a cell of a notebook may be run again.

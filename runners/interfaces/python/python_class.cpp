@@ -210,11 +210,10 @@ class PythonRendererFactory final : public PythonFactory<RendererFactory> {
 }  // namespace
 
 RendererEntry renderer_entry_of(PythonEntry entry, DegreesOfFreedom degrees_of_freedom,
-                                ContactModel contact_model, std::vector<FrameNeed> needs) {
+                                std::vector<FrameNeed> needs) {
   RendererEntry made;
   made.name = entry.name, made.summary = entry.summary;
-  made.degrees_of_freedom = degrees_of_freedom, made.contact_model = contact_model;
-  made.needs = std::move(needs);
+  made.degrees_of_freedom = degrees_of_freedom, made.needs = std::move(needs);
   const bool has_tool = degrees_of_freedom == DegreesOfFreedom::six;
   made.make = [entry = std::move(entry), has_tool] {
     return std::make_unique<PythonRendererFactory>(entry, has_tool);

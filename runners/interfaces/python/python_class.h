@@ -124,7 +124,7 @@ struct PythonEntry {
 // called by any thread, one at a time because of the interpreter's lock. Whatever they raise ends the run
 // with a PythonProblem.
 RendererEntry renderer_entry_of(PythonEntry entry, DegreesOfFreedom degrees_of_freedom,
-                                ContactModel contact_model, std::vector<FrameNeed> needs);
+                                std::vector<FrameNeed> needs);
 ScenarioEntry scenario_entry_of(PythonEntry entry);
 TrajectoryEntry trajectory_entry_of(PythonEntry entry);
 

@@ -1,6 +1,7 @@
 #include "entries.h"
 
 #include <analysis/trace/trace.h>
+#include <runners/evaluation/verification/contact_model.h>
 
 #include "centroid_renderer.h"
 #include "dome.h"
@@ -20,7 +21,8 @@ double mean_force_N(const remote_touch::Trace& trace) {
 
 void add_entries(remote_touch::Catalog& catalog) {
   using namespace remote_touch;
-  catalog.add(renderer_entry<CentroidRenderer>("centroid", DegreesOfFreedom::three, ContactModel::nothing,
+  declare_contact_model("centroid", ContactModel::nothing);  // for verify and the contract tests
+  catalog.add(renderer_entry<CentroidRenderer>("centroid", DegreesOfFreedom::three,
                                                "a spring away from the centroid of the points near the HIP"));
   catalog.add(scenario_entry<Dome>("dome", "a ball under a flat cloud that rises and sinks"));
   catalog.add(trajectory_entry<Tap>("tap", "taps the scene from above"));

@@ -10,6 +10,7 @@
 #include "core/search/neighbour_search.h"
 #include "runners/evaluation/contract/contract_tests.h"
 #include "runners/evaluation/contract/flat_scene.h"
+#include "runners/evaluation/verification/contact_model.h"
 
 namespace remote_touch::broken_contract_test {
 namespace {
@@ -118,9 +119,10 @@ class Spring final : public Renderer {
 
 template <Mistake kMistake, class Settings = SpringSettings>
 Names broken_by() {
-  return broken_rules(renderer_entry<Spring<kMistake, Settings>>(
-                          "spring", DegreesOfFreedom::three, ContactModel::nothing, "a spring above a plane"),
-                      renderer_checks());
+  declare_contact_model("spring", ContactModel::nothing);
+  return broken_rules(
+      renderer_entry<Spring<kMistake, Settings>>("spring", DegreesOfFreedom::three, "a spring above a plane"),
+      renderer_checks());
 }
 
 bool has(const Names& names, const std::string& name) {

@@ -259,7 +259,7 @@ Parameters parameters(OddParameters& p) {
 
 TEST(Verification, SettingsThatCannotBeCheckedAreRefusedByName) {
   const RendererEntry odd = renderer_entry<WrongRenderer<Fault::none>, OddParameters>(
-      "odd", DegreesOfFreedom::three, ContactModel::points, "a parameter in an unheard-of unit");
+      "odd", DegreesOfFreedom::three, "a parameter in an unheard-of unit");
   EXPECT_EQ(refusal([&] { verify(odd); }).find("patience_fortnight: ends in no known unit"), 0u);
   const RendererEntry proxy = find_entry(renderers(), "proxy", "renderer");
   EXPECT_EQ(refusal([&] { verify(proxy, {"r3_m=0.7"}); }).find("r3_m = 0.7: a check multiplies it by 2"), 0u);

@@ -184,13 +184,12 @@ using WrongRenderer = Spoiled<kFault, ProxyRenderer, ProxyParameters>;
 // Returns an entry as a line of the catalog makes it.
 template <Fault kFault>
 RendererEntry wrong_renderer(const char* name) {
-  return renderer_entry<WrongRenderer<kFault>>(name, DegreesOfFreedom::three, ContactModel::points,
-                                               "wrong in one way");
+  return renderer_entry<WrongRenderer<kFault>>(name, DegreesOfFreedom::three, "wrong in one way");
 }
 template <Fault kFault>
 RendererEntry wrong_tool(const char* name) {
-  return renderer_entry<Spoiled<kFault, LoadedTool, LoadedTool::Settings>>(
-      name, DegreesOfFreedom::six, ContactModel::points, "wrong in one way");
+  return renderer_entry<Spoiled<kFault, LoadedTool, LoadedTool::Settings>>(name, DegreesOfFreedom::six,
+                                                                           "wrong in one way");
 }
 
 }  // namespace remote_touch

@@ -143,7 +143,7 @@ TEST(RendererChanges, TheGreatestStiffnessIsThatOfAnyTime) {
 // The force of a device is scaled by it, so a stiffness that is none must not pass as a small one.
 TEST(RendererChanges, AStiffnessThatIsNoneIsRefusedForEveryFactory) {
   Catalog catalog = built_in_catalog();
-  catalog.add(renderer_entry<Boaster>("boaster", DegreesOfFreedom::three, ContactModel::points, "boasts"));
+  catalog.add(renderer_entry<Boaster>("boaster", DegreesOfFreedom::three, "boasts"));
   use_catalog(std::move(catalog));
   const auto refused = [](const std::string& at_start, const std::string& later) {
     return refusal([&] {

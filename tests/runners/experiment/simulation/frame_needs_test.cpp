@@ -9,6 +9,7 @@
 #include <string>
 
 #include "analysis/trace/trace.h"
+#include "runners/evaluation/verification/contact_model.h"
 #include "tests/runners/experiment/simulation/cloud_kinds.h"
 
 namespace remote_touch::frame_needs_test {
@@ -63,7 +64,7 @@ std::string renderer(const Method& method) {
 // Force along `outwards` at the end of the press. If points only push, a deeper hand has passed them by then,
 // and the greatest force of the run is returned.
 double felt_N(const Trace& trace, const Kind& kind, const Method& method) {
-  if (!find_entry(renderers(), method.renderer, "renderer").contact_model.pressed_hip_passes_through)
+  if (!contact_model_of(method.renderer).pressed_hip_passes_through)
     return trace.force_N[trace.length() - 1].dot(kind.outwards);
   double greatest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
