@@ -244,11 +244,12 @@ double FaultySensor::captured_s(int frame) const {
   return scenario_->captured_s(last) + (frame - last) / frame_rate_hz();
 }
 
-std::optional<double> FaultySensor::leaves_sensor_s(int frame) const {
-  std::optional<double> out_s;
-  if (frame == scenario_frame(frame)) out_s = scenario_->leaves_sensor_s(frame);
-  if (!(uniforms(of_frame(key_, frame), 0)[is_late] < settings_.late_probability)) return out_s;
-  return out_s.value_or(captured_s(frame)) + settings_.late_delay_s;
+FrameDelivery FaultySensor::delivery(int frame) const {
+  FrameDelivery out = scenario_->delivery(scenario_frame(frame));
+  if (frame != scenario_frame(frame)) out.leaves_sensor_s.reset();
+  if (uniforms(of_frame(key_, frame), 0)[is_late] < settings_.late_probability)
+    out.leaves_sensor_s = out.leaves_sensor_s.value_or(captured_s(frame)) + settings_.late_delay_s;
+  return out;
 }
 
 std::shared_ptr<const NeighbourSearch> FaultySensor::points(int frame) const {

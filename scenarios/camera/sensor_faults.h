@@ -83,18 +83,14 @@ class FaultySensor final : public Scenario {
   std::string input() const override { return scenario_->input(); }
   std::vector<Note> input_notes() const override { return scenario_->input_notes(); }
   std::optional<RigidTransform> sensor_pose() const override { return scenario_->sensor_pose(); }
-  std::optional<double> leaves_sensor_s(int frame) const override;
-  std::optional<std::uint64_t> fixtures_off(int frame) const override {
-    return scenario_->fixtures_off(scenario_frame(frame));
-  }
+  FrameDelivery delivery(int frame) const override;
   std::shared_ptr<const NeighbourSearch> points(int frame) const override;
   PointCloud cloud(int frame) const override;
   double signed_distance(const Vec3& p_W, double time_s) const override {
     return scenario_->signed_distance(p_W, time_s);
   }
   // The surface as the camera measured it, before the simulated faults.
-  bool has_measured_distance() const override { return scenario_->has_measured_distance(); }
-  double measured_distance(const Vec3& p_W, double time_s) const override {
+  std::optional<double> measured_distance(const Vec3& p_W, double time_s) const override {
     return scenario_->measured_distance(p_W, time_s);
   }
   Vec3 true_normal(const Vec3& p_W, double time_s) const override {

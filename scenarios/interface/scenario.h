@@ -44,6 +44,16 @@ enum class SurfaceTime { newest_frame, moving };
 // Two times count as equal if they differ by less than this, because sums and quotients of times are rounded.
 inline constexpr double kSameTime_s = 5e-7;
 
+// How a frame reaches the renderer, if not as the transport of the run says.
+struct FrameDelivery {
+  // Time at which the frame leaves the sensor. Empty if that is the time of capture. A late frame has a later
+  // time. A frame of a recorded live session has the time at which the renderer received it, infinite if it
+  // never did.
+  std::optional<double> leaves_sensor_s = {};
+  // Fixtures that were off when the frame was processed, one bit each; only in a recorded live session.
+  std::optional<std::uint64_t> fixtures_off = {};
+};
+
 // A mesh that is a part of the true surface, and its pose. The spans are valid as long as the scenario.
 struct PosedMesh {
   std::string name;
@@ -77,12 +87,7 @@ class Scenario {
   // The pose of the sensor in the world frame, for a recording. The sensor looks along its z axis.
   virtual std::optional<RigidTransform> sensor_pose() const { return {}; }
 
-  // Time at which the frame leaves the sensor. Empty if that is the time of capture. A late frame has a later
-  // time. A frame of a recorded live session has the time at which the renderer received it, infinite if it
-  // never did.
-  virtual std::optional<double> leaves_sensor_s(int /*frame*/) const { return {}; }
-  // Fixtures that were off when the frame was processed, one bit each; only in a recorded live session.
-  virtual std::optional<std::uint64_t> fixtures_off(int /*frame*/) const { return {}; }
+  virtual FrameDelivery delivery(int /*frame*/) const { return {}; }
 
   // Returns the newest frame captured by time_s, with a tolerance of kSameTime_s for rounded times. Returns
   // frame 0 if no frame was captured by then.
@@ -104,10 +109,7 @@ class Scenario {
   // Distance to the surface as the sensor has measured it in its newest frame, m, with the sign of
   // signed_distance(). A scenario has it if it knows a true surface besides the measured one, so that the
   // error of the camera can be told from that of the renderer. NaN where it is not known.
-  virtual bool has_measured_distance() const { return false; }
-  virtual double measured_distance(const Vec3& /*p_W*/, double /*time_s*/) const {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
+  virtual std::optional<double> measured_distance(const Vec3& /*p_W*/, double /*time_s*/) const { return {}; }
   // Returns the unit normal of the true surface of signed_distance() at the point that is nearest to p,
   // towards the side that the sensor sees. Returns NaN in all three coordinates if the truth is not known. It
   // does so also if several parts of the surface are equally near, within 0.1 mm, as over the bottom of a

@@ -318,12 +318,12 @@ RigidTransform RecordedScene::camera_at(double time_s) const {
 }
 
 double RecordedScene::signed_distance(const Vec3& p_W, double time_s) const {
-  if (!truth_) return measured_distance(p_W, time_s);
+  if (!truth_) return measured_m(p_W, time_s);
   if (!p_W.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   return truth_->at(source_at(time_s), camera_at(time_s).inverse() * p_W).distance_m;
 }
 
-double RecordedScene::measured_distance(const Vec3& p_W, double time_s) const {
+double RecordedScene::measured_m(const Vec3& p_W, double time_s) const {
   if (!p_W.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   return distance_to_measured(newest_cloud(time_s), p_W, settings_.truth_radius_m);
 }

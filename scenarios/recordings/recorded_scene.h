@@ -69,11 +69,12 @@ class RecordedScene : public Scenario {
   PointCloud cloud(int frame) const override;
   // Meshes: the distance to the union of the true objects at their poses in the newest frame, NaN farther
   // than truth_reach_m from all of them, beyond the border of an open one, and outside the mask. Otherwise it
-  // is measured_distance().
+  // is the distance to the measured surface.
   double signed_distance(const Vec3& p_W, double time_s) const override;
   // The distance to a plane through the points of the newest frame around p's pixel, see above.
-  bool has_measured_distance() const override { return truth_ != nullptr; }
-  double measured_distance(const Vec3& p_W, double time_s) const override;
+  std::optional<double> measured_distance(const Vec3& p_W, double time_s) const override {
+    return truth_ ? std::optional(measured_m(p_W, time_s)) : std::nullopt;
+  }
   // Returns NaN if the truth is the measured surface, which is no independent truth: a normal would be judged
   // by the error of the measurement.
   Vec3 true_normal(const Vec3& p_W, double time_s) const override;
@@ -97,6 +98,7 @@ class RecordedScene : public Scenario {
   PointCloud registered(std::size_t source) const;
   void compare(std::size_t source, const PointCloud& cloud) const;
   const PointCloud& newest_cloud(double time_s) const;
+  double measured_m(const Vec3& p_W, double time_s) const;
 
   const Settings settings_;
   RecordingIndex recording_;  // its camera is that of the layout

@@ -67,7 +67,7 @@ std::optional<HueSteps> FixtureAssignment::hue_steps(double captured_s, std::uin
   if (empty()) return std::nullopt;
   HueSteps steps;
   for (std::size_t i = 0; i < rules_.size(); ++i) {
-    const auto* const range = dynamic_cast<const HueRange*>(rules_[i].get());
+    const auto* const range = rules_[i]->as_hue_range();
     if (range == nullptr || range->values().role != FixtureRole::forbidden) return std::nullopt;
     if (FixtureSwitches::is_on(off, i))
       steps.push_back({range->settings(), range->strength(captured_s),

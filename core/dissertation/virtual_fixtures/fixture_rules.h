@@ -32,6 +32,8 @@ struct FixtureValues {
 Parameters parameters(FixtureValues& v);
 std::string validate(const FixtureValues& v);
 
+class HueRange;
+
 class FixtureRule {
  public:
   explicit FixtureRule(const FixtureValues& values) : values_(values) {}
@@ -42,6 +44,9 @@ class FixtureRule {
   // Returns the weight of the rule for each point, from 0 (no effect) to 1; 0 for a point that was not
   // measured. Throws as require().
   virtual std::vector<double> weights(const PointCloud& cloud) const = 0;
+
+  // Returns the rule as one that an OpenCL device can apply; null if it is none.
+  virtual const HueRange* as_hue_range() const { return nullptr; }
 
   const FixtureValues& values() const { return values_; }
   // Returns the value of the schedule, which locks, unlocks and fades the rule as a whole.
@@ -105,6 +110,7 @@ class HueRange final : public FixtureRule {
   // Throws InputError if the cloud has points but no colours.
   void require(const PointCloud& cloud) const override;
   std::vector<double> weights(const PointCloud& cloud) const override;
+  const HueRange* as_hue_range() const override { return this; }
   const Settings& settings() const { return settings_; }
 
  private:

@@ -109,7 +109,7 @@ void FrameStream::send(int frame) {
   const auto chance = uniforms(noise_stream(key_, NoiseUse::transport, static_cast<std::uint32_t>(frame)), 0);
   if (chance[0] < transport_.drop_probability) return;
   std::optional<double> delayed_leave_s;  // time at which the frame leaves the sensor, if not at its capture
-  if (frame == source_frame(frame)) delayed_leave_s = scenario_.leaves_sensor_s(frame);
+  if (frame == source_frame(frame)) delayed_leave_s = scenario_.delivery(frame).leaves_sensor_s;
   const double leaves_sensor_s = delayed_leave_s.value_or(captured_s(frame));
   const FrameInTransit sent{leaves_sensor_s + transport_.latency_s + chance[1] * transport_.jitter_s, frame};
   const auto after = [](const FrameInTransit& a, const FrameInTransit& b) {
@@ -137,7 +137,7 @@ void FrameStream::fill(Frame& frame) {
   const int source = source_frame(frame.index);
   if (processing_.changes_points())
     processing_.fill(frame, scenario_.cloud(source),
-                     scenario_.fixtures_off(frame.index).value_or(processing_.fixtures.off()));
+                     scenario_.delivery(frame.index).fixtures_off.value_or(processing_.fixtures.off()));
   else if (frame.index > source && repeated_)
     frame.points = repeated_;
   else

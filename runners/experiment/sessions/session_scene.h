@@ -35,11 +35,9 @@ class SessionScene final : public Scenario {
   PointCloud cloud(int frame) const override;
   // NaN: the truth is not known.
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  std::optional<double> leaves_sensor_s(int frame) const override {
-    return arrives_s_[static_cast<std::size_t>(frame)];
-  }
-  std::optional<std::uint64_t> fixtures_off(int frame) const override {
-    return session_.fixtures_off(static_cast<std::size_t>(frame));
+  FrameDelivery delivery(int frame) const override {
+    const auto i = static_cast<std::size_t>(frame);
+    return {arrives_s_[i], session_.fixtures_off(i)};
   }
   std::string input() const override;
   // Returns notes if this run did not use all frames that the live renderer received, or if the recording was

@@ -39,8 +39,7 @@ Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double tim
   else if (out.slave_W != out.proxy_W)
     slave_distance_m = scenario.signed_distance(out.slave_W, time_s);
   Trace::Truth truth{proxy_distance_m, slave_distance_m, frame_hash};
-  if (scenario.has_measured_distance())
-    truth.measured_distance_m = scenario.measured_distance(out.proxy_W, time_s);
+  truth.measured_distance_m = scenario.measured_distance(out.proxy_W, time_s);
   return truth;
 }
 
@@ -48,9 +47,9 @@ Trace::Truth truth(const Scenario& scenario, const RenderOutput& out, double tim
 // RenderedContact. The contact point is below x along the true normal. The measured surface is that of the
 // pixel which shows the contact point: x may hide another part of the object.
 double measured_height_m(const Scenario& scenario, const Vec3& x_W, double rest_distance_m, double time_s) {
-  if (!scenario.has_measured_distance()) return std::numeric_limits<double>::quiet_NaN();
-  if (rest_distance_m == 0) return scenario.measured_distance(x_W, time_s);
-  return scenario.measured_distance(x_W - rest_distance_m * scenario.true_normal(x_W, time_s), time_s);
+  const Vec3 foot_W =
+      rest_distance_m == 0 ? x_W : Vec3(x_W - rest_distance_m * scenario.true_normal(x_W, time_s));
+  return scenario.measured_distance(foot_W, time_s).value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 // Returns the force of the tick without the part of guidance, which may pull in any direction.
@@ -60,14 +59,15 @@ Vec3 contact_force_N(const RenderOutput& out) {
 
 // See RenderedContact.
 Trace::TrueContact true_contact(const Scenario& scenario, const RenderedContact& contact, const Vec3& hip_W,
-                                const RenderOutput& out, double proxy_distance_m, double time_s,
+                                const RenderOutput& out, const Trace::Truth& known, double time_s,
                                 WallWatch& hand_walls) {
   const double hip_distance_m = hand_walls.side_m(hip_W, scenario.signed_distance(hip_W, time_s), time_s);
   const bool has_proxy = !(contact.spring_N_per_m > 0);
   const Vec3 x_W = has_proxy ? out.proxy_W : Vec3(hip_W + contact_force_N(out) / contact.spring_N_per_m);
-  const double distance_m = has_proxy ? proxy_distance_m : scenario.signed_distance(x_W, time_s);
+  const double distance_m = has_proxy ? known.proxy_distance_m : scenario.signed_distance(x_W, time_s);
   return {distance_m - contact.rest_distance_m, hip_distance_m,
-          measured_height_m(scenario, x_W, contact.rest_distance_m, time_s)};
+          known.measured_distance_m ? measured_height_m(scenario, x_W, contact.rest_distance_m, time_s)
+                                    : std::numeric_limits<double>::quiet_NaN()};
 }
 
 // Returns the true normal where the renderer touches, below the proxy; NaN without a contact. A tool touches
@@ -188,8 +188,7 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     }
     Trace::Truth known = truth(*scenario, out, time_s, frames.newest_hash(), proxy_walls);
     if (finds_contact)
-      known.contact = true_contact(*scenario, contact, device.position_W, out, known.proxy_distance_m, time_s,
-                                   hand_walls);
+      known.contact = true_contact(*scenario, contact, device.position_W, out, known, time_s, hand_walls);
     if (options.find_true_contact) known.normal = true_normal(*scenario, out, time_s);
     if (hand.follows_script()) known.expected_force_N = trajectory->expected_force_N(time_s);
     trace.append(time_s, device, out, known, hand.state(), slave);

@@ -105,12 +105,7 @@ class ReplaceableScenario final : public Scenario {
   double captured_s(int frame) const override { return shown_->now()->captured_s(frame); }
   bool ends() const override { return shown_->now()->ends(); }
   std::optional<RigidTransform> sensor_pose() const override { return shown_->now()->sensor_pose(); }
-  std::optional<double> leaves_sensor_s(int frame) const override {
-    return shown_->now()->leaves_sensor_s(frame);
-  }
-  std::optional<std::uint64_t> fixtures_off(int frame) const override {
-    return shown_->now()->fixtures_off(frame);
-  }
+  FrameDelivery delivery(int frame) const override { return shown_->now()->delivery(frame); }
   std::shared_ptr<const NeighbourSearch> points(int frame) const override {
     const auto now = shown_->now();
     return now->points(std::min(frame, now->frame_count() - 1));

@@ -199,7 +199,7 @@ TEST(SensorFaults, AllOffGiveTheScenarioBitForBit) {
     EXPECT_TRUE(same_points(same.cloud(frame), plane->cloud(frame)));
     EXPECT_TRUE(same_points(seen.cloud(frame), scene->cloud(frame)));
     EXPECT_EQ(same.captured_s(frame), plane->captured_s(frame));
-    EXPECT_FALSE(same.leaves_sensor_s(frame));
+    EXPECT_FALSE(same.delivery(frame).leaves_sensor_s);
     const auto same_points = same.points(frame), plane_points = plane->points(frame);
     const auto &same_type = *same_points, &plane_type = *plane_points;
     EXPECT_TRUE(typeid(same_type) == typeid(plane_type));

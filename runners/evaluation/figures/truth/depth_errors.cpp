@@ -52,7 +52,7 @@ ComparedPoint compared(const RecordedScene& scene, const JudgedFrame& frame, con
   const RigidTransform X_CW = frame.measured.layout.X_WC.inverse();
   const Vec3 p_W = cloud.point(pixel);
   if (!p_W.allFinite()) return {};
-  ComparedPoint point{scene.measured_distance(p_W, frame.time_s),
+  ComparedPoint point{*scene.measured_distance(p_W, frame.time_s),
                       scene.truth()->at(frame.source, X_CW * p_W).distance_m, kNoValue};
   const Vec3 normal_C = X_CW.linear() * cloud.normal(pixel);
   if (normal_C.allFinite()) point.normal_deg = angle_between(normal_C, true_normal_C) / kRadiansPerDegree;

@@ -224,7 +224,7 @@ double RecordingWindow::signed_distance(const Vec3& p_W, double time_s) const {
   return scene_.truth()->at(frame.source, frame.X_WC.inverse() * p_W).distance_m;
 }
 
-double RecordingWindow::measured_distance(const Vec3& p_W, double time_s) const {
+std::optional<double> RecordingWindow::measured_distance(const Vec3& p_W, double time_s) const {
   return distance_to_measured(cloud_of(*frame_at(newest_frame(time_s)).points), p_W,
                               RecordedScene::Settings().truth_radius_m);
 }
@@ -311,7 +311,7 @@ std::vector<ContactError> contact_errors(const std::vector<Vec3>& contacts_W, co
   std::vector<ContactError> errors;
   for (std::size_t frame = 0; frame < contacts_W.size(); ++frame) {
     const double time_s = window.captured_s(static_cast<int>(frame));
-    const double renderer_m = window.measured_distance(contacts_W[frame], time_s);
+    const double renderer_m = *window.measured_distance(contacts_W[frame], time_s);
     const double camera_m = window.signed_distance(contacts_W[frame], time_s) - renderer_m;
     errors.push_back(std::isnan(camera_m) ? ContactError() : ContactError{renderer_m, camera_m});
   }

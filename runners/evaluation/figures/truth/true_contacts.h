@@ -72,8 +72,7 @@ class RecordingWindow final : public Scenario {
   std::shared_ptr<const NeighbourSearch> points(int frame) const override { return frame_at(frame).points; }
   PointCloud cloud(int frame) const override;
   double signed_distance(const Vec3& p_W, double time_s) const override;
-  bool has_measured_distance() const override { return true; }
-  double measured_distance(const Vec3& p_W, double time_s) const override;
+  std::optional<double> measured_distance(const Vec3& p_W, double time_s) const override;
 
  private:
   struct WindowFrame {

@@ -65,7 +65,7 @@ TEST(SensorFaultFrames, LateFramesComeLaterAndAreOvertaken) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double delay = frames[i].arrives_s - frames[i].captured_s;
     ASSERT_TRUE(std::abs(delay) < 1e-12 || std::abs(delay - 0.05) < 1e-12) << delay;
-    EXPECT_EQ(delay > 0.01, sensor.leaves_sensor_s(frames[i].index).has_value());
+    EXPECT_EQ(delay > 0.01, sensor.delivery(frames[i].index).leaves_sensor_s.has_value());
     late += delay > 0.01 ? 1 : 0;
     came.insert(frames[i].index);
     if (i == 0) continue;
@@ -190,7 +190,7 @@ TEST(SensorFaultFrames, FramesArePure) {
   one.cloud(30);
   for (const int frame : {7, 0, 41, 100}) {
     EXPECT_TRUE(same_points(one.cloud(frame), other.cloud(frame)));
-    EXPECT_EQ(one.leaves_sensor_s(frame), other.leaves_sensor_s(frame));
+    EXPECT_EQ(one.delivery(frame).leaves_sensor_s, other.delivery(frame).leaves_sensor_s);
   }
   EXPECT_FALSE(same_points(one.cloud(7), faulty(everything(), bare(), {6, 2, 3}).cloud(7)));
 }
@@ -275,7 +275,7 @@ TEST(SensorFaultFrames, AReplayedLiveSessionHasNoFaults) {
   EXPECT_EQ(measured(worse->cloud(0)), 0u);
   EXPECT_EQ(worse->frame_count(), 1);
   EXPECT_TRUE(worse->ends());
-  EXPECT_EQ(worse->leaves_sensor_s(0), 0);
+  EXPECT_EQ(worse->delivery(0).leaves_sensor_s, 0);
 }
 
 TEST(SensorFaultFrames, SettingsOutsideTheirRangesAreRefused) {

@@ -43,9 +43,10 @@ class SessionSceneTest : public testing::Test {
 
 TEST_F(SessionSceneTest, AFrameArrivesWhenTheRendererTookIt) {
   const SessionScene scene = this->scene();
-  EXPECT_EQ(scene.leaves_sensor_s(0), 4 / 500.0);
-  EXPECT_EQ(scene.leaves_sensor_s(1), std::numeric_limits<double>::infinity()) << "the renderer never got it";
-  EXPECT_EQ(scene.leaves_sensor_s(2), 9 / 500.0);
+  EXPECT_EQ(scene.delivery(0).leaves_sensor_s, 4 / 500.0);
+  EXPECT_EQ(scene.delivery(1).leaves_sensor_s, std::numeric_limits<double>::infinity())
+      << "the renderer never got it";
+  EXPECT_EQ(scene.delivery(2).leaves_sensor_s, 9 / 500.0);
 }
 
 TEST_F(SessionSceneTest, FramesAreThoseOfTheFile) {
@@ -56,7 +57,7 @@ TEST_F(SessionSceneTest, FramesAreThoseOfTheFile) {
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
     EXPECT_EQ(scene.captured_s(i), session_.captured_s[at]);
-    EXPECT_EQ(scene.fixtures_off(i), session_.fixtures_off[at]);
+    EXPECT_EQ(scene.delivery(i).fixtures_off, session_.fixtures_off[at]);
     const PointCloud live = cloud_of(session_.frames[at], session_.view, session_.registered);
     const PointCloud cloud = scene.cloud(i);
     EXPECT_EQ(cloud.x, live.x);
