@@ -148,10 +148,9 @@ constexpr double kMinPlaneWidth = 1e-6;
 ViewPoint view_point(const NeighbourSearch& points, const Vec3& direction_W) {
   ViewPoint view;
   view.direction_W = direction_W;
-  const auto* stored = dynamic_cast<const CloudSearch*>(&points);
-  if (stored && stored->cloud().image) {
+  if (const PointCloud* const stored = points.stored_cloud(); stored && stored->image) {
     view.has_position = true;
-    view.position_W = stored->cloud().image->X_WC.translation();
+    view.position_W = stored->image->X_WC.translation();
   }
   return view;
 }

@@ -101,6 +101,9 @@ class NeighbourSearch {
   // normals and no colours. A search over a stored cloud returns the cloud itself, with all its columns;
   // there the missing measurements are included as NaN.
   virtual const PointCloud& every_point(const Kernels& kernels, PointCloud& buffer) const;
+  // Returns the cloud that is searched, in the order of the search; null if its points are computed on
+  // demand.
+  virtual const PointCloud* stored_cloud() const { return nullptr; }
   virtual bool has_fixture_radius() const { return false; }
   // Returns true if some radius is above 0, that is if there are forbidden regions, chapter 5.
   virtual bool has_regions() const { return false; }
@@ -122,7 +125,7 @@ class CloudSearch : public NeighbourSearch {
   bool has_stiffness() const override { return !cloud_.stiffness_N_per_m.empty(); }
   double max_fixture_radius_m() const override { return max_fixture_radius_; }
   int organised_columns() const override { return cloud_.columns(); }
-  const PointCloud& cloud() const { return cloud_; }
+  const PointCloud* stored_cloud() const override { return &cloud_; }
   const PointCloud& every_point(const Kernels&, PointCloud&) const override { return cloud_; }
 
  protected:

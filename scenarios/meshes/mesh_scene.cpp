@@ -379,7 +379,7 @@ std::shared_ptr<const NeighbourSearch> MeshScene::points(int frame) const {
 
 // The search of an image stores its points in their order.
 PointCloud MeshScene::cloud(int frame) const {
-  return dynamic_cast<const CloudSearch&>(*points(frame)).cloud();
+  return *points(frame)->stored_cloud();
 }
 
 // Returns the poses of all objects, object to world frame.

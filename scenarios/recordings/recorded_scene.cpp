@@ -302,14 +302,13 @@ std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
 PointCloud RecordedScene::cloud(int frame) const {
   if (!layout_ || layout_->camera) {
     const auto search = points(frame);
-    const auto* image = dynamic_cast<const ImageWindowSearch*>(search.get());
-    if (image) return image->cloud();
+    if (search->stored_cloud()->image) return *search->stored_cloud();
   }
   return registered(times_.source(frame));
 }
 
 const PointCloud& RecordedScene::newest_cloud(double time_s) const {
-  return dynamic_cast<const CloudSearch&>(*points(newest_frame(time_s))).cloud();
+  return *points(newest_frame(time_s))->stored_cloud();
 }
 
 RigidTransform RecordedScene::camera_at(double time_s) const {

@@ -147,13 +147,13 @@ void FrameStream::fill(Frame& frame) {
 
 std::shared_ptr<const NeighbourSearch> FrameStream::points_of(int source) const {
   auto points = scenario_.points(source);
-  if (!generate_all_points_ || dynamic_cast<const CloudSearch*>(points.get())) return points;
+  if (!generate_all_points_ || points->stored_cloud()) return points;
   return make_search(scenario_.cloud(source));
 }
 
 std::uint64_t FrameStream::hash_of(int frame, const NeighbourSearch& points) const {
-  const auto* stored = dynamic_cast<const CloudSearch*>(&points);  // else points are computed on demand
-  return frame_hash(stored ? stored->cloud() : scenario_.cloud(source_frame(frame)), captured_s(frame));
+  const PointCloud* const stored = points.stored_cloud();
+  return frame_hash(stored ? *stored : scenario_.cloud(source_frame(frame)), captured_s(frame));
 }
 
 namespace {
@@ -320,11 +320,11 @@ void RendererNeeds::check(const Frame& frame) const {
                                              " have no rows and columns: expected the same kind of cloud in "
                                              "every frame");
   if (!contains(needs_, FrameNeed::normals)) return;
-  const auto* const stored = dynamic_cast<const CloudSearch*>(frame.points.get());
-  if (!stored || !stored->cloud().has_normals())
+  const PointCloud* const stored = frame.points->stored_cloud();
+  if (!stored || !stored->has_normals())
     throw InputError(subject(renderer_), "needs normals, and the points of frame " + number +
                                              " have none: expected them in every frame");
-  if (frame.index == 0 && !may_have_normals(stored->cloud()))
+  if (frame.index == 0 && !may_have_normals(*stored))
     throw InputError(subject(renderer_),
                      "needs normals, and no point of frame 0 has one: expected more points within "
                      "depth_pipeline.normal_radius_m of each");

@@ -131,14 +131,9 @@ const PointCloud* SurfaceWatch::image_at(double time_s) {
   if (frame == frame_) return cloud_;
   frame_ = frame;
   points_ = scenario_.points(frame);
-  // An ImageWindowSearch stores the points in the order of the pixels. The frame is copied for any other
-  // search.
-  if (const auto* image = dynamic_cast<const ImageWindowSearch*>(points_.get())) {
-    cloud_ = &image->cloud();
-  } else {
-    copy_ = scenario_.cloud(frame);
-    cloud_ = &*copy_;
-  }
+  // The search of an image stores the points in the order of the pixels. Any other frame is copied.
+  cloud_ = points_->stored_cloud();
+  if (!cloud_ || !cloud_->image) cloud_ = &copy_.emplace(scenario_.cloud(frame));
   const auto is_image = [](const PointCloud& cloud) {
     if (!cloud.image) return false;
     const CameraIntrinsics& camera = cloud.image->camera;
@@ -212,13 +207,13 @@ std::vector<Note> SurfaceWatch::notes() const {
 std::vector<Note> fixture_notes(const FixtureAssignment& fixtures,
                                 const std::shared_ptr<const NeighbourSearch>& first,
                                 const std::shared_ptr<const NeighbourSearch>& last) {
-  const auto* const at_first = dynamic_cast<const CloudSearch*>(first.get());
-  const auto* const at_last = dynamic_cast<const CloudSearch*>(last.get());
+  const PointCloud* const at_first = first ? first->stored_cloud() : nullptr;
+  const PointCloud* const at_last = last ? last->stored_cloud() : nullptr;
   if (fixtures.empty() || !at_first || !at_last) return {};
-  std::vector<std::size_t> rules = fixtures.rules_without_points(at_first->cloud());
+  std::vector<std::size_t> rules = fixtures.rules_without_points(*at_first);
   if (!rules.empty() && at_last != at_first) {
     std::vector<std::size_t> in_both;
-    const std::vector<std::size_t> later = fixtures.rules_without_points(at_last->cloud());
+    const std::vector<std::size_t> later = fixtures.rules_without_points(*at_last);
     std::set_intersection(rules.begin(), rules.end(), later.begin(), later.end(),
                           std::back_inserter(in_both));
     rules = std::move(in_both);

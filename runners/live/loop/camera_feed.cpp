@@ -136,8 +136,7 @@ void CameraFeed::send(Frame frame, double sensed_s) {
   });
   held_.push_back(frame);
   if (on_frame_) on_frame_(frame);
-  const std::uint64_t hash =
-      frame_hash(dynamic_cast<const CloudSearch&>(*frame.points).cloud(), frame.captured_s);
+  const std::uint64_t hash = frame_hash(*frame.points->stored_cloud(), frame.captured_s);
   const double ready_s = clock_.now_s();
   out_.back() = {std::move(frame), sensed_s, ready_s, hash};
   if (!out_.publish()) ++counts_.overtaken;

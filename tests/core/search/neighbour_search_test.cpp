@@ -95,7 +95,7 @@ TEST(NeighbourSearch, ReportsHowWideTheRowsOfAnOrganisedFrameAre) {
   const PointCloud grid = scenes::flat_grid(30);
   const UniformGridSearch search(grid, 0.004);
   EXPECT_EQ(search.organised_columns(), 30);
-  EXPECT_EQ(search.cloud().columns(), 0) << "its own points stand in another order";
+  EXPECT_EQ(search.stored_cloud()->columns(), 0) << "its own points stand in another order";
   EXPECT_EQ(BruteForceSearch(scenes::random_cloud(30, 1, 1)).organised_columns(), 0);
   const GatheredPoints out = scenes::gathered(search);
   ASSERT_EQ(out.size(), grid.size());

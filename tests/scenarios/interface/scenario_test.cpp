@@ -277,7 +277,7 @@ KeptFrames::Points one_point(std::size_t frame) {
 }
 
 double x_of(const KeptFrames::Points& points) {
-  return dynamic_cast<const CloudSearch&>(*points).cloud().x.at(0);
+  return points->stored_cloud()->x.at(0);
 }
 
 TEST(KeptFrames, AreMadeOnce) {

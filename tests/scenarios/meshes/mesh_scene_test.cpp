@@ -124,7 +124,7 @@ TEST(MeshScene, AFrameIsMadeOnceAndKeepsItsPoints) {
   EXPECT_EQ(scene.points(3), points);
   scene.cloud(2), scene.cloud(4), scene.cloud(5);
   EXPECT_EQ(scene.points(3), points) << "frames that are in transit";
-  const PointCloud& kept = dynamic_cast<const CloudSearch&>(*points).cloud();
+  const PointCloud& kept = *points->stored_cloud();
   const MeshScene other = made(small(), {object(box(), rise()), table(0x102030)});
   EXPECT_TRUE(scenes::same_clouds(kept, cloud));
   EXPECT_TRUE(scenes::same_clouds(other.cloud(3), cloud));

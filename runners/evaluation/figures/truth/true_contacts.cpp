@@ -145,10 +145,6 @@ PointCloud cut_out(const PointCloud& cloud, const PixelRectangle& at) {
   return window;
 }
 
-const PointCloud& cloud_of(const NeighbourSearch& points) {
-  return dynamic_cast<const CloudSearch&>(points).cloud();
-}
-
 }  // namespace
 
 RasterImage true_image(const RecordedTruth& truth, std::size_t source, const CameraIntrinsics& camera) {
@@ -201,12 +197,12 @@ std::vector<TouchedPoint> touched_points(const RecordedScene& scene, int frame_n
 RecordingWindow::RecordingWindow(const RecordedScene& scene, const TouchedPoint& point, int frames)
     : scene_(scene),
       point_(point),
-      rectangle_(rectangle_around(point, scene, frames, cloud_of(*scene.points(0)).image->camera)) {}
+      rectangle_(rectangle_around(point, scene, frames, scene.points(0)->stored_cloud()->image->camera)) {}
 
 void RecordingWindow::add_frame() {
   const int number = frame_count();
   const double time_s = scene_.captured_s(number);
-  const PointCloud& cloud = cloud_of(*scene_.points(number));
+  const PointCloud& cloud = *scene_.points(number)->stored_cloud();
   const std::size_t source = scene_.source_at(time_s);
   const RigidTransform X_WC = cloud.image->X_WC;
   if (const auto& X_CO = scene_.truth()->poses(source)[point_.index]) X_WO_ = X_WC * *X_CO;
@@ -215,7 +211,7 @@ void RecordingWindow::add_frame() {
 }
 
 PointCloud RecordingWindow::cloud(int frame) const {
-  return cloud_of(*frame_at(frame).points);
+  return *frame_at(frame).points->stored_cloud();
 }
 
 double RecordingWindow::signed_distance(const Vec3& p_W, double time_s) const {
@@ -225,7 +221,7 @@ double RecordingWindow::signed_distance(const Vec3& p_W, double time_s) const {
 }
 
 std::optional<double> RecordingWindow::measured_distance(const Vec3& p_W, double time_s) const {
-  return distance_to_measured(cloud_of(*frame_at(newest_frame(time_s)).points), p_W,
+  return distance_to_measured(*frame_at(newest_frame(time_s)).points->stored_cloud(), p_W,
                               RecordedScene::Settings().truth_radius_m);
 }
 

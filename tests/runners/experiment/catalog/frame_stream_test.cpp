@@ -42,7 +42,7 @@ class Walk final : public Scenario {
 };
 
 const PointCloud& cloud_of(const Frame& frame) {
-  return dynamic_cast<const CloudSearch&>(*frame.points).cloud();
+  return *frame.points->stored_cloud();
 }
 
 FixtureAssignment everywhere(double radius_m, std::vector<double> schedule = {}) {
@@ -270,10 +270,10 @@ TEST(FrameStream, PointsThatAreMadeAreTheSamePoints) {
   for (const bool made : {false, true}) {
     FrameStream stream(lift, {}, {}, {1}, false, made);
     const Frame last = received(stream, 0.299).back();
-    const auto* stored = dynamic_cast<const CloudSearch*>(last.points.get());
+    const PointCloud* const stored = last.points->stored_cloud();
     ASSERT_EQ(stored != nullptr, made);
     if (!made) continue;
-    EXPECT_EQ(points_hash(stored->cloud()), points_hash(lift.cloud(lift.frame_count() - 1)));
+    EXPECT_EQ(points_hash(*stored), points_hash(lift.cloud(lift.frame_count() - 1)));
   }
 }
 

@@ -85,7 +85,7 @@ TEST(CameraFeed, HandsOverTheNewestWithItsTimes) {
   EXPECT_DOUBLE_EQ(newest.ready_s, Loop::kStart_s + 2 * kRecording_s);
   EXPECT_EQ(loop.camera->newest_s(), newest.ready_s);
   EXPECT_DOUBLE_EQ(counts.processing_s, 2 * kRecording_s);
-  const auto& cloud = dynamic_cast<const CloudSearch&>(*newest.frame.points).cloud();
+  const PointCloud& cloud = *newest.frame.points->stored_cloud();
   EXPECT_EQ(cloud.z[3], 600 * 0.001);
   EXPECT_EQ(newest.hash, frame_hash(cloud, newest.frame.captured_s));
   EXPECT_FALSE(loop.frames.take());
