@@ -37,7 +37,7 @@ struct Sweep::Definition {
   std::vector<Measure> measures;
   std::optional<RefineSettings> refine;
   Keep keep = Keep::runs;
-  std::vector<RecordingPart> inputs;  // recordings that the cells read
+  std::vector<InputPart> inputs;  // recordings that the cells read
 
   // Returns the experiment of one run. It has the values that the result states for its cell.
   Experiment run(std::size_t cell, int replicate) const;
@@ -161,7 +161,7 @@ void Sweep::Definition::check_cells(const std::string& label) {
   long first_wrong = cells;
   std::string problem;
   std::atomic<bool> lacks_memory{false};  // not a problem of a cell
-  std::set<RecordingPart> parts;
+  std::set<InputPart> parts;
 #pragma omp parallel for schedule(static, 64)
   for (long i = 0; i < cells; ++i) {
     try {
@@ -303,7 +303,7 @@ void Sweep::require_fits(const SweepResult& stored, const std::string& file) con
     throw InputError(file, "damaged (its arrays do not fit its configuration)");
 }
 
-const std::vector<RecordingPart>& Sweep::inputs() const {
+const std::vector<InputPart>& Sweep::inputs() const {
   return definition_->inputs;
 }
 

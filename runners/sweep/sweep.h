@@ -48,7 +48,7 @@ class Sweep {
   // replicates: none of its runs belongs to this sweep.
   void require_fits(const SweepResult& stored, const std::string& file) const;
   // Returns the recordings that the checked cells read, each part once, as named in the configuration.
-  const std::vector<RecordingPart>& inputs() const;
+  const std::vector<InputPart>& inputs() const;
   const std::vector<Measure>& measures() const;
   bool needs_true_contact() const;  // true if one of its measures does
   std::optional<RefinementRule> refinement() const;

@@ -30,7 +30,7 @@ std::string stored_error(const std::exception& error) {
 // Throws InputError if the experiment of a run reads a recording that no checked cell reads, so that no run
 // has an input that the result does not name.
 void require_known_inputs(const Sweep& sweep, const Experiment& experiment) {
-  for (const RecordingPart& part : experiment.inputs())
+  for (const InputPart& part : experiment.inputs())
     if (std::find(sweep.inputs().begin(), sweep.inputs().end(), part) == sweep.inputs().end())
       throw InputError(part.path, "is read by a cell that was not checked: expected at most " +
                                       std::to_string(kMaxChecked) + " cells, or recordings along one axis");

@@ -86,7 +86,7 @@ void require_same_inputs(const std::filesystem::path& file, const Sweep& sweep, 
                          const std::vector<ChangedInput>& changed) {
   if (changed.empty()) return;
   for (const std::size_t place : result.runs_in(RunState::done))
-    for (const RecordingPart& part : sweep.experiment(result.cell_of(result.run_at(place)), 0).inputs())
+    for (const InputPart& part : sweep.experiment(result.cell_of(result.run_at(place)), 0).inputs())
       for (const ChangedInput& input : changed)
         if (input.path == in_one_line(part.path))
           throw InputError(file.string(), "has runs on another recording " + input.path + " (" +

@@ -28,7 +28,7 @@ std::string number(double value) {
 
 }  // namespace
 
-FrameTimes::FrameTimes(const RecordingIndex& recording, const RecordingPart& part, Playback playback,
+FrameTimes::FrameTimes(const RecordingIndex& recording, const InputPart& part, Playback playback,
                        double chosen_hz)
     : playback_(playback),
       is_stamped_(recording.is_stamped),

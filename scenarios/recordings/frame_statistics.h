@@ -25,7 +25,7 @@ class FrameTimes {
 
   // chosen_hz: the rate at which all frames are played, regardless of their stamps; 0: as recorded. Throws
   // InputError about the part if the resulting mean rate is above kMaxFrameRate_hz.
-  FrameTimes(const RecordingIndex& recording, const RecordingPart& part, Playback playback, double chosen_hz);
+  FrameTimes(const RecordingIndex& recording, const InputPart& part, Playback playback, double chosen_hz);
 
   // The rate at which the frames are played. If the period varies, it is the mean rate of the part.
   double rate_hz() const { return rate_hz_; }

@@ -20,14 +20,14 @@ std::string validate(const ImageMask::Settings& s) {
   return validate(s.values);
 }
 
-RecordingPart input_files(const ImageMask::Settings& s) {
+InputPart input_files(const ImageMask::Settings& s) {
   return {s.path};
 }
 
 ImageMask::ImageMask(const Settings& settings)
     : FixtureRule(settings.values),
       path_(settings.path),
-      mask_(read_colour_png(find_recording(settings.path), width_, height_)) {}
+      mask_(read_colour_png(find_input(settings.path), width_, height_)) {}
 
 void ImageMask::require(const PointCloud& cloud) const {
   if (!cloud.image) refuse("image-mask", "the frame is not an image: expected a scenario with a camera");

@@ -28,6 +28,6 @@ class ImageMask final : public FixtureRule {
 
 Parameters parameters(ImageMask::Settings& s);
 std::string validate(const ImageMask::Settings& s);
-RecordingPart input_files(const ImageMask::Settings& s);
+InputPart input_files(const ImageMask::Settings& s);
 
 }  // namespace remote_touch

@@ -131,16 +131,16 @@ std::string validate(const RecordedScene::Settings& s) {
   return {};
 }
 
-RecordingPart input_files(const RecordedScene::Settings& s) {
+InputPart input_files(const RecordedScene::Settings& s) {
   return {s.path, s.first_frame, s.last_frame, s.truth != RecordedScene::Truth::measured, s.camera_poses};
 }
 
 RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Kernels&,
                              const MeshReader& read_mesh)
     : settings_(settings),
-      recording_(index_recording(find_recording(settings.path), settings.bag)),
+      recording_(index_recording(find_input(settings.path), settings.bag)),
       camera_(camera_pose(settings, recording_), settings.camera_poses, settings.pose_direction, recording_,
-              find_recording(settings.path)),
+              find_input(settings.path)),
       times_(recording_, input_files(settings), settings.playback, settings.frame_rate_hz),
       statistics_(recording_.frames.size()) {
   require_points();
@@ -160,8 +160,7 @@ RecordedScene::RecordedScene(const Settings& settings, const NoiseKey&, const Ke
 
 void RecordedScene::read_truth(const MeshReader& read_mesh) {
   if (settings_.truth == Truth::measured) return;
-  const std::optional<TruthFolder> folder =
-      read_mesh ? find_truth(find_recording(settings_.path)) : std::nullopt;
+  const std::optional<TruthFolder> folder = read_mesh ? find_truth(find_input(settings_.path)) : std::nullopt;
   if (folder)
     truth_ = std::make_unique<const RecordedTruth>(*folder, frame_names(recording_), settings_.truth_reach_m,
                                                    read_mesh, recording_.camera);

@@ -121,6 +121,6 @@ class RecordedScene : public Scenario {
 
 Parameters parameters(RecordedScene::Settings& s);
 std::string validate(const RecordedScene::Settings& s);
-RecordingPart input_files(const RecordedScene::Settings& s);  // part of the recording that the scene reads
+InputPart input_files(const RecordedScene::Settings& s);  // part of the recording that the scene reads
 
 }  // namespace remote_touch

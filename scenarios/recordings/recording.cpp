@@ -66,11 +66,11 @@ void set_data_folder(const std::string& folder) {
   data_folder = folder;
 }
 
-std::string recording_places() {
+std::string input_places() {
   return "here or below REMOTE_TOUCH_DATA" + (data_folder.empty() ? " (not set)" : " = " + data_folder);
 }
 
-std::string find_recording(const std::string& path) {
+std::string find_input(const std::string& path) {
   const fs::path below = fs::path(data_folder) / path;
   const bool may_be_below = !data_folder.empty() && fs::path(path).is_relative();
   for (const fs::path& found : {fs::path(path), may_be_below ? below : fs::path()}) {
@@ -79,11 +79,10 @@ std::string find_recording(const std::string& path) {
     require_file_or_folder(found);
     return found.string();
   }
-  throw MissingRecording(path,
-                         "no such recording, image or mesh: expected a folder or file " + recording_places());
+  throw MissingInput(path, "no such recording, image or mesh: expected a folder or file " + input_places());
 }
 
-FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording) {
+FrameRange frames_of(const InputPart& part, const RecordingIndex& recording) {
   const int available = static_cast<int>(recording.frames.size());
   const int last = part.last_frame < 0 ? available - 1 : part.last_frame;
   if (part.first_frame >= available || last >= available)
@@ -94,8 +93,8 @@ FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording)
 
 namespace {
 
-std::vector<InputFile> listed_files(const RecordingPart& part) {
-  const fs::path found = find_recording(part.path);
+std::vector<InputFile> listed_files(const InputPart& part) {
+  const fs::path found = find_input(part.path);
   if (is_single_file(found)) return {{found.filename().generic_string(), found}};
   if (is_bag(found)) return bag_files(found);
   const RecordingIndex recording = index_recording(found);
@@ -128,7 +127,7 @@ std::vector<InputFile> listed_files(const RecordingPart& part) {
 
 }  // namespace
 
-std::vector<InputFile> files_of(const RecordingPart& part) {
+std::vector<InputFile> files_of(const InputPart& part) {
   std::vector<InputFile> files = listed_files(part);
   for (const InputFile& input : files) require_file(input.file), require_readable_size(input.file);
   return files;

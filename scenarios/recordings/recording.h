@@ -94,23 +94,23 @@ std::vector<std::string> frame_names(const RecordingIndex& index);
 PointCloud read_frame(const RecordingIndex& index, std::size_t frame, double max_depth_m,
                       FrameCamera* camera = nullptr);
 
-// The location of a recording or an image, and the files of it that a run reads: a result depends on them in
+// The input files of a run: recordings, images, meshes, sessions and contacts. A result depends on them in
 // addition to its configuration.
 
-// Part of a recording, as named in settings. Making one does not search the file system, so that a sweep can
-// list the parts of all its cells at no cost.
-struct RecordingPart {
+// A file or folder that settings name, or the part of a recording that they choose. Making one does not
+// search the file system, so that a sweep can list the inputs of all its cells at no cost.
+struct InputPart {
   std::string path;
   int first_frame = 0;
   int last_frame = -1;            // -1: the last frame of the recording
   bool with_truth = false;        // the run also reads the folder truth/, if the recording has one
   std::string camera_poses = {};  // a file or folder of poses in it that the run also reads; empty: none
-  auto operator<=>(const RecordingPart&) const = default;
+  auto operator<=>(const InputPart&) const = default;
 };
 
-// The recording is not on this machine. Figures that need it are reported as not run. A damaged recording
-// throws an InputError that is no MissingRecording.
-class MissingRecording : public InputError {
+// The file or folder is not on this machine. Figures that need it are reported as not run. A damaged
+// recording throws an InputError that is no MissingInput.
+class MissingInput : public InputError {
  public:
   using InputError::InputError;
 };
@@ -120,19 +120,19 @@ class MissingRecording : public InputError {
 // first search. The Python package sets it to REMOTE_TOUCH_DATA.
 void set_data_folder(const std::string& folder);
 
-// Returns the path itself if it exists, else the path below the data folder. Throws MissingRecording if
+// Returns the path itself if it exists, else the path below the data folder. Throws MissingInput if
 // neither exists or can be reached, and InputError for a pipe or a device, which would never end.
-std::string find_recording(const std::string& path);
+std::string find_input(const std::string& path);
 
 // Returns the searched locations, in the words of the command line: "here or below REMOTE_TOUCH_DATA =
 // /data".
-std::string recording_places();
+std::string input_places();
 
 // The frames of the part, first to last. frames_of() throws InputError if the recording has fewer.
 struct FrameRange {
   int first = 0, last = 0;
 };
-FrameRange frames_of(const RecordingPart& part, const RecordingIndex& recording);
+FrameRange frames_of(const InputPart& part, const RecordingIndex& recording);
 
 // Returns the files from which the part's frames are made, each once, sorted by name. For a single file, such
 // as a PNG, a mesh or a live session, it is the file itself. For a recording in a folder they are the depth
@@ -145,7 +145,7 @@ struct InputFile {
   std::string name;            // relative to the recording's folder, or to the folder of a single PCD file
   std::filesystem::path file;  // path with which the file is opened
 };
-std::vector<InputFile> files_of(const RecordingPart& part);
+std::vector<InputFile> files_of(const InputPart& part);
 
 // Layout that all frames of a recording share: images of one camera, or organised clouds without a camera, or
 // clouds in no order.

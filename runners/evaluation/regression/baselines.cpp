@@ -127,7 +127,7 @@ BaselineCheck check_baseline(const std::filesystem::path& folder, const Baseline
     return concluded(baseline, baseline.command == "sweep"
                                    ? compare_sweep_again(folder, baseline, kernels, stop, notes)
                                    : compare_run(folder, baseline, kernels, stop, notes));
-  } catch (const MissingRecording& error) {
+  } catch (const MissingInput& error) {
     return {baseline.name, State::not_run, error.what()};
   } catch (const InputError& error) {
     return {baseline.name, State::not_comparable, error.what()};

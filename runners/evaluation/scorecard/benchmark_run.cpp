@@ -82,7 +82,7 @@ BenchmarkPlan plan_of(const Benchmark& benchmark) {
   for (const BenchmarkScene& scene : plan.benchmark.scenes) {
     try {
       plan.scenes.push_back({scene, sweeps_of(plan.benchmark, scene)});
-    } catch (const MissingRecording& missing) {
+    } catch (const MissingInput& missing) {
       plan.skipped.emplace_back(scene.name, missing.what());
       continue;
     }

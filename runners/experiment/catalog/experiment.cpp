@@ -59,8 +59,8 @@ namespace {
 
 constexpr const char* kRecordedSession = "live-session";
 
-void add_inputs(const Part<ScenarioEntry>& scenario, std::vector<RecordingPart>& all) {
-  const std::vector<RecordingPart> own = scenario.factory->inputs();
+void add_inputs(const Part<ScenarioEntry>& scenario, std::vector<InputPart>& all) {
+  const std::vector<InputPart> own = scenario.factory->inputs();
   all.insert(all.end(), own.begin(), own.end());
 }
 
@@ -139,8 +139,8 @@ Json Experiment::value_at_start(const std::string& path) const {
   return found ? *found : Json();
 }
 
-std::vector<RecordingPart> Experiment::inputs(const std::vector<std::string>& except) const {
-  std::vector<RecordingPart> all;
+std::vector<InputPart> Experiment::inputs(const std::vector<std::string>& except) const {
+  std::vector<InputPart> all;
   for (const ExperimentSection& section : experiment_sections())
     if (section.add_inputs && std::ranges::find(except, section.key) == except.end())
       section.add_inputs(configuration_, all);
@@ -264,7 +264,7 @@ FrameDeadBandSettings Experiment::frame_dead_band() const {
 std::optional<Experiment> Experiment::recorded_experiment() const {
   if (configuration_.scenario.name != kRecordedSession) return {};
   const std::string path = configuration_.scenario.factory->inputs().front().path;  // the recording
-  const SessionReader session{find_recording(path)};
+  const SessionReader session{find_input(path)};
   if (session.depth() != kSimulatedDepth) return {};
   return from_json(parse_json(session.config(), path + " config"));
 }

@@ -61,7 +61,7 @@ class Experiment {
   // Returns the recordings that a run reads, as named in the configuration; the file system is not searched.
   // Adds the files of the scene of a recorded live session if there is a slave, which it reads. except: keys
   // of sections that this run does not read.
-  std::vector<RecordingPart> inputs(const std::vector<std::string>& except = {}) const;
+  std::vector<InputPart> inputs(const std::vector<std::string>& except = {}) const;
 
   // Builds the scenario, with the faults of the sensor if the experiment has any.
   std::unique_ptr<Scenario> build_scenario(const Kernels& kernels) const;

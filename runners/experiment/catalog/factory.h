@@ -32,7 +32,7 @@ class Configurable {
 template <class Seam, class... Arguments>
 class Factory : public Configurable {
  public:
-  virtual std::vector<RecordingPart> inputs() const = 0;  // the files that the settings name; mostly none
+  virtual std::vector<InputPart> inputs() const = 0;  // the files that the settings name; mostly none
   virtual std::unique_ptr<Seam> build(Arguments... arguments) const = 0;
 };
 
@@ -47,7 +47,7 @@ class RendererFactory : public Factory<Renderer, double, const Kernels&> {  // t
 // functions:
 // - Parameters parameters(Settings&): the settings by name
 // - std::string validate(const Settings&): empty, or the first problem: "r1_m = 1: expected below r2_m"
-// - RecordingPart input_files(const Settings&), or a vector of them: if the settings name files
+// - InputPart input_files(const Settings&), or a vector of them: if the settings name files
 template <class Product, class Settings, class Base, class Seam, class... Arguments>
 class FactoryFor : public Base {
  public:
@@ -56,7 +56,7 @@ class FactoryFor : public Base {
     using remote_touch::validate;
     return validate(values_);
   }
-  std::vector<RecordingPart> inputs() const override {
+  std::vector<InputPart> inputs() const override {
     if constexpr (requires { input_files(values_); })
       return {input_files(values_)};
     else

@@ -92,8 +92,8 @@ Json part_json(const Part<Entry>& part) {
 }
 
 template <class Entry>
-void add_part_inputs(const Part<Entry>& part, std::vector<RecordingPart>& inputs) {
-  const std::vector<RecordingPart> own = part.factory->inputs();
+void add_part_inputs(const Part<Entry>& part, std::vector<InputPart>& inputs) {
+  const std::vector<InputPart> own = part.factory->inputs();
   inputs.insert(inputs.end(), own.begin(), own.end());
 }
 
@@ -193,7 +193,7 @@ Section required(const char* key, const char* heading, const char* summary) {
   s.write = [](const Section& section, const Configuration& configuration, Json& whole) {
     whole[section.key] = part_json(configuration.*kMember);
   };
-  s.add_inputs = [](const Configuration& configuration, std::vector<RecordingPart>& inputs) {
+  s.add_inputs = [](const Configuration& configuration, std::vector<InputPart>& inputs) {
     add_part_inputs(configuration.*kMember, inputs);
   };
   return s;
@@ -214,7 +214,7 @@ Section list_of_entries(const char* key, const char* heading, const char* summar
     whole[section.key] =
         list_json(configuration.*kMember, [](const Element& part) { return part_json(part); });
   };
-  s.add_inputs = [](const Configuration& configuration, std::vector<RecordingPart>& inputs) {
+  s.add_inputs = [](const Configuration& configuration, std::vector<InputPart>& inputs) {
     for (const Element& part : configuration.*kMember) add_part_inputs(part, inputs);
   };
   s.complete = complete;

@@ -37,8 +37,7 @@ struct ExperimentSection {
   void (*write)(const ExperimentSection& section, const ExperimentConfiguration& configuration,
                 nlohmann::ordered_json& whole) = nullptr;
   // Adds the files that its settings name. Null: they name none.
-  void (*add_inputs)(const ExperimentConfiguration& configuration,
-                     std::vector<RecordingPart>& inputs) = nullptr;
+  void (*add_inputs)(const ExperimentConfiguration& configuration, std::vector<InputPart>& inputs) = nullptr;
   // Called after all sections are read. Checks this section against the others: throws InputError, or adds
   // settings that were left out. Null: no check.
   void (*complete)(ExperimentConfiguration& configuration) = nullptr;

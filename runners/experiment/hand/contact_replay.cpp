@@ -222,9 +222,9 @@ std::string validate(const ContactReplay::Settings& s) {
                    std::to_string(duration_s) + " s, expected at most " + std::to_string(kMaxDuration_s);
 }
 
-std::vector<RecordingPart> input_files(const ContactReplay::Settings& s) {
+std::vector<InputPart> input_files(const ContactReplay::Settings& s) {
   if (s.file.empty()) return {};
-  RecordingPart file;
+  InputPart file;
   file.path = s.file;
   return {file};
 }
@@ -283,7 +283,7 @@ void add_unusual_size(const Settings& s, const ForceTrace& trace, std::vector<No
 }
 
 std::vector<Contact> contacts_in_file(const Settings& s, const Scenario& scenario, std::vector<Note>& notes) {
-  const std::string file = find_recording(s.file);
+  const std::string file = find_input(s.file);
   const ForceTrace trace = read_force_trace(file, s.columns);
   const double start_s = trace.rows.front().time_s + s.start_s;
   const auto first = std::find_if(trace.rows.begin(), trace.rows.end(),

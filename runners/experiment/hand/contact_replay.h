@@ -125,6 +125,6 @@ class ContactReplay final : public Trajectory {
 Parameters parameters(ContactReplay::Settings& s);
 std::string validate(const ContactReplay::Settings& s);
 // The file, if there is one.
-std::vector<RecordingPart> input_files(const ContactReplay::Settings& s);
+std::vector<InputPart> input_files(const ContactReplay::Settings& s);
 
 }  // namespace remote_touch

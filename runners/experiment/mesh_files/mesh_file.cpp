@@ -268,18 +268,17 @@ std::string mesh_name_problem(const std::string& parameter, const std::string& n
          ", or an OBJ, PLY or STL file";
 }
 
-std::vector<RecordingPart> mesh_files_of(const std::string& name) {
+std::vector<InputPart> mesh_files_of(const std::string& name) {
   if (name.empty() || find_generated_tool(name) != nullptr) return {};
   return {{name}};
 }
 
 std::string find_mesh_file(const std::string& parameter, const std::string& name) {
   try {
-    return find_recording(name);
-  } catch (const MissingRecording&) {
-    throw MissingRecording(parameter + " = " + name, "no such mesh: expected " + names_of_built_in_meshes() +
-                                                         ", or an OBJ, PLY or STL file " +
-                                                         recording_places());
+    return find_input(name);
+  } catch (const MissingInput&) {
+    throw MissingInput(parameter + " = " + name, "no such mesh: expected " + names_of_built_in_meshes() +
+                                                     ", or an OBJ, PLY or STL file " + input_places());
   }
 }
 

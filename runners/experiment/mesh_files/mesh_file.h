@@ -36,9 +36,9 @@ std::string names_of_built_in_meshes();
 std::string mesh_name_problem(const std::string& parameter, const std::string& name);
 
 // Returns the file on which the mesh depends; none for a built-in mesh or an empty name.
-std::vector<RecordingPart> mesh_files_of(const std::string& name);
+std::vector<InputPart> mesh_files_of(const std::string& name);
 
-// Returns the path of the mesh file, searched for as find_recording() does. Throws MissingRecording about the
+// Returns the path of the mesh file, searched for as find_input() does. Throws MissingInput about the
 // parameter if there is none.
 std::string find_mesh_file(const std::string& parameter, const std::string& name);
 

@@ -159,8 +159,8 @@ std::string validate(const PlacedMesh& s, const std::string& prefix) {
   return mesh_name_problem(prefix + "mesh", s.mesh);
 }
 
-std::vector<RecordingPart> input_files(const PlacedMesh& s) {
-  std::vector<RecordingPart> files = mesh_files_of(s.mesh);
+std::vector<InputPart> input_files(const PlacedMesh& s) {
+  std::vector<InputPart> files = mesh_files_of(s.mesh);
   if (!s.mesh.empty() && !s.path.empty()) files.push_back({s.path});
   return files;
 }
@@ -267,10 +267,10 @@ std::string validate(const MeshSceneFromFiles::Settings& s) {
   return validate(s.scene);
 }
 
-std::vector<RecordingPart> input_files(const MeshSceneFromFiles::Settings& s) {
-  std::vector<RecordingPart> files;
+std::vector<InputPart> input_files(const MeshSceneFromFiles::Settings& s) {
+  std::vector<InputPart> files;
   for (const PlacedMesh& object : s.objects)
-    for (RecordingPart& file : input_files(object)) files.push_back(std::move(file));
+    for (InputPart& file : input_files(object)) files.push_back(std::move(file));
   if (!s.camera_path.empty()) files.push_back({s.camera_path});
   return files;
 }
@@ -309,7 +309,7 @@ class ScenePaths {
  private:
   void add(const std::string& name) {
     files_.push_back(name.empty() ? std::nullopt
-                                  : std::optional(read_poses(find_recording(name), PoseLines::stamped)));
+                                  : std::optional(read_poses(find_input(name), PoseLines::stamped)));
     paths_.emplace_back();
   }
   static PosePath inverse(const PosePath& path) {

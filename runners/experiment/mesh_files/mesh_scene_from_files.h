@@ -40,10 +40,10 @@ struct PlacedMesh {
 // prefix: begins the names of all parameters, such as "second_".
 Parameters parameters(PlacedMesh& s, const std::string& prefix);
 std::string validate(const PlacedMesh& s, const std::string& prefix);
-std::vector<RecordingPart> input_files(const PlacedMesh& s);
+std::vector<InputPart> input_files(const PlacedMesh& s);
 
 // Reads the mesh. path: the content of the file `path`; a pose at rest without a file. A mesh that is not
-// closed or not outwards everywhere is repaired if `repair` is set. Throws MissingRecording if the file is
+// closed or not outwards everywhere is repaired if `repair` is set. Throws MissingInput if the file is
 // not there, and InputError as read_mesh() and checked_object() do, and if a part of the mesh is inside out
 // and is no hollow of another part. Pre: mesh is not empty, validate() finds no problem.
 SceneMesh load(const PlacedMesh& s, const std::string& prefix, const PosePath& path);
@@ -96,7 +96,7 @@ class MeshSceneFromFiles final : public MeshScene {
 
 Parameters parameters(MeshSceneFromFiles::Settings& s);
 std::string validate(const MeshSceneFromFiles::Settings& s);
-std::vector<RecordingPart> input_files(const MeshSceneFromFiles::Settings& s);
+std::vector<InputPart> input_files(const MeshSceneFromFiles::Settings& s);
 
 // A recording as a scenario whose true surface may come from mesh files.
 

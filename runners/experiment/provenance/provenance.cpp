@@ -243,12 +243,12 @@ std::string other_maker(const TextAttributes& result) {
   return {};
 }
 
-void InputHashes::add(const std::vector<RecordingPart>& parts) {
-  for (const RecordingPart& part : parts)
+void InputHashes::add(const std::vector<InputPart>& parts) {
+  for (const InputPart& part : parts)
     if (parts_.count(part) == 0) read(part);
 }
 
-void InputHashes::read(const RecordingPart& part) {
+void InputHashes::read(const InputPart& part) {
   const std::vector<InputFile> files = files_of(part);  // throws before anything is stored
   auto& known = recordings_[part.path];
   for (const auto& [name, file] : files) {
@@ -283,7 +283,7 @@ std::string InputHashes::text() const {
   return text;
 }
 
-std::string input_hashes(const std::vector<RecordingPart>& parts) {
+std::string input_hashes(const std::vector<InputPart>& parts) {
   InputHashes hashes;
   hashes.add(parts);
   return hashes.text();
@@ -337,7 +337,7 @@ void InputHashes::require_unchanged() const {
   remote_touch::require_unchanged({parts_.begin(), parts_.end()}, text());
 }
 
-void require_unchanged(const std::vector<RecordingPart>& parts, const std::string& before) {
+void require_unchanged(const std::vector<InputPart>& parts, const std::string& before) {
   const std::vector<ChangedInput> changed = changed_inputs(before, input_hashes(parts));
   if (changed.empty()) return;
   const ChangedInput& first = changed.front();

@@ -127,27 +127,27 @@ auto read_configuration(const TextAttributes& result, const std::string& file, R
 class InputHashes {
  public:
   // Reads each file once. Throws InputError as files_of() does, and for a file that cannot be read.
-  void add(const std::vector<RecordingPart>& parts);
+  void add(const std::vector<InputPart>& parts);
   std::string text() const;  // empty: nothing was added
   // Reads the files again and throws InputError if they differ from those that were added.
   void require_unchanged() const;
 
  private:
-  void read(const RecordingPart& part);
+  void read(const InputPart& part);
 
   struct Known {
     std::string sha256;
     std::uintmax_t size = 0;
   };
   std::map<std::string, std::map<std::string, Known>> recordings_;  // keys: path, then name
-  std::set<RecordingPart> parts_;
+  std::set<InputPart> parts_;
 };
 
-std::string input_hashes(const std::vector<RecordingPart>& parts);
+std::string input_hashes(const std::vector<InputPart>& parts);
 
 // before: input_hashes(parts) from before the runs. Reads the files again and throws InputError if they
 // differ, so that no result states the hash of a file that its runs did not read.
-void require_unchanged(const std::vector<RecordingPart>& parts, const std::string& before);
+void require_unchanged(const std::vector<InputPart>& parts, const std::string& before);
 
 // Returns a path or name on one line, as sha256sum writes it: a backslash, line feed or carriage return in it
 // is written \\, \n, \r.

@@ -20,13 +20,13 @@ std::string validate(const SessionSettings& s) {
   return s.path.empty() ? "path = \"\": expected a file of remote-touch live --record" : "";
 }
 
-RecordingPart input_files(const SessionSettings& s) {
+InputPart input_files(const SessionSettings& s) {
   return {s.path};
 }
 
 SessionScene::SessionScene(const Settings& settings, const NoiseKey&, const Kernels&)
     : path_(settings.path),
-      session_(find_recording(settings.path)),
+      session_(find_input(settings.path)),
       arrives_s_(session_.frame_count(), std::numeric_limits<double>::infinity()),
       is_read_(session_.frame_count(), false) {
   for (std::size_t i = 0; i < session_.tick_count(); ++i)
@@ -67,8 +67,7 @@ double SessionScene::signed_distance(const Vec3&, double) const {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-SessionHand::SessionHand(const Settings& settings, const Scenario&)
-    : session_(find_recording(settings.path)) {
+SessionHand::SessionHand(const Settings& settings, const Scenario&) : session_(find_input(settings.path)) {
   if (session_.tick_count() == 0)
     throw InputError(settings.path, "has no ticks: expected a session with some");
 }
@@ -137,7 +136,7 @@ std::string session_experiment(const SessionReader& session, const std::string& 
 }
 
 std::string session_experiment(const std::string& path) {
-  return session_experiment(SessionReader(find_recording(path)), path);
+  return session_experiment(SessionReader(find_input(path)), path);
 }
 
 }  // namespace remote_touch

@@ -19,7 +19,7 @@ struct SessionSettings {
 
 Parameters parameters(SessionSettings& s);
 std::string validate(const SessionSettings& s);
-RecordingPart input_files(const SessionSettings& s);
+InputPart input_files(const SessionSettings& s);
 
 // The frames as the sensor sent them, at the times when the live renderer received them.
 class SessionScene final : public Scenario {

@@ -82,7 +82,7 @@ std::string validate(const LoadedSpheres::Settings& s) {
   return validate(s.motion);
 }
 
-std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s) {
+std::vector<InputPart> input_files(const LoadedSpheres::Settings& s) {
   return input_files(s.tool);
 }
 

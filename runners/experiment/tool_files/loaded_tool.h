@@ -64,7 +64,7 @@ std::string validate(const MovedToolSettings<MotionSettings>& s) {
   return tool.empty() ? validate(s.motion) : tool;
 }
 template <class MotionSettings>
-std::vector<RecordingPart> input_files(const MovedToolSettings<MotionSettings>& s) {
+std::vector<InputPart> input_files(const MovedToolSettings<MotionSettings>& s) {
   return input_files(s.tool);
 }
 template <class MotionSettings>
@@ -109,7 +109,7 @@ class LoadedSpheres final : public Renderer {
 
 Parameters parameters(LoadedSpheres::Settings& s);
 std::string validate(const LoadedSpheres::Settings& s);
-std::vector<RecordingPart> input_files(const LoadedSpheres::Settings& s);
+std::vector<InputPart> input_files(const LoadedSpheres::Settings& s);
 inline double max_stiffness_N_per_m(const LoadedSpheres::Settings& s) {
   return max_stiffness_N_per_m(s.motion);
 }

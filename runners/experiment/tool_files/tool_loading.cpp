@@ -158,7 +158,7 @@ std::string validate(const ToolSettings& s) {
   return {};
 }
 
-std::vector<RecordingPart> input_files(const ToolSettings& s) {
+std::vector<InputPart> input_files(const ToolSettings& s) {
   return mesh_files_of(s.mesh);
 }
 

@@ -62,10 +62,10 @@ Parameters parameters(ToolSettings& settings);  // tool_mesh, tool_size_m, tool_
 std::string validate(const ToolSettings& settings);
 
 // Returns the mesh file on which the result depends; none for a built-in tool.
-std::vector<RecordingPart> input_files(const ToolSettings& settings);
+std::vector<InputPart> input_files(const ToolSettings& settings);
 
-// Returns the tool. A mesh file is searched for like a recording, see find_recording(). A built-in tool takes
-// precedence over a file of its name. Throws MissingRecording if there is neither, InputError as read_mesh()
+// Returns the tool. A mesh file is searched for by find_input(). A built-in tool takes
+// precedence over a file of its name. Throws MissingInput if there is neither, InputError as read_mesh()
 // and make_voxel_tool() do. report: receives text(ToolReport) of the time when the tool was made; may be
 // null.
 std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& settings, std::string* report = nullptr);

@@ -234,7 +234,7 @@ std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
 Figure made_or_not_run(const FigureEntry& entry, FigureContext& context) {
   try {
     return entry.make(context);
-  } catch (const MissingRecording& error) {
+  } catch (const MissingInput& error) {
     Figure figure{entry.name, "Not run", std::string("Not run: ") + error.what()};
     figure.claims = {claim_not_run(entry.name, entry.summary, error.what())};
     return figure;

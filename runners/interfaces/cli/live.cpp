@@ -196,8 +196,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   options.record = request.record;
   options.kernels = line.kernels;
   options.stop = line.stop, options.report = line.report, options.rearm = line.rearm;
-  const std::vector<RecordingPart> inputs =
-      live_inputs(experiment, options.device, options.depth, request.view);
+  const std::vector<InputPart> inputs = live_inputs(experiment, options.device, options.depth, request.view);
   const std::string digests = input_hashes(inputs);
   options.provenance = provenance(experiment.to_json(), normalised(request), line.kernels->isa, digests);
   options.check_inputs = [&] { require_unchanged(inputs, digests); };

@@ -75,9 +75,9 @@ void require_distinct(const std::vector<OutputOption>& outputs) {
                          std::string("is also the file of ") + a->option + ": expected another file");
 }
 
-std::vector<std::string> with_parts(const std::string& subject, const std::vector<RecordingPart>& parts) {
+std::vector<std::string> with_parts(const std::string& subject, const std::vector<InputPart>& parts) {
   std::vector<std::string> files{subject};
-  for (const RecordingPart& part : parts) files.push_back(part.path);
+  for (const InputPart& part : parts) files.push_back(part.path);
   return files;
 }
 

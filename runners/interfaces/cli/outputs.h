@@ -53,6 +53,6 @@ inline constexpr const char* kJunitReport = "<?xml version=\"1.0\" encoding=\"UT
 inline constexpr const char* kPage = "<!DOCTYPE html>\n<!-- remote-touch view -->";
 
 // The files of an experiment: its own and those that it reads.
-std::vector<std::string> with_parts(const std::string& subject, const std::vector<RecordingPart>& parts);
+std::vector<std::string> with_parts(const std::string& subject, const std::vector<InputPart>& parts);
 
 }  // namespace remote_touch

@@ -54,9 +54,9 @@ bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, cons
 // run that have changed since.
 void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experiment& experiment) {
   std::printf("  the sweep was made by git_commit %s\n", attribute(stored.attributes, "git_commit").c_str());
-  std::vector<RecordingPart> parts;  // all parts that the sweep reads, because one hash covers them
-  for (const RecordingPart& part : sweep.inputs())
-    for (const RecordingPart& mine : experiment.inputs())
+  std::vector<InputPart> parts;  // all parts that the sweep reads, because one hash covers them
+  for (const InputPart& part : sweep.inputs())
+    for (const InputPart& mine : experiment.inputs())
       if (part.path == mine.path) parts.push_back(part);
   for (const auto& input : changed_inputs(attribute(stored.attributes, "input_digests"), input_hashes(parts)))
     if (input.now != "absent")

@@ -172,7 +172,7 @@ class PluginFactory final : public RendererFactory {
     freed([&] { functions_.destroy(made); });
     return {};
   }
-  std::vector<RecordingPart> inputs() const override { return {}; }
+  std::vector<InputPart> inputs() const override { return {}; }
   double stiffness_N_per_m() const override {
     return guarded(functions_, "max_stiffness_N_per_m",
                    [&] { return functions_.max_stiffness_N_per_m(values_.data()); });

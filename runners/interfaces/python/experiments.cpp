@@ -36,7 +36,7 @@ namespace {
 class OutputFile {
  public:
   OutputFile(const std::string& file, bool force, const std::string& subject,
-             const std::vector<RecordingPart>& inputs);
+             const std::vector<InputPart>& inputs);
   // Calls write(file) while no other call uses the HDF5 library, or without_file() if there is no file.
   // Returns the result of that call.
   std::string write(const std::function<std::string(const std::string&)>& write,
@@ -48,11 +48,11 @@ class OutputFile {
 };
 
 OutputFile::OutputFile(const std::string& file, bool force, const std::string& subject,
-                       const std::vector<RecordingPart>& inputs)
+                       const std::vector<InputPart>& inputs)
     : file_(file) {
   if (file.empty()) return;
   require_different_file(file, subject);
-  for (const RecordingPart& part : inputs) require_different_file(file, part.path);
+  for (const InputPart& part : inputs) require_different_file(file, part.path);
   require_output(file, {.is_ours = has_result_header, .force = force, .force_option = "force=True"});
   lock_.emplace(file);
 }

@@ -142,7 +142,7 @@ class PythonFactory : public Base {
       return said.is_none() ? std::string() : std::string(pybind11::str(said));
     });
   }
-  std::vector<RecordingPart> inputs() const override { return {}; }
+  std::vector<InputPart> inputs() const override { return {}; }
 
  protected:
   double number_of(const char* method) const {

@@ -21,8 +21,8 @@ namespace remote_touch {
 // - the file of the trajectory, if the device is sim: or browser:, or there is a page;
 // - the files of all other sections of the experiment.
 // Throws InputError for an address without a known scheme.
-std::vector<RecordingPart> live_inputs(const Experiment& experiment, const std::string& device,
-                                       const std::string& depth, bool has_view);
+std::vector<InputPart> live_inputs(const Experiment& experiment, const std::string& device,
+                                   const std::string& depth, bool has_view);
 
 // The report of a live session: its inputs, and notes on what the user may not have intended.
 

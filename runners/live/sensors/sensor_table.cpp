@@ -21,7 +21,7 @@ namespace {
 
 // Returns the depth unit of a recorded session, so that its depths are encoded in the same unit.
 double session_unit_m(const std::string& path) {
-  return SessionReader(find_recording(path)).view().metres_per_unit;
+  return SessionReader(find_input(path)).view().metres_per_unit;
 }
 
 // Returns a check of the rules for the scenario's own frames. The encoded frames cannot be checked instead,
@@ -105,7 +105,7 @@ std::span<const SensorEntry> sensors() {
   return kSensors;
 }
 
-std::vector<RecordingPart> sensor_inputs(const std::string& text) {
+std::vector<InputPart> sensor_inputs(const std::string& text) {
   const Uri uri = parse_uri("--depth", text);
   const bool reads_recording =
       find_scheme(sensors(), "--depth", uri).reads_recording || has_ending(uri.address, ".oni");

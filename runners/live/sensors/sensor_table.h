@@ -33,7 +33,7 @@ std::span<const SensorEntry> sensors();
 
 // Returns the recording that the sensor reads: nothing for cameras, and for sim:, which shows the scenario of
 // the experiment.
-std::vector<RecordingPart> sensor_inputs(const std::string& uri);
+std::vector<InputPart> sensor_inputs(const std::string& uri);
 
 // Throws InputError when the sensor cannot be opened; for sim: also when the frames of the scenario lack what
 // the experiment needs, see Experiment::check_needs().

@@ -142,7 +142,7 @@ std::vector<std::size_t> sources_of(const FrameTimes& times, int frames) {
 // Frames 1 to 3 of four, 0.25 and 0.75 s apart: 2 Hz on average, so that a loop takes 1 + 0.5 s.
 TEST(FrameTimes, AreTheStampsAlsoWhereThePartIsPlayedAgain) {
   const RecordingIndex index = stamped({0, 8, 8.25, 9});
-  const RecordingPart part{"x", 1, -1};
+  const InputPart part{"x", 1, -1};
   const FrameTimes hold(index, part, Playback::hold, 0), loop(index, part, Playback::loop, 0),
       ping_pong(index, part, Playback::ping_pong, 0);
   EXPECT_EQ(times_of(hold, 3), (std::vector<double>{0, 0.25, 1}));

@@ -82,7 +82,7 @@ TEST_F(ImageMasks, AreRefusedIfTheyCannotBeRead) {
   const auto why = [&](const fs::path& file) { return refusal([&] { ImageMask mask(settings(file)); }); };
   const fs::path missing = folder_ / "missing.png";
   EXPECT_HAS(why(missing), missing.string() + ": no such recording");
-  EXPECT_THROW(ImageMask mask(settings(missing)), MissingRecording);
+  EXPECT_THROW(ImageMask mask(settings(missing)), MissingInput);
   const fs::path text = folder_.write("text.png", "no image at all");
   EXPECT_HAS(why(text), text.string() + ": ");
   const std::uint16_t deep[2] = {0, 1};
@@ -95,7 +95,7 @@ TEST_F(ImageMasks, AreListedAsInputFiles) {
   EXPECT_HAS(validate(settings), "path = \"\": expected a PNG file");
   settings.path = grey({1}, 1).string();
   EXPECT_EQ(validate(settings), "");
-  EXPECT_EQ(input_files(settings), RecordingPart{settings.path});
+  EXPECT_EQ(input_files(settings), InputPart{settings.path});
   const auto files = files_of(input_files(settings));
   ASSERT_EQ(files.size(), 1u);
   EXPECT_EQ(files[0].name, "grey.png");

@@ -29,25 +29,25 @@ class FindRecording : public testing::Test {
   ~FindRecording() override { fs::current_path(before_), set_data_folder({}); }
 
   const fs::path before_ = fs::current_path();
-  const TestFolder folder_{"find_recording"};
+  const TestFolder folder_{"find_input"};
 };
 
 TEST_F(FindRecording, LooksHereAndThenBelowTheDataFolder) {
   set_data_folder((folder_ / "data").string());
   folder_.write("data/a.png", ""), folder_.write("data/scans/b.png", ""), folder_.write("here/a.png", "");
-  EXPECT_EQ(find_recording("a.png"), "a.png") << "here comes first";
-  EXPECT_EQ(find_recording("scans/b.png"), (folder_ / "data/scans/b.png").string());
+  EXPECT_EQ(find_input("a.png"), "a.png") << "here comes first";
+  EXPECT_EQ(find_input("scans/b.png"), (folder_ / "data/scans/b.png").string());
   const std::string whole = (folder_ / "data/a.png").string();
-  EXPECT_EQ(find_recording(whole), whole);
+  EXPECT_EQ(find_input(whole), whole);
 }
 
 TEST_F(FindRecording, ReportsTheSearchedFolders) {
   const std::string places = "no such recording, image or mesh: expected a folder or file here or below ";
-  EXPECT_EQ(refusal([] { find_recording("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA (not set)");
+  EXPECT_EQ(refusal([] { find_input("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA (not set)");
   set_data_folder("/data");
-  EXPECT_EQ(refusal([] { find_recording("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA = /data");
-  EXPECT_EQ(recording_places(), "here or below REMOTE_TOUCH_DATA = /data");
-  EXPECT_THROW(find_recording("/a.png"), MissingRecording);
+  EXPECT_EQ(refusal([] { find_input("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA = /data");
+  EXPECT_EQ(input_places(), "here or below REMOTE_TOUCH_DATA = /data");
+  EXPECT_THROW(find_input("/a.png"), MissingInput);
 }
 
 TEST_F(FindRecording, RefusesPipesAndDevices) {
@@ -56,16 +56,15 @@ TEST_F(FindRecording, RefusesPipesAndDevices) {
   fs::create_symlink("/dev/zero", folder_ / "data/zero.csv");
   ASSERT_EQ(::mkfifo((folder_ / "here/pipe.csv").c_str(), 0600), 0);
   for (const char* name : {"pipe.csv", "zero.csv"}) {
-    EXPECT_HAS(refusal([&] { find_recording(name); }),
-               "cannot be read (a pipe or a device): expected a file");
+    EXPECT_HAS(refusal([&] { find_input(name); }), "cannot be read (a pipe or a device): expected a file");
     EXPECT_HAS(refusal([&] { files_of({name}); }), "cannot be read (a pipe or a device): expected a file");
   }
-  EXPECT_EQ(find_recording("trace.csv"), (folder_ / "data/trace.csv").string());
+  EXPECT_EQ(find_input("trace.csv"), (folder_ / "data/trace.csv").string());
 }
 
 TEST_F(FindRecording, ANameThatNoFileCanHaveIsMissing) {
   set_data_folder((folder_ / "data").string());
-  EXPECT_THROW(find_recording(std::string(5000, 'x')), MissingRecording);
+  EXPECT_THROW(find_input(std::string(5000, 'x')), MissingInput);
 }
 
 // Their digest would never end.
@@ -120,7 +119,7 @@ TEST_F(FindRecording, BagsAreReadAsAWhole) {
 TEST_F(FindRecording, DoesNotReadTheEnvironment) {
   folder_.write("data/a.png", "");
   ::setenv("REMOTE_TOUCH_DATA", (folder_ / "data").c_str(), 1);
-  EXPECT_THROW(find_recording("a.png"), MissingRecording);
+  EXPECT_THROW(find_input("a.png"), MissingInput);
   ::unsetenv("REMOTE_TOUCH_DATA");
 }
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();

@@ -78,8 +78,8 @@ std::vector<FrameOutcome> last_ticks(const Trace& trace) {
 }
 
 int recorded_frame_count(const Experiment& experiment) {
-  const RecordingPart part = experiment.inputs().front();
-  const FrameRange frames = frames_of(part, index_recording(find_recording(part.path)));
+  const InputPart part = experiment.inputs().front();
+  const FrameRange frames = frames_of(part, index_recording(find_input(part.path)));
   return frames.last - frames.first + 1;
 }
 

@@ -52,7 +52,7 @@ TEST_P(Scenes, RunWithEveryMethodOverTheSameNoise) {
     Trace trace;
     try {
       trace = simulate(beginning(scene.sweep(method, 2)), options);
-    } catch (const MissingRecording& missing) {
+    } catch (const MissingInput& missing) {
       GTEST_SKIP() << scene.name << ": " << missing.what();
     }
     EXPECT_GE(trace.length(), 110u) << method.name;

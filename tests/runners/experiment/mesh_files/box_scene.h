@@ -75,9 +75,9 @@ inline RigidTransform turned(const Vec3& rotation_deg, const Vec3& position_m = 
   return Eigen::Translation3d(position_m) * rotation(kRadiansPerDegree * rotation_deg);
 }
 
-inline std::string names_of(const std::vector<RecordingPart>& parts) {
+inline std::string names_of(const std::vector<InputPart>& parts) {
   std::string names;
-  for (const RecordingPart& part : parts)
+  for (const InputPart& part : parts)
     for (const InputFile& file : files_of(part)) names += file.name + " ";
   return names;
 }

@@ -147,7 +147,7 @@ TEST_F(PlacedMeshes, RefusesFilesThatAreNotThere) {
   Settings s = box_alone();
   s.objects[1].mesh = "none.obj";
   EXPECT_HAS(refused(s), "scenario.second_mesh = none.obj: no such mesh: expected ball, bar");
-  EXPECT_THROW(made(s), MissingRecording);
+  EXPECT_THROW(made(s), MissingInput);
   s.objects[1].mesh = "bar", s.objects[1].path = "none.txt";
   EXPECT_HAS(refused(s), "none.txt");
   s.objects[1].path.clear(), s.camera_path = "none.tum";

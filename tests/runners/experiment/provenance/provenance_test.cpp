@@ -209,7 +209,7 @@ namespace fs = std::filesystem;
 
 class Inputs : public ::testing::Test {
  protected:
-  RecordingPart part(int first = 0, int last = -1) const { return {folder_.path().string(), first, last}; }
+  InputPart part(int first = 0, int last = -1) const { return {folder_.path().string(), first, last}; }
   std::string text(int first = 0, int last = -1) const { return input_hashes({part(first, last)}); }
   // Text after the path of the folder.
   std::string rest(const std::string& of) const { return of.substr(folder_.path().string().size()); }
@@ -325,10 +325,10 @@ TEST_F(Inputs, HaveOneLinePerRecording) {
 TEST_F(Inputs, MissingOnesAreRefusedAsByARun) {
   const std::string nowhere = (folder_ / "nowhere").string();
   InputHashes hashes;
-  EXPECT_THROW(hashes.add({{nowhere}}), MissingRecording);
+  EXPECT_THROW(hashes.add({{nowhere}}), MissingInput);
   EXPECT_EQ(hashes.text(), "");
   write_depth_folder(false);
-  const auto refused = [&](const RecordingPart& of) { return refusal([&] { input_hashes({of}); }); };
+  const auto refused = [&](const InputPart& of) { return refusal([&] { input_hashes({of}); }); };
   EXPECT_HAS(refused(part(0, 7)), "last_frame = 7: expected 0 to 2");
   EXPECT_HAS(refused(part(3)), "first_frame = 3");
   fs::create_directory(folder_ / "depth/0003.png");
@@ -418,7 +418,7 @@ TEST(ChangedInputs, AreListedByPath) {
 TEST(NamedInputs, AreThoseOfTheScenario) {
   EXPECT_TRUE(Experiment::load("fig4.12").inputs().empty());
   EXPECT_EQ(Experiment::load("fig4.16-recorded").inputs(),
-            (std::vector<RecordingPart>{{"rgbd/visp_organ_table", 0, 4, true}}));
+            (std::vector<InputPart>{{"rgbd/visp_organ_table", 0, 4, true}}));
 }
 
 TEST(NamedInputs, ASweepHasThoseOfAllItsCells) {
@@ -428,7 +428,7 @@ TEST(NamedInputs, ASweepHasThoseOfAllItsCells) {
       "axes": [{"parameter": "scenario.path", "values": ["y", "x"]},
                {"parameter": "scenario.last_frame", "values": [2, 1]}, {"parameter": "seed", "values": [1, 2]}]})",
       "recordings");
-  EXPECT_EQ(sweep.inputs(), (std::vector<RecordingPart>{
+  EXPECT_EQ(sweep.inputs(), (std::vector<InputPart>{
                                 {"x", 0, 1, true}, {"x", 0, 2, true}, {"y", 0, 1, true}, {"y", 0, 2, true}}));
 }
 

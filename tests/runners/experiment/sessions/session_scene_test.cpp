@@ -154,7 +154,7 @@ TEST(SessionSettings, AreThePathOfAFile) {
   EXPECT_EQ(list[0].name, "path");
   *std::get<std::string*>(list[0].value) = "session.h5";
   EXPECT_EQ(validate(s), "");
-  EXPECT_EQ(input_files(s), RecordingPart{"session.h5"});
+  EXPECT_EQ(input_files(s), InputPart{"session.h5"});
 }
 
 // --- the experiment ---

@@ -150,7 +150,7 @@ TEST_F(ToolCacheTest, AMeshFileIsFoundBelowTheDataAndCountsByItsContent) {
 TEST_F(ToolCacheTest, ResultsHoldTheHashOfTheMesh) {
   EXPECT_TRUE(input_files(bar_).empty());
   folder_.write("meshes/cube.obj", kCube);
-  const std::vector<RecordingPart> parts = input_files(ToolSettings{.mesh = "meshes/cube.obj"});
+  const std::vector<InputPart> parts = input_files(ToolSettings{.mesh = "meshes/cube.obj"});
   ASSERT_EQ(parts.size(), 1u);
   const std::string before = input_hashes(parts);
   EXPECT_HAS(before, "meshes/cube.obj: 1 file(s), " + std::to_string(kCube.size()) + " bytes, sha256 ");
@@ -161,7 +161,7 @@ TEST_F(ToolCacheTest, ResultsHoldTheHashOfTheMesh) {
 TEST_F(ToolCacheTest, RefusalsNameTheParameter) {
   EXPECT_HAS(refusal([] { load_tool({.mesh = "none.obj"}); }),
              "renderer.tool_mesh = none.obj: no such mesh: expected ball, bar, block, fork, husky");
-  EXPECT_THROW(load_tool({.mesh = "none.obj"}), MissingRecording);
+  EXPECT_THROW(load_tool({.mesh = "none.obj"}), MissingInput);
   folder_.write("open.obj", kCube.substr(0, kCube.size() - 10));
   EXPECT_HAS(refusal([] { load_tool({.mesh = "open.obj", .size_m = 0.02}); }),
              "renderer.tool_mesh = open.obj: not closed: 4 boundary edges");

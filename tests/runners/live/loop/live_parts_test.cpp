@@ -227,7 +227,7 @@ TEST(LiveSlave, ASessionOfASessionHasTheSceneOfTheFirst) {
   const Experiment again = Experiment::load(file);
   EXPECT_GT(max_slave_force_N(simulate(again)), 1);
   std::vector<std::string> inputs;
-  for (const RecordingPart& part : again.inputs()) inputs.push_back(part.path);
+  for (const InputPart& part : again.inputs()) inputs.push_back(part.path);
   EXPECT_EQ(inputs, (std::vector<std::string>{file, file, (folder / "first.h5").string()}));
 }
 

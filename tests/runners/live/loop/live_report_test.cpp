@@ -27,8 +27,7 @@ Experiment experiment() {
 
 Paths paths(const std::string& device, const std::string& depth, bool has_view = false) {
   Paths all;
-  for (const RecordingPart& part : live_inputs(experiment(), device, depth, has_view))
-    all.push_back(part.path);
+  for (const InputPart& part : live_inputs(experiment(), device, depth, has_view)) all.push_back(part.path);
   std::sort(all.begin(), all.end());
   return all;
 }
