@@ -59,11 +59,6 @@ namespace {
 
 constexpr const char* kRecordedSession = "live-session";
 
-void add_inputs(const Part<ScenarioEntry>& scenario, std::vector<InputPart>& all) {
-  const std::vector<InputPart> own = scenario.factory->inputs();
-  all.insert(all.end(), own.begin(), own.end());
-}
-
 // Returns the tool of the renderer for the slave, nothing if the renderer has none. Throws InputError if the
 // steps of the slave are too long for it. See load_tool() for the tool itself.
 std::optional<SlaveTool> slave_tool(const ExperimentConfiguration& configuration) {
@@ -146,7 +141,8 @@ std::vector<InputPart> Experiment::inputs(const std::vector<std::string>& except
       section.add_inputs(configuration_, all);
   if (!configuration_.slave || std::ranges::find(except, "scenario") != except.end()) return all;
   for (auto recorded = recorded_experiment(); recorded; recorded = recorded->recorded_experiment())
-    add_inputs(recorded->configuration_.scenario, all);
+    for (InputPart& part : recorded->configuration_.scenario.factory->inputs())
+      all.push_back(std::move(part));
   return all;
 }
 

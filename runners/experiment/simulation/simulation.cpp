@@ -177,10 +177,10 @@ Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
     if (options.step_duration_s) watch.lap_s();
     RenderOutput out = renderer->step(device, time_s);
     if (options.step_duration_s) options.step_duration_s->push_back(watch.lap_s());
-    hand.apply(commanded_wrench(remote ? &*remote : nullptr, device, out, time_s));
-    if (remote) out.slave_W = remote->command(device, out);  // the trace shows what is sent
+    hand.apply(remote ? remote->tick(device, out, time_s) : rendered_wrench(out));
     std::optional<SlaveState> slave;
     if (remote) {
+      out.slave_W = remote->command(device, out);  // the trace shows what is sent
       remote->observe_exerted(hand.state()->force_N);
       slave = remote->state();
       slave->frame_packets = link.sent();

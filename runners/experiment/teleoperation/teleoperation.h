@@ -132,13 +132,6 @@ class Teleoperation {
   SlaveState state_;
 };
 
-// One tick of the hand's side of any run. Returns the wrench that the device is commanded to exert. remote:
-// null without a slave; then this is the wrench of the renderer.
-inline Wrench commanded_wrench(Teleoperation* remote, const DeviceState& device, const RenderOutput& out,
-                               double time_s) {
-  return remote ? remote->tick(device, out, time_s) : rendered_wrench(out);
-}
-
 // The frames that travel from the slave's camera to the operator: those that the dead-band lets pass.
 
 // Decides which frames are sent. The dead-band compares a frame near the position that the slave had when the

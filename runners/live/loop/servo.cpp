@@ -149,7 +149,8 @@ void Servo::one_tick() {
   take_frame(row_);
   const double time_s = static_cast<double>(row_.number) / rate_hz_;
   row_.out = links_.renderer.step(row_.device, time_s);
-  row_.command = commanded_wrench(links_.remote, row_.device, row_.out, time_s);
+  row_.command =
+      links_.remote ? links_.remote->tick(row_.device, row_.out, time_s) : rendered_wrench(row_.out);
   if (links_.remote) {
     row_.out.slave_W = links_.remote->command(row_.device, row_.out);  // the trace shows what is sent
     row_.slave = links_.remote->state(), row_.slave->frame_packets = frames_taken_;

@@ -253,8 +253,7 @@ TEST(LiveSlave, ATickAllocatesNothingInAnySimulatedScene) {
       if (i % 100 > 90) continue;
       DeviceState hand;
       hand.position_W = seen.point(middle) + Vec3(1e-6 * i, 0, 0);
-      RenderOutput out;
-      commanded_wrench(slave.remote(), hand, out, 0.001 * i);
+      slave.remote()->tick(hand, {}, 0.001 * i);
       max_N = std::max(max_N, slave.remote()->state().peak_force_N);
     }
     EXPECT_EQ(allocation_count(), before) << scene;
