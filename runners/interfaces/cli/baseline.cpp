@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 
@@ -6,12 +7,27 @@
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/junit_report.h"
 #include "runners/experiment/settings/changed_settings.h"
-#include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
 
 namespace remote_touch {
 namespace {
+
+struct BaselineCheckRequest {
+  std::vector<std::string> names;  // empty: all, and none may be missing
+  std::string folder = "data/baselines";
+  std::string json, junit;
+};
+
+struct BaselineBlessRequest {
+  std::vector<std::string> names;
+  std::string reason;
+  std::string folder = "data/baselines";
+  std::string run, sweep;
+  std::vector<std::string> overrides, also;
+  bool one_compiler = false;
+};
 
 using State = BaselineCheck::State;
 
@@ -108,8 +124,6 @@ int exit_code(const std::vector<BaselineCheck>& checks) {
   return any(State::not_comparable) ? kBadInput : any_failed ? kCheckFailed : kDone;
 }
 
-}  // namespace
-
 int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& request) {
   require_distinct({{"--json", request.json}, {"--junit", request.junit}});
   const Manifest manifest = read_manifest(request.folder);
@@ -156,6 +170,37 @@ int command_baseline_bless(const CommandLine& line, const BaselineBlessRequest& 
   }
   print_replaced(request.overrides);
   return kDone;
+}
+
+}  // namespace
+
+void add_baseline(Subcommands& commands) {
+  CLI::App* parent = commands.app.add_subcommand(
+      "baseline", "check or store baselines: stored results that later versions are compared with");
+  parent->require_subcommand(1);
+  Subcommands below{*parent, commands.line, commands.act, commands.threads};
+  auto [command, check] = below.add(
+      "check",
+      "compute every stored result again and compare; exit code 0: all the same, 1: some changed (better or "
+      "worse), 2: some could not be compared",
+      command_baseline_check);
+  command->add_option("names", check->names, "names of baselines (default: all; none may be missing)");
+  command->add_option("--folder", check->folder, "folder of the baselines")->capture_default_str();
+  command->add_option("--json", check->json, "also write the complete report to this JSON file");
+  command->add_option("--junit", check->junit, "also write a report in JUnit's XML format");
+
+  auto [other, bless] =
+      below.add("bless", "store a result as a baseline, with its spread over builds", command_baseline_bless);
+  other->add_option("names", bless->names, "names of baselines, or all")->required();
+  other->add_option("--reason", bless->reason, "why the new numbers are correct");
+  other->add_option("--run", bless->run,
+                    "for a new baseline: its experiment, a name or a JSON file in the folder");
+  other->add_option("--sweep", bless->sweep, "for a new baseline: its sweep");
+  add_set(other, bless->overrides, "for a new baseline: parameter=value");
+  other->add_option("--other-build", bless->also, "a build of the same source by another compiler")
+      ->allow_extra_args(false);
+  other->add_flag("--one-compiler", bless->one_compiler, "measure the spread with this compiler only");
+  other->add_option("--folder", bless->folder, "folder of the baselines")->capture_default_str();
 }
 
 }  // namespace remote_touch

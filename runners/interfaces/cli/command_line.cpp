@@ -1,11 +1,15 @@
-// The command line: options, help, and which command they select.
+// The command line: shared options, and which command the words select.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <functional>
 
 #include "analysis/storage/digest.h"
 #include "core/parameters/input_error.h"
+#include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/embedded_data.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
@@ -14,6 +18,23 @@
 
 namespace remote_touch {
 namespace {
+
+template <class Entries>
+bool has(const Entries& entries, const std::string& name) {
+  return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return name == entry.name; });
+}
+
+bool is_of(const std::string& command, const std::string& name) {
+  if (command == "run") return has(embedded_experiments(), name);
+  if (command == "sweep") return has(embedded_sweeps(), name);
+  return has(figures(), name);
+}
+
+std::string advice(const char* kind, const std::string& command, const std::string& name,
+                   const char* output) {
+  return std::string("is ") + kind + ": expected `remote-touch " + command + " " + name + " -o " + output +
+         "`";
+}
 
 // Adds the renderers of the plug-ins to the catalog. Results record the plug-ins and their hashes.
 void load_plugins(const std::vector<std::string>& files) {
@@ -47,6 +68,21 @@ InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
 
 }  // namespace
 
+std::string other_kind(const std::string& name, const std::string& command) {
+  std::error_code unreachable;
+  if (is_of(command, name) || std::filesystem::exists(name, unreachable)) return {};
+  if (is_of("run", name)) return advice("an experiment", "run", name, "FILE");
+  if (is_of("sweep", name)) return advice("a sweep", "sweep", name, "FILE");
+  // The name of a figure is its number. Experiments and sweeps are named like their files: fig4.12.
+  for (const std::string& number : {name, name.starts_with("fig") ? name.substr(3) : std::string()})
+    if (is_of("figure", number)) return advice("a figure", "figure", number, "FOLDER");
+  return {};
+}
+
+void require_own_kind(const std::string& name, const std::string& command) {
+  if (const std::string other = other_kind(name, command); !other.empty()) throw InputError(name, other);
+}
+
 int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*choose_kernels)()) {
   CLI::App app{"Haptic rendering of streaming point clouds: simulate, evaluate, reproduce figures."};
   app.require_subcommand(1);
@@ -68,10 +104,9 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   std::function<int()> act;
   int threads = -1;
   Subcommands commands{app, line, act, threads};
-  // The commands are added in the order of --help.
-  add_commands_of_experiments(commands);
-  add_commands_of_comparisons(commands);
-  add_commands_of_machines(commands);
+#define COMMAND(name) add_##name(commands);
+  REMOTE_TOUCH_COMMANDS(COMMAND)
+#undef COMMAND
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

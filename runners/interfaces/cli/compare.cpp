@@ -1,4 +1,5 @@
 // The commands that compare and check: `compare`, `hashes` and `verify`.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -21,12 +22,26 @@
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
-#include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
 
 namespace remote_touch {
 namespace {
+
+struct CompareRequest {
+  std::string baseline, candidate;
+  std::vector<std::string> tolerances;  // "force=1e-9,1e-6"
+  bool paired = false;
+  double margin = 0.02, shift_margin = 0.1, alpha = 0.01;
+  std::string json, junit, plot, view;  // files to write; empty: none
+};
+
+struct VerifyRequest {
+  std::vector<std::string> renderers;  // empty: all
+  std::vector<std::string> overrides;  // "r1_m=0.004"
+  std::string junit;
+};
 
 // "force=1e-9", or "force=1e-9,1e-6": absolute, relative.
 void add_tolerance(const std::string& text, Tolerances& tolerances) {
@@ -74,8 +89,6 @@ void write_plot(const CommandLine& line, const CompareRequest& request, const Re
                provenance(config.dump(), recipe(request), line.kernels->isa));
 }
 
-}  // namespace
-
 int command_compare(const CommandLine& line, const CompareRequest& request) {
   require_distinct({{"--json", request.json},
                     {"--junit", request.junit},
@@ -101,6 +114,8 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   if (!request.view.empty()) write_view(line, view);
   return static_cast<int>(comparison.outcome);
 }
+
+}  // namespace
 
 int command_hashes(const CommandLine& line, const HashesRequest& request) {
   if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "expected 1 or more");
@@ -164,8 +179,6 @@ ReportSuite suite_of(const std::string& renderer, const std::vector<CheckResult>
   return suite;
 }
 
-}  // namespace
-
 int command_verify(const CommandLine& line, const VerifyRequest& request) {
   std::vector<std::string> inputs;  // tool_mesh=FILE and the like; other values are no files
   for (const std::string& assignment : request.overrides)
@@ -189,6 +202,71 @@ int command_verify(const CommandLine& line, const VerifyRequest& request) {
   if (!request.junit.empty()) write_report(request.junit, junit(suites));
   print_replaced(request.overrides);
   return all_pass ? kDone : kCheckFailed;
+}
+
+constexpr const char* kExitCodesOfCompare = R"(Exit code:
+  0  same: every number is equal, or within its tolerance; with --paired also within the margins
+  1  REGRESSED: a measure got worse, or runs of a sweep failed that had not
+  2  they cannot be compared; with --paired also: too few runs to decide
+  4  CHANGED: different, and no measure is shown to be worse; improvements belong here, and results without
+     a direction, such as figures and hashes)";
+
+}  // namespace
+
+void add_compare(Subcommands& commands) {
+  auto [command, compare] = commands.add("compare", "compare two results", command_compare);
+  command->footer(kExitCodesOfCompare);
+  command->add_option("baseline", compare->baseline, "a trace, sweep, figure or file of hashes")->required();
+  command->add_option("candidate", compare->candidate, "another file of the same kind")->required();
+  command
+      ->add_option(
+          "--tolerance", compare->tolerances,
+          "NAME=ABSOLUTE[,RELATIVE] of a column or a measure; * stands for all; default: exactly equal")
+      ->allow_extra_args(false);
+  command->add_flag("--paired", compare->paired,
+                    "compare sweeps by paired tests over regions; single runs may differ");
+  command
+      ->add_option("--margin", compare->margin, "maximum change of a fraction of runs that counts as equal")
+      ->check(between(0, 1))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--shift-margin", compare->shift_margin,
+          "the same for measures that are not events: runs that increased minus runs that decreased, and change of the mean")
+      ->check(between(0, 1))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--alpha", compare->alpha,
+          "significance level: the greatest probability of a false better, worse or changed, over all tests")
+      ->check(between(0, 1))
+      ->capture_default_str();
+  command->add_option("--json", compare->json, "also write the complete report to this JSON file");
+  command->add_option(
+      "--junit", compare->junit,
+      "also write a report in JUnit's XML format: worse is a failure, other differences are skipped with a message, what "
+      "is not comparable or undecided is an error");
+  command->add_option("--plot", compare->plot,
+                      "also write a figure of the deviation over time (HDF5, for scripts/plot)");
+  command->add_option("--view", compare->view, "also write a page that shows both traces in 3-D (HTML)");
+}
+
+void add_hashes(Subcommands& commands) {
+  auto [hash, hashes] = commands.add(
+      "hashes", "extract the running hash of a trace, to find the first tick that differs on another machine",
+      command_hashes, kNoThreads);
+  hash->add_option("trace", hashes->trace, "a trace")->required();
+  hash->add_option("--every", hashes->every, "keep only every n-th tick");
+  hash->add_option("-o,--output", hashes->output, "the HDF5 file to write")->required();
+}
+
+void add_verify(Subcommands& commands) {
+  auto [other, verify] = commands.add(
+      "verify", "metamorphic checks: relations that must hold when a scene is transformed", command_verify);
+  other->add_option("renderers", verify->renderers,
+                    "names of 3-DOF renderers from `remote-touch list` (default: all)");
+  add_set(other, verify->overrides, "parameter=value of the renderer, for example r1_m=0.004");
+  other->add_option("--junit", verify->junit, "also write a report in JUnit's XML format");
 }
 
 }  // namespace remote_touch

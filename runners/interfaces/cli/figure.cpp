@@ -1,6 +1,7 @@
 #include "runners/interfaces/cli/figure.h"
 
 #include <omp.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/subcommands.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
@@ -209,6 +211,14 @@ void FigureFolder::write_progress(const FigureProgress& progress) {
 
 namespace {
 
+struct FigureRequest {
+  std::vector<std::string> names;
+  std::string folder;
+  int coarse = 1;      // uses every coarse-th value of a map's axes
+  bool quick = false;  // uses coarse maps where a map takes minutes
+  std::vector<std::string> overrides;
+};
+
 // Returns each requested figure once, the quickest first.
 std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
   for (const std::string& name : request.names) {
@@ -241,9 +251,8 @@ Figure made_or_not_run(const FigureEntry& entry, FigureContext& context) {
   }
 }
 
-}  // namespace
-
 int command_figure(const CommandLine& line, const FigureRequest& request) {
+  for (const std::string& name : request.names) require_own_kind(name, "figure");
   const std::vector<FigureRun> runs = chosen_figures(request);
   FigureFolder folder(line, request.folder, runs);
   Progress shown("figures", line.quiet);
@@ -255,6 +264,33 @@ int command_figure(const CommandLine& line, const FigureRequest& request) {
       [&](const FigureProgress& progress) { folder.report(progress, shown); });
   shown.clear();
   return folder.exit_code();
+}
+
+std::vector<std::string> figures_thinned_by_quick() {
+  std::vector<std::string> names;
+  for (const FigureEntry& entry : figures())
+    if (entry.quick_coarse > 1) names.emplace_back(entry.name);
+  return names;
+}
+
+}  // namespace
+
+void add_figure(Subcommands& commands) {
+  auto [command, figure] =
+      commands.add("figure", "reproduce figures and check their claims; writes HDF5 files and claims.json",
+                   command_figure);
+  command->add_option("names", figure->names, "names from `remote-touch list`, or all")->required();
+  command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
+  add_set(
+      command, figure->overrides,
+      "scenario.path=DIR: for camera-error, a recording with true objects; also other settings of the scenario");
+  command
+      ->add_option("--coarse", figure->coarse,
+                   "maps: use only every Nth value of each axis; claims about a whole map then stay open")
+      ->check(CLI::Range(1, 10));
+  command->add_flag("--quick", figure->quick,
+                    "use only every second to fourth value of each axis of the maps that take minutes: " +
+                        joined(figures_thinned_by_quick(), ", "));
 }
 
 }  // namespace remote_touch

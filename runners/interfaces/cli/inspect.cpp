@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
@@ -16,13 +17,17 @@
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/stored_configuration.h"
-#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/shards/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 namespace {
+
+struct InspectRequest {
+  std::string file;
+};
 
 // The columns of the table are printed in two parts: what a dataset is, and what its values are.
 void print_dataset(const std::string& path, const std::string& extent, const std::string& units) {
@@ -190,8 +195,6 @@ void print_unfinished(const std::string& file) {
   print_attributes(file, session.ending);
 }
 
-}  // namespace
-
 int command_inspect(const CommandLine&, const InspectRequest& request) {
   const std::string& file = request.file;
   std::error_code unreachable;
@@ -222,8 +225,6 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
     print_equal_runs(read_stored_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
   return kDone;
 }
-
-namespace {
 
 // `inspect` of a folder with the shards of a sweep, and of a tally: its measures over all runs, and what each
 // of its arrays is.
@@ -333,6 +334,13 @@ void print_tally(const std::string& file, const Hdf5Content& content) {
                 tally.measures[i].long_name.c_str());
   print_equal_runs(outline_of(tally), attribute(stored.attributes, "config"));
   print_arrays(tally, content);
+}
+
+void add_inspect(Subcommands& commands) {
+  auto [inspect, inspected] =
+      commands.add("inspect", "show what a result file contains", command_inspect, kNoThreads);
+  inspect->add_option("file", inspected->file, "an HDF5 file, or a folder with the shards of a sweep")
+      ->required();
 }
 
 }  // namespace remote_touch

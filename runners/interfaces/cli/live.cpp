@@ -1,6 +1,7 @@
 // The commands about this machine and live runs: `live`, `devices` and `jitter`.
 #include <spawn.h>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <csignal>
@@ -20,8 +21,8 @@
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
-#include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/subcommands.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/loop/jitter.h"
@@ -32,6 +33,23 @@
 
 namespace remote_touch {
 namespace {
+
+struct LiveRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string device, depth = "sim:";  // empty device: browser: if view, else sim:
+  std::string record, output, report;  // files to write; empty: none
+  std::optional<double> duration_s;    // none: until a signal comes
+  bool strict = false;
+  bool view = false;  // shows the run in a browser
+  int view_port = 0;
+};
+
+struct DevicesRequest {};
+
+struct JitterRequest {
+  double duration_s = 10, rate_hz = 1000;
+};
 
 std::string device_of(const LiveRequest& request) {
   if (!request.device.empty()) return request.device;
@@ -177,8 +195,6 @@ void print_files(const LiveRequest& request) {
         " is only in memory until the end; use --record to keep the session if the program is interrupted");
 }
 
-}  // namespace
-
 int command_live(const CommandLine& line, const LiveRequest& request) {
   const std::string journal = request.record.empty() ? "" : journal_of(request.record).string();
   require_distinct({{"--record", request.record},
@@ -241,8 +257,6 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
   return result.failed ? kCheckFailed : kDone;
 }
 
-namespace {
-
 template <class Entry>
 void print_entry(const Entry& entry) {
   const Availability availability = entry.availability();
@@ -274,8 +288,6 @@ void print_depth_devices(const Kernels& kernels) {
   if (!why_none.empty()) std::printf("  none: %s\n", why_none.c_str());
 }
 
-}  // namespace
-
 int command_devices(const CommandLine& line, const DevicesRequest&) {
   std::puts("--device: haptic devices");
   for (const DeviceEntry& entry : devices()) print_entry(entry);
@@ -294,6 +306,56 @@ int command_jitter(const CommandLine& line, const JitterRequest& request) {
   std::printf("  late by p50 %.1f, p99 %.1f, p99.9 %.1f, at most %.1f us; missed %lld\n", us(0.5), us(0.99),
               us(0.999), us(1), jitter.missed);
   return kDone;
+}
+
+}  // namespace
+
+void add_live(Subcommands& commands) {
+  auto [command, live] = commands.add(
+      "live", "run an experiment in real time, with a depth sensor and a haptic device", command_live);
+  command
+      ->add_option("experiment", live->experiment,
+                   "a name from `remote-touch list`, a JSON file, or a recorded live session")
+      ->required();
+  add_set(command, live->overrides, "parameter=value, for example safety.max_force_N=3");
+  command->add_option(
+      "--device", live->device,
+      "haptic device, SCHEME:ADDRESS; see remote-touch devices (default: sim:, with --view browser:)");
+  CLI::Option* const view =
+      command->add_flag("--view", live->view, "show the run in a browser, where the mouse moves the hand");
+  command->add_option("--view-port", live->view_port, "port of the page on 127.0.0.1; 0: any free port")
+      ->check(CLI::Range(0, 65535))
+      ->needs(view)
+      ->capture_default_str();
+  command->add_option("--depth", live->depth, "depth sensor, SCHEME:ADDRESS; see remote-touch devices")
+      ->capture_default_str();
+  command->add_option("--duration", live->duration_s, "duration in seconds (default: until SIGINT)")
+      ->check(between(1e-3, 1e6));
+  command->add_option(
+      "--record", live->record,
+      "record device and sensor to this HDF5 file; until the end the recording is FILE.unfinished");
+  command->add_option("-o,--output", live->output, "the HDF5 file for the trace");
+  command->add_flag("--strict", live->strict,
+                    "a note on the session is an error: exit code 2, after everything is stored");
+  command->add_option(
+      "--report", live->report,
+      "write timing and counts to this HDF5 file (a figure for scripts/plot); also on SIGUSR1");
+}
+
+void add_devices(Subcommands& commands) {
+  commands.add("devices", "list sensors, haptic devices and OpenCL devices: what was found, or why not",
+               command_devices, kNoThreads);
+}
+
+void add_jitter(Subcommands& commands) {
+  auto [other, jitter] = commands.add("jitter", "measure the timing of the haptic loop on this machine",
+                                      command_jitter, kNoThreads);
+  other->add_option("--duration", jitter->duration_s, "duration in seconds")
+      ->check(between(0.01, 86400.0))
+      ->capture_default_str();
+  other->add_option("--rate", jitter->rate_hz, "ticks per second")
+      ->check(between(1.0, 100000.0))
+      ->capture_default_str();
 }
 
 }  // namespace remote_touch

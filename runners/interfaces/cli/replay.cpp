@@ -1,4 +1,5 @@
 // The commands that make something again: `replay`, `repro` and `recover`.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <bit>
 #include <cinttypes>
@@ -20,10 +21,10 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/stored_configuration.h"
-#include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
 #include "runners/sweep/shards/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
@@ -32,6 +33,29 @@
 
 namespace remote_touch {
 namespace {
+
+struct ReplayRequest {
+  std::string sweep;
+  std::string cell;  // "3,4"
+  int replicate = 0;
+  std::string output;
+  bool strict = false;
+};
+
+struct RecheckRequest {
+  std::vector<std::string> sweeps;  // finished sweeps, or shards
+};
+
+struct ReproRequest {
+  std::string file;
+  bool run = false;
+  std::string config;  // a file to write the configuration to; empty: none
+};
+
+struct RecoverRequest {
+  std::string file;  // FILE.unfinished
+  std::string output;
+};
 
 // Prints each measure beside the stored one. Returns true if they agree bit for bit, or nothing is stored.
 bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
@@ -111,8 +135,6 @@ void print_distrust(const TextAttributes& attributes) {
     std::printf("  note: %s\n", printable(distrust).c_str());
 }
 
-}  // namespace
-
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.sweep});
   const StoredSweep stored = read_runs_or_outline(request.sweep);
@@ -161,8 +183,6 @@ int command_recheck(const CommandLine& line, const RecheckRequest& request) {
   }
   return code;
 }
-
-namespace {
 
 // Prints the text as comments of a shell script. Every line begins with '#', so a shell executes none.
 void comment(const std::string& text) {
@@ -289,8 +309,6 @@ class Repro {
   const StoredResult result_;
 };
 
-}  // namespace
-
 int command_repro(const CommandLine& line, const ReproRequest& request) {
   const Repro repro(line, request.file);
   repro.print();
@@ -315,6 +333,54 @@ int command_recover(const CommandLine& line, const RecoverRequest& request) {
                 made.left_out_bytes, printable(request.file).c_str());
   std::printf("  %s is unchanged; remove it when you no longer need it\n", printable(request.file).c_str());
   return kDone;
+}
+
+}  // namespace
+
+void add_replay(Subcommands& commands) {
+  auto [again, replay] =
+      commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
+  again->add_option("sweep", replay->sweep, "the result of a sweep; `run` replays a live session")
+      ->required();
+  again
+      ->add_option(
+          "--cell", replay->cell,
+          "index on each axis, from 0, for example 3,40; or a value of each, for example noise_sigma_m=0.003,rule=none")
+      ->required();
+  again->add_option("--replicate", replay->replicate, "number of the replicate, from 0");
+  again->add_option("-o,--output", replay->output, "the HDF5 file to write")->required();
+  again->add_flag("--strict", replay->strict,
+                  "a note on the run is an error: exit code 2, and nothing is written");
+}
+
+void add_recheck(Subcommands& commands) {
+  auto [check, recheck] = commands.add(
+      "recheck",
+      "make one run in a thousand of a sweep again (of a tally all runs of one cell in a thousand, and of at "
+      "least one), and compare the bits",
+      command_recheck);
+  check->add_option("sweeps", recheck->sweeps, "results of sweeps, or their shards")->required();
+}
+
+void add_repro(Subcommands& commands) {
+  auto [command, repro] = commands.add(
+      "repro", "print the command that reproduces a result; with --run, run it and compare", command_repro);
+  command->add_option("file", repro->file, "a trace, sweep or figure")->required();
+  command->add_flag(
+      "--run", repro->run,
+      "run it again from the stored configuration and compare; exit code 0: the same, 1: different, 2: not "
+      "comparable");
+  command->add_option("--config", repro->config, "write the stored configuration to this JSON file");
+}
+
+void add_recover(Subcommands& commands) {
+  auto [recover, kept] =
+      commands.add("recover", "make a recording from the file that an interrupted live session has left",
+                   command_recover, kNoThreads);
+  recover
+      ->add_option("file", kept->file, "FILE.unfinished, which live --record FILE leaves; it is not changed")
+      ->required();
+  recover->add_option("-o,--output", kept->output, "the HDF5 file to write")->required();
 }
 
 }  // namespace remote_touch

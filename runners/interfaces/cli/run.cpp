@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 
@@ -10,13 +11,22 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 namespace {
+
+struct RunRequest {
+  std::string experiment;
+  std::vector<std::string> overrides;
+  std::string output;
+  bool timing = false;
+  bool strict = false;
+  bool all = false;  // prints all measures
+};
 
 // The log of a task: a line for every step.
 void print_sequence(const std::vector<SequenceStep>& steps, const std::vector<SequenceEntry>& log) {
@@ -50,9 +60,8 @@ void print_measures(const Experiment& experiment, const Trace& trace, bool print
   if (printed.size() < all.size()) std::printf("  (%zu more with --all)\n", all.size() - printed.size());
 }
 
-}  // namespace
-
 int command_run(const CommandLine& line, const RunRequest& request) {
+  require_own_kind(request.experiment, "run");
   const Experiment experiment = Experiment::load(request.experiment, request.overrides);
   const FileLock lock =
       lock_output(line, request.output, with_parts(request.experiment, experiment.inputs()));
@@ -84,6 +93,22 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   print_measures(experiment, trace, request.all);
   print_sequence(experiment.sequence(), sequence_log(trace));
   return kDone;
+}
+
+}  // namespace
+
+void add_run(Subcommands& commands) {
+  auto [command, run] = commands.add("run", "run one experiment and store its trace", command_run);
+  command
+      ->add_option("experiment", run->experiment,
+                   "a name from `remote-touch list`, a JSON file, or a recorded live session")
+      ->required();
+  add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
+  command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
+  command->add_flag("--timing", run->timing, "also store the duration of each tick");
+  command->add_flag("--all", run->all, "print all measures, not only those that matter most for this run");
+  command->add_flag("--strict", run->strict,
+                    "a note on the run is an error: exit code 2, and nothing is written");
 }
 
 }  // namespace remote_touch

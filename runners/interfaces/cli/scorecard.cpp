@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,14 +14,40 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
 #include "runners/presentation/view/trace_page.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/threads/work_pool.h"
 
 namespace remote_touch {
 namespace {
+
+struct ScorecardRequest {
+  std::vector<std::string> methods, scenes;  // empty: all
+  std::string folder;
+  int seeds = 10;
+  int threads = 0;    // 0: as OpenMP decides
+  bool view = false;  // also make pages of the failures
+};
+
+constexpr const char* kStoredCard = "data/scorecard.h5";
+
+struct ScorecardStoreRequest : ScorecardRequest {
+  std::string file = kStoredCard;
+};
+
+struct ScorecardCheckRequest {
+  std::vector<std::string> methods, scenes;  // empty: all that are stored
+  std::string folder;
+  std::string file = kStoredCard;
+  int threads = 0;
+};
+
+struct ScorecardSummaryRequest {
+  std::string file = kStoredCard;
+};
 
 // Steps that the commands of a scorecard share: doing its runs, and reporting on them.
 
@@ -145,8 +172,6 @@ void print(const ScorecardReport& report) {
     std::printf("%s\n  skipped: %s\n", name.c_str(), why.c_str());
 }
 
-}  // namespace
-
 int command_scorecard(const CommandLine& line, const ScorecardRequest& request) {
   if (request.folder.empty()) throw InputError("--output", "is missing: expected a folder to write to");
   require_inputs_kept(request);
@@ -180,8 +205,6 @@ int command_scorecard(const CommandLine& line, const ScorecardRequest& request) 
   }
 }
 
-namespace {
-
 // Does the runs of the plan, without the audit, in its folder. Returns their scores.
 Scorecard scored(const CommandLine& line, const BenchmarkPlan& plan) {
   std::vector<BenchmarkSweep> sweeps;
@@ -204,8 +227,6 @@ void require_folder(const std::string& folder) {
   if (folder.empty())
     throw InputError("--output", "is missing: expected a folder for the runs, as of remote-touch scorecard");
 }
-
-}  // namespace
 
 int command_scorecard_store(const CommandLine& line, const ScorecardStoreRequest& request) {
   require_folder(request.folder);
@@ -250,6 +271,52 @@ int command_scorecard_check(const CommandLine& line, const ScorecardCheckRequest
 int command_scorecard_summary(const CommandLine&, const ScorecardSummaryRequest& request) {
   std::fputs(stored_summary(request.file).c_str(), stdout);
   return kDone;
+}
+
+// Options of every command that runs a scorecard.
+template <class Request>
+void add_scorecard_options(CLI::App* command, Request& request, const char* all) {
+  const std::string unless = std::string(" (default: ") + all + ")";
+  command->add_option("methods", request.methods, "names from `remote-touch list`, or JSON files" + unless);
+  command->add_option("--scene", request.scenes, "a name from `remote-touch list`, or a JSON file" + unless);
+  command->add_option("-o,--output", request.folder, "the folder to write to, or to resume; required");
+  command->add_option("--threads", request.threads, "number of threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, kMaxThreads));
+}
+
+void add_seeds(CLI::App* command, ScorecardRequest& request) {
+  command
+      ->add_option("--seeds", request.seeds,
+                   "number of runs of each scene and noise level, each with its own noise")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_scorecard(Subcommands& commands) {
+  auto [command, scorecard] = commands.add(
+      "scorecard",
+      "compare renderers over many scenes and noise levels; writes HDF5 files, and JSON for scripts/plot",
+      command_scorecard);
+  add_scorecard_options(command, *scorecard, "all");
+  add_seeds(command, *scorecard);
+  command->add_flag("--view", scorecard->view,
+                    "also make a page of each typical failure, as `remote-touch view` does");
+  Subcommands below{*command, commands.line, commands.act, commands.threads};
+  auto [check_command, check] = below.add(
+      "check", "compare with the stored scorecard; exit code 0: agrees, 1: differs, 2: not comparable",
+      command_scorecard_check);
+  add_scorecard_options(check_command, *check, "all that are stored");
+  check_command->add_option("--stored", check->file, "the stored scorecard")->capture_default_str();
+  auto [store_command, store] =
+      below.add("store", "store the numbers of a scorecard for `scorecard check`", command_scorecard_store);
+  add_scorecard_options(store_command, *store, "all");
+  add_seeds(store_command, *store);
+  store_command->add_option("--stored", store->file, "the file to write")->capture_default_str();
+  auto [summary_command, summary] = below.add("summary", "print what the stored scorecard says, as Markdown",
+                                              command_scorecard_summary, kNoThreads);
+  summary_command->add_option("--stored", summary->file, "the stored scorecard")->capture_default_str();
 }
 
 }  // namespace remote_touch

@@ -1,5 +1,6 @@
 // The commands that show and cite results and what is built in: `view`, `export`, `list`, `describe`, `cite`
 // and `cache`.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -24,9 +25,9 @@
 #include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/presentation/export/export_formats.h"
 #include "runners/presentation/view/sweep_page.h"
@@ -36,6 +37,27 @@
 
 namespace remote_touch {
 namespace {
+
+struct ListRequest {
+  std::vector<std::string> kind;  // words of a kind, such as {"fixture", "rules"}; empty: all kinds
+};
+
+struct DescribeRequest {
+  std::string name;  // a name, or NAME.PARAMETER
+};
+
+struct CiteRequest {
+  std::string file;  // empty: the program itself
+};
+
+struct CacheRequest {
+  std::optional<double> max_MB;  // none: nothing is removed
+};
+
+struct ExportRequest {
+  std::string file;
+  std::string output;  // its ending is the format
+};
 
 bool is_sweep_file(const std::string& file) {
   const Hdf5Reader result(file);
@@ -81,6 +103,8 @@ void write_view(const CommandLine& line, const ViewRequest& request) {
               1e-6 * static_cast<double>(page.html.size()), page.shown.c_str());
 }
 
+namespace {
+
 int command_view(const CommandLine& line, const ViewRequest& request) {
   write_view(line, request);
   return kDone;
@@ -104,15 +128,11 @@ int command_export(const CommandLine& line, const ExportRequest& request) {
   return kDone;
 }
 
-namespace {
-
 void print(const NamedKind& kind) {
   std::puts(kind.kind.c_str());
   for (const NamedKind::Row& row : kind.rows)
     std::printf("  %-18s %s\n", row.name.c_str(), row.summary.c_str());
 }
-
-}  // namespace
 
 int command_list(const CommandLine&, const ListRequest& request) {
   if (!request.kind.empty())
@@ -126,8 +146,6 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
   describe(request.name, stdout);
   return kDone;
 }
-
-namespace {
 
 // Figures have a title of their own. Other results have the title of their configuration; empty if there is
 // none.
@@ -170,8 +188,6 @@ void print_result_entries(const StoredResult& result) {
   print_entries(cited, result.attributes());
 }
 
-}  // namespace
-
 int command_cite(const CommandLine&, const CiteRequest& request) {
   if (request.file.empty()) {
     std::printf("%s\n%s", dissertation_entry().c_str(),
@@ -199,6 +215,75 @@ int command_cache(const CommandLine& line, const CacheRequest& request) {
               static_cast<double>(max_cache_bytes()) / kBytes_per_MB);
   std::printf("instruction set of the inner loops: %s\n", line.kernels->isa);
   return kDone;
+}
+
+}  // namespace
+
+void add_list(Subcommands& commands) {
+  auto [list, listed] = commands.add(
+      "list",
+      "list the names of scenarios, renderers, trajectories, experiments, sweeps, tools, figures, measures",
+      command_list, kNoThreads);
+  list->add_option("kind", listed->kind, "list only this kind, for example renderers (default: all)");
+}
+
+void add_describe(Subcommands& commands) {
+  auto [describe, described] = commands.add(
+      "describe",
+      "describe the parameters of a name: range, default, meaning; `trace`: the columns of a trace",
+      command_describe, kNoThreads);
+  describe
+      ->add_option("name", described->name,
+                   "a name from `remote-touch list`, or trace; or one parameter: proxy.r1_m, trace.force")
+      ->required();
+}
+
+void add_view(Subcommands& commands) {
+  auto [view, viewed] = commands.add(
+      "view", "make a page that shows a trace, two of them, or a sweep, in 3-D and over time", command_view);
+  view->add_option("results", viewed->results, "a trace, two traces to compare, or a sweep")
+      ->required()
+      ->expected(1, 2);
+  view->add_option("-o,--output", viewed->output, "the HTML page to write")->required();
+  view->add_option("--cells", viewed->cells,
+                   "cells of a sweep to show, 3,4 or noise_sigma_m=0.003,..., one for each --cells "
+                   "(default: failures nearest to the limit)")
+      ->allow_extra_args(false);
+  view->add_option("--max-mb", viewed->max_MB, "largest size of the page, MB; points are left out for it")
+      ->check(between(1.0, 1000.0));
+  view->add_option(
+      "--claims", viewed->claims,
+      "claims.json of `remote-touch figure`: the page of a figure's run shows the figure's claims");
+}
+
+void add_export(Subcommands& commands) {
+  auto [exporting, exported] =
+      commands.add("export", "write a result in the format of other programs", command_export);
+  exporting->add_option("file", exported->file, "a trace, sweep or figure")->required();
+  exporting
+      ->add_option("output", exported->output,
+                   "the file to write; its ending is the format: " + known_formats())
+      ->required();
+}
+
+void add_cite(Subcommands& commands) {
+  auto [citing, cite] = commands.add(
+      "cite", "print BibTeX entries of the dissertation and of this program, or also of a result",
+      command_cite, kNoThreads);
+  citing->add_option(
+      "file", cite->file,
+      "a trace, sweep, figure, scorecard or recorded live session (default: none, the program)");
+}
+
+void add_cache(Subcommands& commands) {
+  auto [command, cache] = commands.add(
+      "cache",
+      "show folder and size of the cache of tools and measured times, and the instruction set in use",
+      command_cache, kNoThreads);
+  command
+      ->add_option("--max", cache->max_MB,
+                   "remove the files used longest ago until at most this many MB are left; 0: all files")
+      ->check(between(0, 1e9));
 }
 
 }  // namespace remote_touch

@@ -1,16 +1,14 @@
 #include "runners/interfaces/cli/subcommands.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <sstream>
 
-namespace remote_touch {
+#include "core/parameters/input_error.h"
+#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/changed_settings.h"
 
-int usual_threads(const std::string& command) {
-  for (const char* idle : {"list", "describe", "inspect", "cite", "merge", "analyse", "recover", "hashes",
-                           "devices", "cache", "jitter", "summary"})
-    if (command == idle) return -1;
-  return 0;
-}
+namespace remote_touch {
 
 CLI::App* Subcommands::declare(const char* name, const char* meaning, std::function<int()> threads_wanted,
                                std::function<int()> start) {
@@ -37,6 +35,11 @@ CLI::Validator between(double low, double high) {
 
 void add_set(CLI::App* command, std::vector<std::string>& overrides, const char* meaning) {
   command->add_option("--set", overrides, meaning)->allow_extra_args(false);
+}
+
+void print_replaced(const std::vector<std::string>& overrides) {
+  for (const std::string& line : replaced_settings(overrides))
+    std::fprintf(stderr, "%s: %s\n", program_identity().name.c_str(), printable(line).c_str());
 }
 
 }  // namespace remote_touch

@@ -1,5 +1,5 @@
-// The subcommands of the command line. Each add_commands_...() declares the options of some commands, and the
-// function that each command starts.
+// The subcommands of the command line: a line in the list below, and one file with the request, the work and
+// the options of each.
 #pragma once
 
 #include <functional>
@@ -18,16 +18,8 @@ class Validator;
 
 namespace remote_touch {
 
-// Returns the number of threads of a command that has no option for it. 0: OpenMP decides; -1: the command
-// starts none.
-int usual_threads(const std::string& command);
-template <class Request>
-int threads_of(const std::string& command, const Request& request) {
-  if constexpr (requires { request.threads; })
-    return request.threads;
-  else
-    return usual_threads(command);
-}
+// The threads of a command that has no option for them: as OpenMP decides, or none.
+inline constexpr int kUsualThreads = 0, kNoThreads = -1;
 
 // Adds subcommands to `app`. When the user calls one of them, `act` becomes the call of its function, and
 // `threads` becomes the number of threads that it starts. The request, which the options fill, lives as long
@@ -40,11 +32,17 @@ struct Subcommands {
 
   template <class Request>
   std::pair<CLI::App*, Request*> add(const char* name, const char* meaning,
-                                     int (*run)(const CommandLine&, const Request&)) {
+                                     int (*run)(const CommandLine&, const Request&),
+                                     int usual_threads = kUsualThreads) {
     auto request = std::make_shared<Request>();
-    CLI::App* command = declare(
-        name, meaning, [name, request] { return threads_of(name, *request); },
-        [&line = line, request, run] { return run(line, *request); });
+    const auto threads_wanted = [request, usual_threads] {
+      if constexpr (requires { request->threads; })
+        return request->threads;
+      else
+        return usual_threads;
+    };
+    CLI::App* command =
+        declare(name, meaning, threads_wanted, [&line = line, request, run] { return run(line, *request); });
     return {command, request.get()};
   }
   // threads_wanted() is called and `act` becomes `start` when the user calls this command itself, but not
@@ -58,11 +56,28 @@ CLI::Validator between(double low, double high);
 
 void add_set(CLI::App* command, std::vector<std::string>& overrides, const char* meaning);
 
-// list, describe, view, export, inspect, run, sweep, merge, replay, analyse, figure.
-void add_commands_of_experiments(Subcommands& commands);
-// scorecard, compare, hashes, baseline, repro, cite, verify.
-void add_commands_of_comparisons(Subcommands& commands);
-// live, recover, devices, jitter, cache.
-void add_commands_of_machines(Subcommands& commands);
+// Prints a line on standard error for each --set that a later --set replaces (changed_settings.h): only the
+// last one has an effect, and the user may have meant another parameter. Call it at the end of a command, so
+// that an error stays one line; command_live() calls it before its loop.
+void print_replaced(const std::vector<std::string>& overrides);
+
+// Returns "is a sweep: expected `remote-touch sweep NAME -o FILE`" if the name is not a file, and is a stored
+// name that this command does not accept. Returns an empty text otherwise. command: run, sweep or figure.
+std::string other_kind(const std::string& name, const std::string& command);
+// Throws InputError with this text.
+void require_own_kind(const std::string& name, const std::string& command);
+
+// The commands in the order of --help. add_run() adds `run`, and so on.
+// clang-format off
+#define REMOTE_TOUCH_COMMANDS(COMMAND) \
+  COMMAND(list) COMMAND(describe) COMMAND(view) COMMAND(export) COMMAND(inspect) \
+  COMMAND(run) COMMAND(sweep) COMMAND(merge) COMMAND(replay) COMMAND(recheck) COMMAND(analyse) \
+  COMMAND(figure) COMMAND(scorecard) COMMAND(compare) COMMAND(hashes) COMMAND(baseline) \
+  COMMAND(repro) COMMAND(cite) COMMAND(verify) COMMAND(live) COMMAND(recover) COMMAND(devices) \
+  COMMAND(jitter) COMMAND(cache)
+// clang-format on
+#define COMMAND(name) void add_##name(Subcommands& commands);
+REMOTE_TOUCH_COMMANDS(COMMAND)
+#undef COMMAND
 
 }  // namespace remote_touch

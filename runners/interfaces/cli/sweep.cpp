@@ -1,5 +1,6 @@
 // The commands about sweeps: `sweep`, `merge` and `analyse`.
 #include <omp.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -17,9 +18,9 @@
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/presentation/export/result_tables.h"
 #include "runners/sweep/answer_display.h"
@@ -214,6 +215,7 @@ int make_tally(const CommandLine& line, const SweepRequest& request, const std::
 }  // namespace
 
 int command_sweep(const CommandLine& line, const SweepRequest& request) {
+  require_own_kind(request.sweep, "sweep");
   const auto value_of = [](const char* variable) -> const char* { return std::getenv(variable); };
   const Shard shard =
       request.shard.empty() ? shard_from_environment(value_of).value_or(Shard{}) : parse_shard(request.shard);
@@ -256,6 +258,15 @@ int command_merge(const CommandLine& line, const MergeCommand& command) {
 namespace {
 
 // Answers questions about a finished sweep: limits, means and differences, as text, CSV or HDF5.
+
+// See SweepQuestion in runners/sweep/sweep_answer.h.
+struct AnalyseRequest {
+  std::string sweep;
+  std::string limit, along, between, direction;  // empty: chosen
+  double threshold = 0.5, level = 0.5;
+  std::vector<std::string> means, differences, by;
+  std::string output;  // .h5 or .csv; empty: none
+};
 
 SweepQuestion question_of(const AnalyseRequest& request) {
   return {request.limit, request.along,       request.threshold, request.level,    request.means,
@@ -346,8 +357,6 @@ void write_tables(const CommandLine& line, const AnalyseRequest& request, const 
   files.finish();
 }
 
-}  // namespace
-
 int command_analyse(const CommandLine& line, const AnalyseRequest& request) {
   const std::string ending = std::filesystem::path(request.output).extension().string();
   if (!request.output.empty() && ending != ".h5" && ending != ".csv")
@@ -359,6 +368,70 @@ int command_analyse(const CommandLine& line, const AnalyseRequest& request) {
   std::fputs(answer_text(answer.figure, answer.done, answer.asked).c_str(), stdout);
   for (const std::string& note : answer.notes) std::printf("  note: %s\n", note.c_str());
   return kDone;
+}
+
+}  // namespace
+
+void add_sweep(Subcommands& commands) {
+  auto [command, sweep] = commands.add(
+      "sweep", "run an experiment over a grid of parameters; the same command resumes it", command_sweep);
+  command->add_option("sweep", sweep->sweep, "a name from `remote-touch list`, or a JSON file")->required();
+  add_set(command, sweep->overrides, "parameter=value of the experiment, or of the sweep");
+  command->add_option(
+      "-o,--output", sweep->output,
+      "the HDF5 file to write or to resume; {shard} is replaced by the part, for example 2of7");
+  command->add_option("--threads", sweep->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, kMaxThreads));
+  command->add_option("--shard", sweep->shard,
+                      "i/N: run only part i of N (default: from Slurm or mpirun, else everything)");
+  command->add_flag("--dry-run", sweep->dry_run,
+                    "check every cell, estimate time and file size; write nothing");
+  command->add_flag("--strict", sweep->strict,
+                    "a note on a run is an error: exit code 2, after all runs are stored");
+}
+
+void add_merge(Subcommands& commands) {
+  auto [command, merge] =
+      commands.add("merge", "merge the shards (parts) of a sweep into one file", command_merge, kNoThreads);
+  command->add_option("shards", merge->shards, "the files of all shards")->required();
+  command->add_option("-o,--output", merge->output, "the HDF5 file to write")->required();
+  command->add_flag("--partial", merge->partial,
+                    "shards may be missing or unfinished; the file states which shards it has");
+}
+
+void add_analyse(Subcommands& commands) {
+  auto [command, analyse] = commands.add(
+      "analyse", "answer questions about a sweep: limits, means, differences", command_analyse, kNoThreads);
+  command->add_option("sweep", analyse->sweep, "the result of a sweep")->required();
+  const auto add_list = [&command = command](const char* option, std::vector<std::string>& list,
+                                             const char* meaning) {
+    command->add_option(option, list, meaning)->delimiter(',')->allow_extra_args(false);
+  };
+  command->add_option(
+      "--limit", analyse->limit,
+      "measure of an event (default: popped_through, tool_popped_through or slave_touched): where does its probability cross --level?");
+  command->add_option("--along", analyse->along, "axis of the limit (default: the last axis of numbers)");
+  command->add_option("--above", analyse->threshold, "the event happens above this value (default 0.5)");
+  command
+      ->add_option("--level", analyse->level,
+                   "probability of the event at the limit, between 0 and 1 (default 0.5)")
+      ->check(between(0, 1));
+  add_list("--mean", analyse->means, "measure whose means are wanted; may be given several times");
+  add_list("--by", analyse->by, "axes of the means and differences, A,B (default: all); others are pooled");
+  add_list(
+      "--difference", analyse->differences,
+      "measure whose differences between the values of --between are wanted; may be given several times");
+  command->add_option(
+      "--between", analyse->between,
+      "axis whose values are compared with its first value, for --difference (default: the first axis of "
+      "names) and for --limit: differences and ratios of limits");
+  command
+      ->add_option("--direction", analyse->direction,
+                   "the event becomes more (rises) or less probable (falls) along the axis; default: as the "
+                   "runs show it")
+      ->check(CLI::IsMember({"rises", "falls"}));
+  command->add_option("-o,--output", analyse->output,
+                      "file for the tables: .h5 (also for scripts/plot) or .csv");
 }
 
 }  // namespace remote_touch

@@ -1,8 +1,8 @@
-#include "runners/interfaces/cli/experiment_options.h"
+#include "runners/interfaces/cli/subcommands.h"
 
 #include <gtest/gtest.h>
 
-namespace remote_touch::experiment_options_test {
+namespace remote_touch::command_line_test {
 namespace {
 
 TEST(OtherKind, NamesTheCommand) {
@@ -24,4 +24,4 @@ TEST(OtherKind, IsEmptyForTheCommandsOwnNamesForFilesAndForNoWord) {
 }
 
 }  // namespace
-}  // namespace remote_touch::experiment_options_test
+}  // namespace remote_touch::command_line_test
