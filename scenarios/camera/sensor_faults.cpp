@@ -130,10 +130,30 @@ NoiseStream of_frame(const NoiseKey& key, int frame) {
   return noise_stream(key, NoiseUse::sensor_frame, static_cast<std::uint32_t>(frame));
 }
 
-// Returns true if one of the faults moves points along the view.
-bool move_points(const SensorFaults& s) {
-  return s.ray_noise.sigma_m > 0 || s.flying_probability > 0 || s.outlier_probability > 0 ||
-         s.quantisation_m > 0;
+// What faults do: they draw random numbers, they move points along the view, they lose or shear points.
+enum Effect : unsigned { draws = 1, moves = 2, loses = 4, shears = 8 };
+
+// Each fault: its parameter, its size, which is 0 without it, and what it does.
+constexpr struct {
+  const char* parameter;
+  double (*size)(const SensorFaults& s);
+  unsigned effects;
+} kFaults[] = {
+    {"repeat_probability", [](const SensorFaults& s) { return s.repeat_probability; }, draws},
+    {"rolling_shutter_s", [](const SensorFaults& s) { return s.rolling_shutter_s; }, shears},
+    {"ray_noise_m", [](const SensorFaults& s) { return s.ray_noise.sigma_m; }, draws | moves},
+    {"flying_probability", [](const SensorFaults& s) { return s.flying_probability; }, draws | moves},
+    {"outlier_probability", [](const SensorFaults& s) { return s.outlier_probability; }, draws | moves},
+    {"quantisation_m", [](const SensorFaults& s) { return s.quantisation_m; }, moves},
+    {"hole_fraction", [](const SensorFaults& s) { return s.hole_fraction; }, draws | loses},
+    {"dropout_probability", [](const SensorFaults& s) { return s.dropout_probability; }, draws | loses},
+    {"late_probability", [](const SensorFaults& s) { return s.late_probability; }, draws},
+};
+
+// Returns true if one of the faults has one of these effects.
+bool have(const SensorFaults& s, unsigned effects) {
+  return std::any_of(std::begin(kFaults), std::end(kFaults),
+                     [&](const auto& fault) { return (fault.effects & effects) != 0 && fault.size(s) > 0; });
 }
 
 void lose(PointCloud& cloud, std::size_t i) {
@@ -212,8 +232,15 @@ std::string validate(const SensorFaults& s) {
   return s.view_direction.norm() < 0.001 ? "view_direction: expected a vector of length 0.001 or more" : "";
 }
 
+std::vector<std::string> random_faults() {
+  std::vector<std::string> names;
+  for (const auto& fault : kFaults)
+    if ((fault.effects & draws) != 0) names.emplace_back(fault.parameter);
+  return names;
+}
+
 bool use_view_direction(const SensorFaults& s) {
-  return move_points(s) || s.hole_fraction > 0;
+  return have(s, moves) || s.hole_fraction > 0;
 }
 
 FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const SensorFaults& settings,
@@ -223,10 +250,7 @@ FaultySensor::FaultySensor(std::unique_ptr<const Scenario> scenario, const Senso
 }
 
 int FaultySensor::frame_count() const {
-  const SensorFaults& s = settings_;
-  const bool change = s.repeat_probability > 0 || s.rolling_shutter_s > 0 || s.flying_probability > 0 ||
-                      s.outlier_probability > 0 || s.ray_noise.sigma_m > 0 || s.late_probability > 0;
-  const bool continues = !ends() && (change || loses_points());
+  const bool continues = !ends() && have(settings_, draws | shears);
   return continues ? std::numeric_limits<int>::max() : scenario_->frame_count();
 }
 
@@ -253,8 +277,7 @@ FrameDelivery FaultySensor::delivery(int frame) const {
 }
 
 std::shared_ptr<const NeighbourSearch> FaultySensor::points(int frame) const {
-  if (move_points(settings_) || loses_points() || settings_.rolling_shutter_s > 0)
-    return make_search(cloud(frame));
+  if (have(settings_, moves | loses | shears)) return make_search(cloud(frame));
   return scenario_->points(scenario_frame(content_frame(frame)));
 }
 
@@ -266,7 +289,7 @@ PointCloud FaultySensor::cloud(int frame) const {
     without_faults = view_coordinates(cloud);
   if (settings_.rolling_shutter_s > 0) shear(cloud, captured_s(content));
   if (settings_.ray_noise.sigma_m > 0) add_ray_noise(cloud, without_faults.positions, content);
-  if (move_points(settings_)) displace(cloud, content);
+  if (have(settings_, moves)) displace(cloud, content);
   if (settings_.hole_fraction > 0) cut_holes(cloud, without_faults, content);
   if (settings_.dropout_probability > 0) drop_points(cloud, content);
   return cloud;

@@ -59,6 +59,8 @@ struct SensorFaults {
 
 Parameters parameters(SensorFaults& s);
 std::string validate(const SensorFaults& s);
+// Returns the parameters that turn on the faults that draw random numbers.
+std::vector<std::string> random_faults();
 // Returns true if one of these faults depends on view_direction in a cloud without an image layout.
 bool use_view_direction(const SensorFaults& s);
 
@@ -112,7 +114,6 @@ class FaultySensor final : public Scenario {
   };
   int content_frame(int frame) const;   // the frame whose content this frame shows
   int scenario_frame(int frame) const;  // the scenario's frame for it: the last one if there is none
-  bool loses_points() const { return settings_.hole_fraction > 0 || settings_.dropout_probability > 0; }
   Vec3 viewing_direction(const PointCloud& cloud, const Vec3& p_W) const;
   void shear(PointCloud& cloud, double captured_s) const;
   Vec3 normal_at(const Vec3& p_W, double time_s) const;

@@ -321,9 +321,7 @@ const Names kOfRun = {"frame_jitter_s", "frame_drop_probability"};
 const Names kOfScene = {"noise_sigma_m", "noise_per_m", "colour_noise", "dropout_probability",
                         "turbidity_per_m"};
 const Names kOfSensor = {"name", "sensor", "noise_px", "disparity_step_px", "lateral_noise_px"};
-const Names kOfFaults = {"repeat_probability",  "ray_noise_m",   "flying_probability",
-                         "outlier_probability", "hole_fraction", "dropout_probability",
-                         "late_probability"};
+const Names kOfFaults = random_faults();
 const Names kOfLink = {"jitter_s", "loss_probability"};
 const Names kOfRegistration = {"offset_m", "rotation_deg"};
 
