@@ -311,8 +311,7 @@ std::string event_of(const Asked& asked, const SweepQuestion& question) {
   if (event.empty() && !question.along.empty())
     throw InputError(
         "along " + printable(question.along),
-        "no run has popped_through, tool_popped_through or slave_touched: expected the measure of an event as "
-        "limit");
+        "no measure of an event has a value in some run: expected the measure of an event as limit");
   return event;
 }
 
@@ -332,8 +331,7 @@ void refuse_options_without_effect(const SweepQuestion& question, bool has_limit
 template <class IsKnown>
 std::string first_event(const std::vector<Column>& measures, const IsKnown& is_known) {
   for (std::size_t i = 0; i < measures.size(); ++i)
-    for (const char* name : {"popped_through", "tool_popped_through", "slave_touched"})
-      if (measures[i].name == name && is_known(i)) return name;
+    if (is_event(measures[i]) && is_known(i)) return measures[i].name;
   return {};
 }
 

@@ -42,8 +42,7 @@ struct SweepQuestion {
   std::string direction = {};
 };
 
-// Returns popped_through, tool_popped_through or slave_touched if the sweep has it and it is known in a run;
-// else an empty text.
+// Returns the first measure of an event (is_event()) that is known in a run; an empty text if there is none.
 std::string default_event(const SweepResult& result);
 
 // The name of such a figure.

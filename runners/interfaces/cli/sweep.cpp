@@ -409,7 +409,7 @@ void add_analyse(Subcommands& commands) {
   };
   command->add_option(
       "--limit", analyse->limit,
-      "measure of an event (default: popped_through, tool_popped_through or slave_touched): where does its probability cross --level?");
+      "measure of an event (default: the first that the sweep has): where does its probability cross --level?");
   command->add_option("--along", analyse->along, "axis of the limit (default: the last axis of numbers)");
   command->add_option("--above", analyse->threshold, "the event happens above this value (default 0.5)");
   command

@@ -40,7 +40,7 @@ SweepResult sweep() {
                  {"method", "1", "", std::vector<std::int32_t>{0, 1}, 1, {"old", "new"}},
                  {"x", "m/s^2", "", std::vector<double>{1, 2, 3}}};
   result.replicates = kRuns;
-  result.measures = {{"popped_through", "1", "", {}}, {"max_force", "N", "", {}}};
+  result.measures = {{"popped_through", "1", "1 when the proxy popped through", {}}, {"max_force", "N", "", {}}};
   result.start(false);
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     const std::size_t cell = result.cell_of(run);
@@ -80,7 +80,7 @@ TEST(SweepAnswers, TheEventOfASlaveIsThatItTouched) {
   result.measures[0].name = "slave_touched";
   EXPECT_EQ(default_event(result), "slave_touched");
   EXPECT_HAS(sweep_answer(result, kConfig, {}).caption, "the x at which slave_touched is above 0.5");
-  result.measures[0].name = "slave_contact_fraction";
+  result.measures[0].long_name = "fraction of ticks with a force on the slave";
   EXPECT_EQ(default_event(result), "");
 }
 

@@ -98,8 +98,8 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
     along the axis `along` does it become more probable than `level`? mean: measures whose means are wanted, by the axes
     `by` (all if empty). difference: measures whose differences between the first and each other value of the axis
     `between` are wanted; with `limit` and `between`, also the differences and ratios of the limits. direction: "rises" if
-    the event becomes more probable along the axis, "falls" if less; None: as the runs show it. Without a question: the limit of popped_through, with a tool of tool_popped_through, and
-    all means. The intervals are of 95 %.
+    the event becomes more probable along the axis, "falls" if less; None: as the runs show it. Without a question: the limit
+    of the first measure of an event, and all means. The intervals are of 95 %.
     """
     from remote_touch import dataset
     file, parts, config = b"", (), "{}"
