@@ -7,8 +7,8 @@
 
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/tally/sweep_tally.h"
+#include "runners/evaluation/figures/context/figure_context.h"
 #include "runners/evaluation/figures/studies/stored_study.h"
-#include "runners/evaluation/figures/studies/study_figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/sweep/stored_sweep.h"
 

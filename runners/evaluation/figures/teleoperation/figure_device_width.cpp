@@ -5,7 +5,7 @@
 
 #include "analysis/measures/force_fidelity.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
+#include "runners/evaluation/figures/context/figure_context.h"
 #include "runners/evaluation/figures/teleoperation/wall_limit.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 

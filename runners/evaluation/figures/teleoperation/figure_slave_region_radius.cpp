@@ -7,8 +7,8 @@
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/theory/haptic_loops.h"
+#include "runners/evaluation/figures/context/figure_context.h"
 #include "runners/evaluation/figures/teleoperation/slave_tasks.h"
-#include "runners/evaluation/figures/teleoperation/teleoperation_figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {

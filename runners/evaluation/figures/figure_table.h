@@ -1,0 +1,108 @@
+// The figures, in the order in which they are listed. A new figure is one file and one entry here. This file
+// is included several times, each time with another FIGURE, so it has no include guard. An entry is
+//   FIGURE(name, summary, function that makes it, other members of FigureEntry)
+// Seconds are those on one core of an AMD EPYC with AVX-512, with the tools already in the cache. Those
+// of 4.12, 4.16 and tool-forces are scaled from a core that takes five times as long for 4.13.
+FIGURE("4.10", "the proxy on a flat grid, in 3-D", figure_4_10, 0.05)
+FIGURE("4.11", "a flat grid touched from above: proxy height, and the ripple of the contact point",
+       figure_4_11, 0.03)
+FIGURE("4.12", "a noisy cloud lifted with acceleration: proxy height at each update", figure_4_12, 3)
+FIGURE("4.13", "pop-through in 5396 lifts, over noise and acceleration", figure_4_13, 32, true)
+FIGURE("4.13-replicated", "a coarser map with 20 lifts a cell: probability of pop-through",
+       figure_4_13_replicated, 108, true, 3)
+FIGURE("4.13-tracked", "the pop-through map of the renderer tracked-sheet, next to that of the proxy",
+       figure_4_13_tracked, 150, true, 4)
+FIGURE("bounds", "the bounds (4.14) to (4.25), their parts measured, and how far they hold", figure_bounds,
+       38)
+FIGURE("frame-rates",
+       "up to which acceleration the proxy stays on a surface, at 15, 30 and 60 frames per second",
+       figure_frame_rates, 5)
+FIGURE("first-touch",
+       "how fast a surface may move when it first touches the proxy, at 15, 30 and 60 frames per second",
+       figure_first_touch, 1.3)
+FIGURE("proxy-rates", "whether (4.23), (4.24) and the 16 r_c/s of [1] can come from one machine",
+       figure_proxy_rates, 20)
+FIGURE("pop-through-law",
+       "from which acceleration on lifts pop through, over spacing, noise and speed: a law from 1e7 lifts",
+       figure_pop_through_law, 12)
+FIGURE("4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14, 0.15)
+FIGURE("4.15", "ramp and box as the points of a simulated depth camera, in 3-D", figure_4_15, 0.1)
+FIGURE("4.15-meshes",
+       "ramp and box as meshes with colours before a simulated Kinect: points, proxy path and gap",
+       figure_4_15_meshes, 3.5)
+FIGURE("eq4.15", "force between updates of a moving cloud: the sign in equation (4.15)", figure_eq4_15, 0.02)
+FIGURE("4.16", "ramp and box seen by a simulated depth camera: proxy path and force", figure_4_16, 2.2)
+FIGURE("4.16-recorded", "the experiment of 4.16 on recorded depth images and clouds", figure_4_16_recorded, 1)
+FIGURE("5.5", "the region around a single point, entered and left", figure_5_5, 0.03)
+FIGURE("5.6", "the step between two fixture radii, and a stiffness that varies across a plane", figure_5_6,
+       0.2)
+FIGURE("5.8", "a fixture that grows on a beating organ, seen by a simulated depth camera", figure_5_8, 10)
+FIGURE("5.8-recorded", "the fixture of 5.8 on recorded depth images, camera at rest and moving",
+       figure_5_8_recorded, 15)
+FIGURE("5.9", "the proxy at the distance of a forbidden region from a beating organ, in 3-D", figure_5_9, 4)
+FIGURE("6.2", "a recorded hand as points with normals, and what the filter does to a step", figure_6_2, 0.2)
+FIGURE(
+    "6.3",
+    "a tool turned in a narrow box of points: displacement, rotation, counts of contacts over the spacing of "
+    "the points",
+    figure_6_3, 7)
+FIGURE("6.3-angles", "the tool of 6.3 turned by other angles: where it stops, over spacing and contact rule",
+       figure_6_3_angles, 8)
+FIGURE("6.4", "a bunny, a hand and a drill slide over recorded objects", figure_6_4, 8)
+FIGURE("7.1-recorded", "an organ model and a dragon found by hue in recorded images", figure_7_1_recorded,
+       0.3)
+FIGURE("7.4", "a tool of spheres is pushed towards two valves with forbidden regions", figure_7_4, 15)
+FIGURE("7.5", "guidance leads the hand from one valve to the other, with five and with six motors",
+       figure_7_5, 12)
+FIGURE("7.5-guidance", "where guidance leads the hand, over its stiffness, with six and with five motors",
+       figure_7_5_guidance, 18)
+FIGURE("7.5-recorded", "the task of 7.5 on a recorded desk: from an organ model to a dragon",
+       figure_7_5_recorded, 7)
+FIGURE("latency", "how far a forbidden region is violated when frames arrive late, irregularly or not at all",
+       figure_latency, 18)
+FIGURE("sensor-models-recorded",
+       "simulated depth sensors against recordings of real ones: noise, steps of depth, holes at edges",
+       figure_sensor_models_recorded, 2.5)
+FIGURE(
+    "camera-error",
+    "error of the renderer and of the camera on recordings with true objects, over filters of depth images",
+    figure_camera_error, 20, false, 1, true)
+FIGURE("handshake", "a hand that shakes before a depth camera is pressed, and shakes a passive hand (1.1)",
+       figure_handshake, 2.5)
+FIGURE("handshake-human", "the figure handshake with the mesh of a human hand", figure_handshake_human, 2.5)
+FIGURE("device-wall",
+       "up to which stiffness a rendered plane is stable, over damping and delay of the device",
+       figure_device_wall, 10)
+FIGURE(
+    "device-width",
+    "the same with a tool, its rotation, another hand, other frame rates and noise, and the energy that frame updates give the hand",
+    figure_device_width, 30)
+FIGURE(
+    "steer-robot",
+    "which region keeps a slow slave behind a delay off an organ that moves, and the force on it otherwise",
+    figure_steer_robot, 10)
+FIGURE("slave-force-peak",
+       "how hard a slave hits a surface at rest, over its bandwidth, the delay and what the hand feels",
+       figure_slave_force_peak, 0.4)
+FIGURE("slave-region-radius",
+       "the region that keeps a slave from touching, over delay, speed of the organ and noise",
+       figure_slave_region_radius, 6)
+FIGURE("slave-packets", "packets of commands and forces over the dead-band, beside published reductions",
+       figure_slave_packets, 5)
+FIGURE("slave-lift", "Fig 4.12 with a slave: the force of a rising surface on a slave that is late",
+       figure_slave_lift, 0.2)
+FIGURE("anticipation",
+       "the time by which the hand feels a contact before the slave touches, over delay and bandwidth",
+       figure_anticipation, 0.3)
+FIGURE("tool-forces", "force and torque of a tool by six methods, against scenes where they are known",
+       figure_tool_forces, 1.6)
+FIGURE("tool-lifts",
+       "up to which speed, tilt, turn and acceleration a plate stays on a surface, by three contact rules",
+       figure_tool_lifts, 50)
+FIGURE("tool-shapes",
+       "what speed lets an edge, a corner, a ball or a wall pass through a plate, by three contact rules",
+       figure_tool_shapes, 60)
+FIGURE("tool-tracked",
+       "a plate on noisy surfaces that accelerate, by tracked sheets and by three contact rules",
+       figure_tool_tracked, 100, true, 2)
+FIGURE("turbidity", "two valves in turbid water found by hue: precision and recall", figure_turbidity, 1.4)
