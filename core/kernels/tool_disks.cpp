@@ -41,14 +41,14 @@ inline std::size_t put_disks(const PositionsInField& positions, const DisksInFie
 
 }  // namespace
 
-std::size_t disks_in_field(const PointColumns& points, std::size_t count, double fraction, double cells_per_m,
-                           const PosedField& f, const DiskLimits& limits, double* nearest, bool is_new,
+std::size_t disks_in_field(const PointColumns& points, std::size_t count, DiskShape shape,
+                           const PosedField& f, const DiskLimits& limits, GroupDistances groups,
                            const DiskColumns& out, std::size_t& outside_count) {
   std::size_t found = 0;
   outside_count = 0;
   for (std::size_t i = 0; i < count; i += kLanes) {
-    double& of_group = nearest[i / kLanes];
-    if (!is_new && of_group > limits.passed) continue;
+    double& of_group = groups.nearest[i / kLanes];
+    if (!groups.is_new && of_group > limits.passed) continue;
     Doubles min = broadcast(1e300);
     for (std::size_t part = i; part < i + kLanes && part < count; part += kDoubles) {
       const PositionsInField positions = positions_at(points, part, f);
@@ -57,11 +57,11 @@ std::size_t disks_in_field(const PointColumns& points, std::size_t count, double
       min = positions.at.distance < min ? positions.at.distance : min;
       const Flags may = (is_point & (positions.at.distance <= limits.reach)) | outside;
       if (!is_any(may)) continue;
-      found += put_disks(positions, disks_at(points, part, fraction, f, positions.at), may, limits,
-                         cells_per_m, out, found);
+      found += put_disks(positions, disks_at(points, part, shape.fraction, f, positions.at), may, limits,
+                         shape.cells_per_m, out, found);
       outside_count += Packing(outside).count();
     }
-    if (is_new) of_group = least(min);
+    if (groups.is_new) of_group = least(min);
   }
   return found;
 }

@@ -166,6 +166,27 @@ struct TouchedSummary {
   std::size_t unclear_count;
 };
 
+// The disk of a point has the radius fraction x spacing + extent. Its cell is one of a grid with so many
+// cells.
+struct DiskShape {
+  double fraction, cells_per_m;
+};
+
+// The smallest distance of each group of kLanes points, or a lower bound of it. It is written if is_new; else
+// it is read, and groups that are farther away than `passed` of the limits are skipped.
+struct GroupDistances {
+  double* nearest;
+  bool is_new;
+};
+
+// The slabs number[index[0..count)]. The points of slab number[i] are at least nearest[i] - change away.
+struct ChosenSlabs {
+  const std::uint32_t *number, *index;
+  std::size_t count;
+  const double* nearest;
+  double change;
+};
+
 struct ToolKernels {
   // Finds the spheres of the groups that contain positions within reach of the tool, in order, and some
   // others that are near. Writes their indices into found, which has capacity for all. Returns their number.
@@ -178,43 +199,38 @@ struct ToolKernels {
   std::size_t (*slabs_in_field)(const SlabColumns&, const std::uint32_t* groups, std::size_t group_count,
                                 const PosedField&, const SlopeTable&, const SlabLimits&, std::uint32_t* found,
                                 double* nearest);
-  // Finds those of the slabs number[index[0..count)] whose points can come nearer than way.touch during a
-  // motion, in order, and some others; fewer others if it is cut in more parts. The points of slab number[i]
-  // are at least nearest[i] - change away before the motion. Writes their indices i into found, which has
-  // capacity for all, and may be `index`. Returns their number.
-  std::size_t (*slabs_on_way)(const SlabColumns&, const std::uint32_t* number, const std::uint32_t* index,
-                              std::size_t count, const PosedField&, const SlopeTable&, const SlabWay&,
-                              int parts, const double* nearest, double change, std::uint32_t* found);
+  // Finds those of the chosen slabs whose points can come nearer than way.touch during a motion, in order,
+  // and some others; fewer others if it is cut in more parts. Writes their indices i into found, which has
+  // capacity for all, and may be chosen.index. Returns their number.
+  std::size_t (*slabs_on_way)(const SlabColumns&, ChosenSlabs chosen, const PosedField&, const SlopeTable&,
+                              const SlabWay&, int parts, std::uint32_t* found);
   // Finds the points of the groups that lie in a cell whose value is min or more, in order. A NaN point is in
   // no cell. A point less than a cell below the grid counts as inside it. Writes their indices into found,
   // which has capacity for all. Returns their number.
   std::size_t (*points_in_cells)(const double* x, const double* y, const double* z,
                                  const std::uint32_t* groups, std::size_t group_count, const CellTransform&,
                                  const CellTable&, int min, std::uint32_t* found);
-  // Computes the disks around the first count points, of radius fraction x spacing + extent, that are within
-  // the limits, in the order of the points. The values are those of sample_field() and lower_bound_m(), bit
-  // for bit. All points outside the grid are included, with NaN as lower. nearest: the smallest distance of
-  // each group of kLanes points, or a lower bound of it. It is written if is_new; else it is read and
-  // compared with limits.passed. The columns of the points are padded. Returns the number of disks;
+  // Computes the disks around the first count points that are within the limits, in the order of the points.
+  // The values are those of sample_field() and lower_bound_m(), bit for bit. All points outside the grid are
+  // included, with NaN as lower. The columns of the points are padded. Returns the number of disks;
   // outside_count is the number of those outside the grid.
-  std::size_t (*disks_in_field)(const PointColumns&, std::size_t count, double fraction, double cells_per_m,
-                                const PosedField&, const DiskLimits&, double* nearest, bool is_new,
-                                const DiskColumns&, std::size_t& outside_count);
+  std::size_t (*disks_in_field)(const PointColumns&, std::size_t count, DiskShape, const PosedField&,
+                                const DiskLimits&, GroupDistances, const DiskColumns&,
+                                std::size_t& outside_count);
   // Computes the points of the groups that are within the limits, in the order of the points, with the values
   // of sample_field(), bit for bit. A point outside the grid is included if the nearest position of the grid
-  // is within reach. nearest: a lower bound of the distances of each group[i]; if it is more than
-  // limits.passed, the group is skipped. If is_new, the smallest distance of every other group is written
-  // there. Returns the number of points; outside_count is the number of those outside the grid.
+  // is within reach. Groups are skipped by their distances also if these are new. Returns the number of
+  // points; outside_count is the number of those outside the grid.
   std::size_t (*points_in_field)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
-                                 const PosedField&, const PointLimits&, double* nearest, bool is_new,
+                                 const PosedField&, const PointLimits&, GroupDistances,
                                  const PositionColumns&, std::size_t& outside_count);
   // Finds the touched points of the groups. A point is touched if it lies in a voxel (1: shell, 2: interior),
   // or if the distance of its centre is at most limits.touch. A point is unclear if it lies outside the grid,
-  // or if its disk, of radius fraction x spacing + extent, may be as near as limits.touch and only a search
-  // can show it. nearest and is_new are as for points_in_field().
-  void (*touched_points)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count,
-                         double fraction, double clusters_per_m, const PosedField&, const CellTable& voxels,
-                         const TouchLimits&, double* nearest, bool is_new, TouchedSummary&);
+  // or if its disk may be as near as limits.touch and only a search can show it. Groups are skipped as by
+  // points_in_field(). The cells of the disks are the clusters.
+  void (*touched_points)(const PointColumns&, const std::uint32_t* groups, std::size_t group_count, DiskShape,
+                         const PosedField&, const CellTable& voxels, const TouchLimits&, GroupDistances,
+                         TouchedSummary&);
   // Computes the contacts of the disks number[0..count), bit for bit: those of far_contact() if lower >
   // search, else those of near_contact() at nearest_position(). depth is NaN if the search leaves the grid.
   void (*disk_contacts)(const DiskColumns&, const std::uint32_t* number, std::size_t count, const PosedField&,

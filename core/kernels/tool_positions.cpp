@@ -6,12 +6,12 @@
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 
 std::size_t points_in_field(const PointColumns& points, const std::uint32_t* groups, std::size_t group_count,
-                            const PosedField& f, const PointLimits& limits, double* nearest, bool is_new,
+                            const PosedField& f, const PointLimits& limits, GroupDistances distances,
                             const PositionColumns& out, std::size_t& outside_count) {
   std::size_t found = 0;
   outside_count = 0;
   for (std::size_t g = 0; g < group_count; ++g) {
-    if (nearest[g] > limits.passed) continue;
+    if (distances.nearest[g] > limits.passed) continue;
     Doubles min = broadcast(1e300);
     const std::size_t first = kLanes * std::size_t{groups[g]};
     for (std::size_t i = first; i < first + kLanes; i += kDoubles) {
@@ -30,7 +30,7 @@ std::size_t points_in_field(const PointColumns& points, const std::uint32_t* gro
       found += packing.count();
       outside_count += Packing(reached & ~positions.at.is_known).count();
     }
-    if (is_new) nearest[g] = least(min);
+    if (distances.is_new) distances.nearest[g] = least(min);
   }
   return found;
 }

@@ -150,16 +150,16 @@ inline Flags is_behind(const Doubles3& facing, Doubles deviation, const SlabWay&
 
 }  // namespace
 
-std::size_t slabs_on_way(const SlabColumns& slabs, const std::uint32_t* number, const std::uint32_t* index,
-                         std::size_t count, const PosedField& f, const SlopeTable& slopes, const SlabWay& way,
-                         int parts, const double* nearest, double change, std::uint32_t* found) {
+std::size_t slabs_on_way(const SlabColumns& slabs, ChosenSlabs chosen, const PosedField& f,
+                         const SlopeTable& slopes, const SlabWay& way, int parts, std::uint32_t* found) {
   std::size_t n = 0;
-  for (std::size_t k = 0; k < count; k += kDoubles) {
+  for (std::size_t k = 0; k < chosen.count; k += kDoubles) {
     std::uint32_t at[kDoubles];  // indices in the list
-    for (std::size_t lane = 0; lane < kDoubles; ++lane) at[lane] = index[k + lane < count ? k + lane : k];
+    for (std::size_t lane = 0; lane < kDoubles; ++lane)
+      at[lane] = chosen.index[k + lane < chosen.count ? k + lane : k];
     const auto of = [&](const double* column) {
       Doubles a;
-      for (int lane = 0; lane < kDoubles; ++lane) a[lane] = column[number[at[lane]]];
+      for (int lane = 0; lane < kDoubles; ++lane) a[lane] = column[chosen.number[at[lane]]];
       return a;
     };
     const SphereColumns& s = slabs.sphere;
@@ -167,12 +167,12 @@ std::size_t slabs_on_way(const SlabColumns& slabs, const std::uint32_t* number, 
                      rotated(f.R_TW, {of(slabs.nx), of(slabs.ny), of(slabs.nz)}), of(s.radius),
                      of(slabs.half)};
     Doubles before;
-    for (int lane = 0; lane < kDoubles; ++lane) before[lane] = nearest[at[lane]];
-    Flags may = lane_numbers() < static_cast<long>(count - k);
+    for (int lane = 0; lane < kDoubles; ++lane) before[lane] = chosen.nearest[at[lane]];
+    Flags may = lane_numbers() < static_cast<long>(chosen.count - k);
     may &=
         ~is_behind({of(slabs.facing[0]), of(slabs.facing[1]), of(slabs.facing[2])}, of(slabs.deviation), way);
     if (!is_any(may)) continue;
-    n += put_numbers(may & ~is_clear(here, before - change, f, slopes, way, parts), at, found + n);
+    n += put_numbers(may & ~is_clear(here, before - chosen.change, f, slopes, way, parts), at, found + n);
   }
   return n;
 }

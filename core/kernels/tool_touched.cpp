@@ -58,15 +58,15 @@ class Summary {
 }  // namespace
 
 void touched_points(const PointColumns& points, const std::uint32_t* groups, std::size_t group_count,
-                    double fraction, double clusters_per_m, const PosedField& f, const CellTable& voxels,
-                    const TouchLimits& limits, double* nearest, bool is_new, TouchedSummary& out) {
+                    DiskShape shape, const PosedField& f, const CellTable& voxels, const TouchLimits& limits,
+                    GroupDistances distances, TouchedSummary& out) {
   constexpr double kInfinite = __builtin_inf();
   out.point_count = out.clusters = out.unclear_count = 0;
   Summary summary(out);
   Doubles least_of_all = broadcast(kInfinite);
   Flags inside{};
   for (std::size_t g = 0; g < group_count; ++g) {
-    if (nearest[g] > limits.passed) continue;
+    if (distances.nearest[g] > limits.passed) continue;
     Doubles least_of_group = broadcast(kInfinite);
     for (std::size_t i = kLanes * std::size_t{groups[g]}; i < kLanes * (std::size_t{groups[g]} + 1);
          i += kDoubles) {
@@ -83,17 +83,17 @@ void touched_points(const PointColumns& points, const std::uint32_t* groups, std
                               : Flags{};
       inside |= voxel == kInterior;
       Flags touched = voxel != 0, unclear = reached & ~known;
-      const Flags may = known & ~touched & can_touch(points, i, fraction, limits, distance);
+      const Flags may = known & ~touched & can_touch(points, i, shape.fraction, limits, distance);
       if (is_any(may)) {
-        const DisksInField disks = disks_at(points, i, fraction, f, positions.at);
+        const DisksInField disks = disks_at(points, i, shape.fraction, f, positions.at);
         const Flags near = may & (disks.lower <= limits.touch);
         touched |= near & (distance <= limits.touch);
         unclear |= near & ~(distance <= limits.touch) & ~is_flat(disks.slope, disks.radius, disks.extent);
       }
-      summary.add(touched, cell_number(positions.p_T, clusters_per_m));
+      summary.add(touched, cell_number(positions.p_T, shape.cells_per_m));
       summary.add_unclear(unclear, i);
     }
-    if (is_new) nearest[g] = least(least_of_group);
+    if (distances.is_new) distances.nearest[g] = least(least_of_group);
   }
   out.nearest = least(least_of_all);
   out.is_inside = is_any(inside);

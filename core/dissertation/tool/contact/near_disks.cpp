@@ -129,6 +129,7 @@ ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const D
 }
 
 ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m) {
+  assert(lower_bound_m > 0);
   const double steep = disk.at.gradient_T.norm();
   const double side = disk.has_normal() ? facing_side(disk, disk.at, steep) : 0;
   return {disk.p_T, exit_direction(disk.at, steep), -lower_bound_m, side};
@@ -162,6 +163,7 @@ void NearDisks::search(const TouchFinder& finder, const ToolPose& pose, double r
 
 void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
                       double max_lower_m) {
+  assert(reach_m <= kFieldMargin_m - 2e-4);
   if (!cloud_ || (is_known_ && pose == pose_ && reach_m == reach_m_ && max_lower_m == max_lower_m_)) return;
   const VoxelTool& tool = finder.tool();
   field_ = posed_field(tool, pose);
@@ -173,8 +175,8 @@ void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const T
   const DiskLimits limits{reach_m, max_lower_m, kSearch_m,
                           passed_m(reach_m, max_change_m(finder, searched_at_, pose))};
   std::size_t outside_count = 0;
-  count_ = kernels.tool.disks_in_field(points, point_count_, disk_radius_ratio_, cells_per_m_, field_, limits,
-                                       nearest_.data(), is_new_, columns(), outside_count);
+  count_ = kernels.tool.disks_in_field(points, point_count_, {disk_radius_ratio_, cells_per_m_}, field_,
+                                       limits, {nearest_.data(), is_new_}, columns(), outside_count);
   if (outside_count > 0) finish_outside(tool, limits);
   is_new_ = false, is_known_ = true, pose_ = pose, reach_m_ = reach_m, max_lower_m_ = max_lower_m;
 }

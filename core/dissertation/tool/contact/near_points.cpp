@@ -39,6 +39,7 @@ void KeptGroups::drop_far_groups() {
 }
 
 GroupsInReach KeptGroups::within(const TouchFinder& finder, const ToolPose& pose, double reach_m) {
+  assert(reach_m <= kFieldMargin_m - 2e-4);
   if (!(searched_m_ - max_change_m(finder, searched_at_, pose) > reach_m)) search(finder, pose, reach_m);
   is_new_ = is_new_ && pose == searched_at_;  // nearest_m_ belongs to that pose
   return {groups_.data(), count_, nearest_m_.data(), is_new_,
@@ -74,9 +75,10 @@ void NearPoints::query(const TouchFinder& finder, const Kernels& kernels, const 
     count += all.nearest_m[i] > all.passed_m ? 0 : 1;
   }
   for (const int parts : {1, 2, 4})
-    count = kernels.tool.slabs_on_way(finder.cloud().packed().slabs(), all.group, on_way_.index.data(), count,
-                                      field, finder.slopes(), way, parts, all.nearest_m,
-                                      all.passed_m - way.far, on_way_.index.data());
+    count = kernels.tool.slabs_on_way(
+        finder.cloud().packed().slabs(),
+        {all.group, on_way_.index.data(), count, all.nearest_m, all.passed_m - way.far}, field,
+        finder.slopes(), way, parts, on_way_.index.data());
   for (std::size_t i = 0; i < count; ++i) {
     on_way_.group[i] = all.group[on_way_.index[i]];
     on_way_.nearest_m[i] = all.nearest_m[on_way_.index[i]];
@@ -91,6 +93,7 @@ void NearPoints::query(const TouchFinder& finder, const Kernels& kernels, const 
 // Measures the points in portions, because the first portion of a surface in the tool mostly has one.
 bool NearPoints::has_below(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
                            double value_m, double search_m) {
+  assert(value_m <= search_m);
   constexpr std::size_t kPortion = 64;
   const GroupsInReach all = groups_.within(finder, pose, search_m);
   const double passed_m = all.passed_m - search_m + value_m;
@@ -110,7 +113,7 @@ void NearPoints::measure(const TouchFinder& finder, const Kernels& kernels, cons
   std::size_t outside_count = 0;
   count_ = kernels.tool.points_in_field(
       finder.cloud().packed().columns(), groups.group, groups.count, posed_field(finder.tool(), pose),
-      {reach_m, groups.passed_m}, groups.nearest_m, groups.is_new,
+      {reach_m, groups.passed_m}, {groups.nearest_m, groups.is_new},
       {{points_[kX], points_[kY], points_[kZ]}, points_[kDistance], points_[kNumber]}, outside_count);
   if (outside_count > 0) finish_outside(finder.tool(), reach_m);
 }
@@ -159,8 +162,8 @@ Touched TouchedPoints::query(const TouchFinder& finder, const Kernels& kernels, 
   TouchedSummary sum{};
   sum.cluster = clusters_.data(), sum.unclear = unclear_.data();
   kernels.tool.touched_points(finder.cloud().packed().columns(), groups.group, groups.count,
-                              disk_radius_ratio_, kClustersPer_m, posed_field(finder.tool(), pose),
-                              finder.voxels(), limits, groups.nearest_m, groups.is_new, sum);
+                              {disk_radius_ratio_, kClustersPer_m}, posed_field(finder.tool(), pose),
+                              finder.voxels(), limits, {groups.nearest_m, groups.is_new}, sum);
   groups_.on_measured();
   Touched all;
   all.points = static_cast<int>(sum.point_count);
@@ -220,8 +223,8 @@ void TouchedPoints::search_disks(const TouchFinder& finder, const Kernels& kerne
   std::iota(order, order + kPortion, 0u);
   std::size_t outside_count = 0;
   kernels.tool.disks_in_field(
-      {p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]}, numbers.size(), disk_radius_ratio_, kClustersPer_m,
-      field, {kInfinite, kInfinite, kInfinite, kInfinite}, nearest_m, true, disks, outside_count);
+      {p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]}, numbers.size(), {disk_radius_ratio_, kClustersPer_m},
+      field, {kInfinite, kInfinite, kInfinite, kInfinite}, {nearest_m, true}, disks, outside_count);
   kernels.tool.disk_contacts(disks, order, numbers.size(), field, kInfinite, 0, contacts_.data());
   for (std::size_t k = 0; outside_count > 0 && k < numbers.size(); ++k)
     if (std::isnan(disks.lower[k])) contacts_[k].depth = disks.lower[k];
