@@ -1,17 +1,9 @@
-// Time-domain passivity control of a channel with delay between a hand and a slave.
+// Time-domain passivity control of a channel with delay between a hand and a slave: a controller at each port
+// changes its signal, as little as possible, so that no more energy leaves the channel there than the far
+// port has sent as its credit. Derivation, bound and sources: README.md of runners/experiment/teleoperation.
 //
-// Each end of the channel is a port. A port counts the energy that enters the channel (in) and that leaves it
-// (out), from the force that really acts and the motion that is really made. What entered, less what repaid
-// an older debt of this port, is its credit, which it sends to the far port: that one may give out no more
-// than the credit that has arrived. If the next tick would take more, a controller changes the signal of its
-// port by just as much as is missing. The derivation, the bound that holds and what is not proven: README.md
-// of runners/experiment/teleoperation. Sources: J.-H. Ryu, D.-S. Kwon and B. Hannaford, IEEE Trans. Control
-// Systems Technology 12(6), 2004 (alpha and beta); J.-H. Ryu, J. Artigas and C. Preusche, Mechatronics 20(7),
-// 2010 (in and out at each port).
-//
-// Signs. All forces act on the body at the port: on the hand, and on the slave's command. Energy that enters
-// the channel in a tick is -F . d at the hand, where d is the displacement of the hand, and f . d at the
-// slave, where d is the displacement of the command.
+// All forces act on the body at the port. Energy that enters the channel in a tick is -F . d at the hand and
+// f . d at the slave, where d is the displacement of the hand, or of the slave's command.
 #pragma once
 
 #include <string>
@@ -53,7 +45,7 @@ struct PortEnergy {
 class MotionPrediction {
  public:
   // response_m_per_N: displacement of the hand in a tick per force that is held for the tick; T^2 / (2 m) for
-  // the mass m of hand and device; 0: not known. pre: response_m_per_N >= 0.
+  // the mass m of hand and device; 0: not known.
   explicit MotionPrediction(double response_m_per_N) : response_(response_m_per_N) {}
 
   // Records what has happened since the last call. displacement_m: of the hand. force_N: the force that the
@@ -75,7 +67,7 @@ class MotionPrediction {
 // The port at the hand. Call force() before each tick, observe() after it. Neither allocates.
 class ImpedancePassivityController {
  public:
-  // response_m_per_N: see MotionPrediction; 0: the published rule f = f_delayed - alpha v. pre: tick_s > 0.
+  // response_m_per_N: see MotionPrediction; 0: the published rule f = f_delayed - alpha v.
   ImpedancePassivityController(const PassivitySettings& settings, double tick_s, double response_m_per_N = 0);
 
   // Returns the force on the hand for the coming tick. It is delayed_force_N, bit by bit, if the energy
@@ -102,7 +94,7 @@ class AdmittancePassivityController {
  public:
   // response_N_per_m: decrease of the mean force at the port in a tick per displacement of the command in
   // this tick; about b / T + k / 2 for the reaction to a drive of stiffness k and damping b; 0: the published
-  // rule, and right for a measured force of the scene. pre: tick_s > 0, response_N_per_m >= 0.
+  // rule, and right for a measured force of the scene.
   AdmittancePassivityController(const PassivitySettings& settings, double tick_s,
                                 double response_N_per_m = 0);
 

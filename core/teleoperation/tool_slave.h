@@ -32,7 +32,6 @@ SlaveTool make_slave_tool(const TriangleMesh& mesh, const Eigen::Matrix3d& inert
 // A tree of spheres around the points of a tool. It reduces the number of queries of the scene.
 class SlaveToolTree {
  public:
-  // pre: there is a point.
   explicit SlaveToolTree(const std::vector<Vec3>& points_T);
 
   // Calls visitor(point, distance_m) for every point whose signed distance is less than near_m, and for some
@@ -86,43 +85,23 @@ class SlaveToolTree {
   std::vector<Node> nodes_;
 };
 
-// The centre of mass of the tool follows the commanded position as the ball of a Slave does, with the same
-// drive and limits. The orientation follows its command in the same way, about every axis through the centre:
+// The centre of mass of the tool follows the commanded position as the ball of a Slave does. The orientation
+// follows its command in the same way, about every axis through the centre:
 //
-//   w_dot = w_0^2 e + 2 zeta w_0 (w_c - w) + tau / (m r^2),
+//   w_dot = w_0^2 e + 2 zeta w_0 (w_c - w) + tau / (m r^2)
 //
-// where e is the rotation vector from the orientation to the reference, w and w_c are the angular velocities
-// of tool and reference, tau is the torque of the contact, all in the world frame, and w_0 = 2 pi
-// natural_frequency_hz. The moment of inertia is m r^2 about every axis, with the mass m of the slave and the
-// radius of gyration r of its tool. The limits of rotation are max_speed_m_per_s / r and
-// max_acceleration_m_per_s2 / r.
+// with the rotation vector e from the orientation to the reference, the angular velocities w and w_c of both,
+// the torque tau of the contact (all in the world frame), and the radius of gyration r. The limits of
+// rotation are those of translation divided by r. Point i of the tool has the depth d_i behind the true
+// surface, the normal n_i, and the weight a_i, its area divided by the mean area. The force on it is f_i = F
+// q_i n_i,
 //
-// Contact: point i of the tool has the depth d_i, the distance behind the true surface, negative outside, the
-// normal n_i of the surface, and the weight a_i, its area divided by the mean area. The force is that of a
-// spring on one depth of the whole tool,
-//
-//   g = s ln(sum a_i exp(d_i / s)), F = max(0, K g + B g') where g > 0, f_i = F q_i n_i,
+//   g = s ln(sum a_i exp(d_i / s)), F = max(0, K g + B g') where g > 0,
 //   q_i = a_i exp(d_i / s) / sum a_j exp(d_j / s), s = kRounding_m.
 //
-// - g is a smooth maximum of the depths. A single point has g = d + s ln a, which is about d. So a point, an
-//   edge and a face have the same stiffness K as the ball. A face of n points with mean area has
-//   g = d + s ln n, so a tool of 100 points is pushed up to 0.23 mm before it touches.
-// - The share q_i is the derivative of g by d_i. So the spring has the potential K g^2 / 2 and creates no
-//   energy, and the damper removes the power B g'^2. Force and torque are continuous while the contact moves
-//   over the tool: the resultant of a face acts where the face is deepest, within F / K and s.
-// - With a spring at every point instead, the stiffness of a face would grow with the number of its points.
-//   If these springs shared K, a corner of the tool would be soft.
 // There is no friction, and no contact where distance or normal are not known. is_force_known is false if
-// points are behind the surface and the normal is known at none of them.
-//
-// Steps: the scene is queried per tick, not in each of the steps_per_tick. At the start of a tick each point
-// that may touch in it finds the tangent plane at its nearest surface point. The speed of this plane is the
-// change of the distance of the initial position over the tick, or 0 if the surface jumps in it. In the steps
-// the point touches this plane, and the rotation since the start is treated as small. The error of a depth is
-// of the order of x^2 / (2 R), where x is the path of the point in a tick and R the radius of curvature of
-// surface or path: 0.1 um for 0.1 m/s and 50 mm. A point may touch if it is nearer than 2 v T +
-// kSceneSpeed_m_per_s T, where v is a bound of the speed of the points and T the duration of a tick. So a
-// surface that approaches faster than kSceneSpeed_m_per_s may be felt one tick late.
+// points are behind the surface and the normal is known at none of them. What follows from these equations,
+// and how the scene is queried: README.md of runners/experiment/teleoperation.
 class ToolSlave {
  public:
   static constexpr double kRounding_m = 5e-5;
@@ -143,7 +122,6 @@ class ToolSlave {
   };
   static constexpr double kExactClearance_m = 0.01;
 
-  // pre: both validate() are empty, tick_s > 0.
   ToolSlave(const SlaveSettings& settings, const SlaveTool& tool, double tick_s, SlaveScene scene);
 
   // Moves the slave as Slave::move() does. pre: the command is finite, its orientation a unit quaternion.

@@ -61,36 +61,8 @@ WindowNoise window_noise(int width, int height, int window_px, bool also_indepen
 //   3. Noise of the disparity, d + sigma n, which is correlated over the matching window (WindowNoise).
 //   4. Rounding to a multiple of the smallest step of disparity, s.
 //
-// A published standard deviation is that of measured depths, so it contains the rounding. Here sigma is what
-// the rounding leaves of it: noise_px^2 = sigma^2 + s^2 / 12, and the depth has the standard deviation
-// z^2 noise_px / (f b). Where s / sqrt(12) exceeds noise_px, sigma is 0.
-//
-// Structured light is the Kinect of 2010 (IR camera f = 580 px, b = 75 mm). It measures the disparity with
-// that camera, whatever the focal length of the image is, so f is 580 px in 3 and 4, and in the range of the
-// search. In a stereo image f is that of the image.
-//   K. Khoshelham, S. Oude Elberink, "Accuracy and resolution of Kinect depth data for indoor mapping
-//   applications", Sensors 12 (2012) 1437-1454: depth noise 1.425e-3 z^2 (m), which is half of a step of
-//   disparity; 1 / (f b) per step of 2.85e-3 per m, which is a step of 1/8 px. Hence s = 1/8 px and
-//   noise_px = 1/16 px: the depth noise is 1.4 mm at 1 m and 5.7 mm at 2 m.
-//   C. V. Nguyen, S. Izadi, D. Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and
-//   tracking", 3DIMPVT 2012: axial noise 0.0012 + 0.0019 (z - 0.4)^2 + 0.0001 / sqrt(z) q^2 (m), lateral
-//   noise 0.8 + 0.035 q (px), q = theta / (pi / 2 - theta), theta the angle between the ray and the normal.
-//   The term with theta and the lateral noise are always used. The rest of the axial noise, 1.9 mm at 1 m and
-//   6.1 mm at 2 m, replaces noise_px if axial_noise is nguyen_2012.
-//   The largest disparity is that of 0.4 m, the nearest depth of that sensor in its near mode.
-// Active stereo is the RealSense D400:
-//   A. Grunnet-Jepsen, J. N. Sweetser, J. Woodfill, "Best-known-methods for tuning Intel RealSense D400 depth
-//   cameras for best performance" (Intel, 2018): depth noise z^2 noise_px / (f b), noise_px below 0.1 px on a
-//   textured wall, typically 0.05 to 0.1; b = 50 mm (D435) and 55 mm (D415). The nearest depths listed there
-//   for all resolutions are those of a disparity of 126 px.
-//   A. Grunnet-Jepsen et al., "Subpixel linearity improvement for Intel RealSense depth camera D400 series"
-//   (Intel, 2019): steps of 1/32 px.
-//   Intel RealSense D400 series product family datasheet, section on the invalid depth band: f b / z px.
-//   L. Keselman, J. I. Woodfill, A. Grunnet-Jepsen, A. Bhowmik, "Intel RealSense stereoscopic depth cameras",
-//   CVPR workshops 2017: matching costs are summed over a window of 7 x 7 (R200, its predecessor). M. S. Ahn
-//   et al., Ubiquitous Robots 2019, and M. Carfagni et al., Sensors 19 (2019) 489 measured noise that grows
-//   with z^2, of that size.
-// No measurement was found for the largest angle: 80 degrees is a choice.
+// The standard deviation of a depth is z^2 noise_px / (f b), with noise_px^2 = sigma^2 + s^2 / 12. Where
+// s / sqrt(12) exceeds noise_px, sigma is 0. Sources of the numbers: README.md of scenarios.
 enum class DepthSensorKind { simple, structured_light, active_stereo };
 enum class AxialNoise { disparity, nguyen_2012 };
 
@@ -136,7 +108,7 @@ struct SceneView {
 
 class DepthSensor {
  public:
-  // Keeps a reference to the kernels. Pre: validate(settings) is empty.
+  // Keeps a reference to the kernels.
   DepthSensor(const DepthSensorSettings& settings, const NoiseKey& key, const Kernels& kernels);
 
   const CameraIntrinsics& intrinsics() const { return camera_.intrinsics(); }

@@ -9,20 +9,13 @@ namespace {
 // Derivation of the error bound in the header, in units of the roundoff 2^-53. Every coefficient is computed
 // as a Taylor series for T / 2^s, and addition theorems then double that time s times.
 //
-// Series: phi = sum f_n t^n with n (n + 1) f_(n+1) = -d n f_n - w f_(n-1), so n! |f_n| <= M^(n-1) with
-// M = d + sqrt(w). s is the least number with M T / 2^s <= 1/2. The terms that are left out are below
-// (1/2)^19 / 20! < 1e-24 of the first one. Each sum is above 0.6 of its first term and is added up from the
-// smallest term on, which costs less than 3 roundoffs.
-//
-// Doubling without oscillation (d^2 >= 4 w): every sum in double_up() for phi, psi and chi has positive
-// terms, and a relative error of one level enters the next level with a factor of at most 1 until the
-// quantity saturates or decays. At most 4 roundoffs are added on each of at most 2 + log2(M T) < 20 levels:
-// 80 in all.
-//
-// Doubling with oscillation: z = (1 - w psi) + i sqrt(w) phi lies within the unit circle and is squared, so
-// its error doubles on each level. The levels before an angle of 1 add 2 roundoffs of the angle each, and
-// those after it at most 10 roundoffs of 1. Let a = sqrt(w) T be the angle at the end. The first kind then
-// gives (3 + 2 * 2) a, and the second less than 10 (1 + 1/2 + 1/4 + ...) a = 20 a: 27 (1 + a) in all. 27 * 33
+// Series: n! |f_n| <= M^(n-1) with M = d + sqrt(w) and M T / 2^s <= 1/2. What is left out is below 1e-24 of
+// the first term; each sum is above 0.6 of its first term and begins with the smallest: less than 3
+// roundoffs. Doubling without oscillation (d^2 >= 4 w): the sums in double_up() have positive terms, and a
+// relative error enters the next level with a factor of at most 1. At most 4 roundoffs on each of less than
+// 20 levels: 80. Doubling with oscillation squares z = (1 - w psi) + i sqrt(w) phi in the unit circle, so the
+// error doubles on each level. Those before an angle of 1 add 2 roundoffs of the angle each, those after it
+// at most 10 of 1. At the angle a = sqrt(w) T this is 7 a and less than 20 a: 27 (1 + a), and 27 * 33
 // roundoffs are 9.9e-14.
 
 constexpr int kTerms = 19;
@@ -36,8 +29,9 @@ struct Responses {
 
 enum class Squares { left_out, integrated };
 
-// Returns the responses after a short time t. pre: (d + sqrt(w)) t <= 1/2.
+// Returns the responses after a short time t.
 Responses series(double w, double d, double t, Squares squares) {
+  assert((d + std::sqrt(w)) * t <= 0.5);
   // phi = t sum(term), phi' = sum(slope) and psi = t^2 sum(area), where term[n] is f_(n+1) t^n.
   double term[kTerms], slope[kTerms], area[kTerms];
   const double wt = w * t * t, dt = d * t;
@@ -109,6 +103,7 @@ HeldForceStep::HeldForceStep(const MassOnSpring& system, double duration_s)
       duration_s_(duration_s),
       w_(system.stiffness / system.mass),
       d_((system.path_damping + system.ground_damping) / system.mass) {
+  assert(system.mass > 0 && duration_s > 0);
   const Responses r = responses(w_, d_, duration_s, Squares::left_out);
   phi_ = r.phi, psi_ = r.psi, chi_ = r.chi;
   slope_ = 1 - w_ * psi_ - d_ * phi_;
