@@ -75,6 +75,7 @@ RestingWrench ball_in_groove(double radius_m, double slope_rad, const EvenSpring
 }
 
 double stop_angle_rad(double a_m, double b_m, double w_m) {
+  assert(b_m < w_m && w_m < a_m);
   return std::asin(w_m / std::hypot(a_m, b_m)) - std::atan2(b_m, a_m);
 }
 
@@ -118,6 +119,7 @@ UnderPlate under_ball(double radius_m, double seen_m) {
 }
 
 double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, double sigma_m) {
+  assert(sigma_m > 0);
   constexpr double kReach = 10;  // standard deviations, beyond which there is no point
   const auto [lowest, highest] =
       std::minmax_element(points.begin(), points.end(),

@@ -44,7 +44,7 @@ RestingWrench ball_in_groove(double radius_m, double slope_rad, const EvenSpring
                              const Eigen::Vector2d& place_m);
 
 // A bar of 2 a x 2 b that is turned in the middle between two lines 2 w apart. Two corners touch if the angle
-// is at least asin(w / sqrt(a^2 + b^2)) - atan(b / a). pre: b < w < a.
+// is at least asin(w / sqrt(a^2 + b^2)) - atan(b / a).
 double stop_angle_rad(double a_m, double b_m, double w_m);
 RestingWrench bar_in_slot(double a_m, double b_m, double w_m, const EvenSpring& spring, double angle_rad);
 
@@ -81,8 +81,7 @@ struct NoisyPoint {
 
 // Returns the jump after which the plate is lost, with no point left in it, with probability 1/2. The points
 // have noise of sigma along the plate's thickness, drawn anew in each frame. The plate rests on the highest
-// point of the frame before, at the median of its position. pre: sigma_m > 0; some points are under the
-// plate.
+// point of the frame before, at the median of its position. pre: some points are under the plate.
 double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, double sigma_m);
 
 }  // namespace remote_touch

@@ -5,6 +5,7 @@
 namespace remote_touch {
 
 std::pair<double, double> sin_cos(double angle) {
+  assert(!(std::abs(angle) >= 1e6));
   // A quarter turn (pi / 2) is split into two parts. The first part has few bits, so its product with an
   // integer below 2^20 is exact.
   constexpr double quarter = 1.5707963267341256, rest = 6.0771005065061922e-11;

@@ -10,7 +10,7 @@ namespace remote_touch {
 
 inline constexpr double kRadiansPerDegree = 0.017453292519943295;
 
-// Returns sine and cosine, with errors below 2e-16. pre: |angle| < 1e6.
+// Returns sine and cosine, with errors below 2e-16.
 std::pair<double, double> sin_cos(double angle);
 
 // Returns the rotation as a unit quaternion, up to rounding.

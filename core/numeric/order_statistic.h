@@ -6,7 +6,7 @@
 namespace remote_touch {
 
 // Returns the quantile: the value with index floor(fraction * n), counted from 0, among the n sorted values.
-// Changes the order of the values. pre: not empty, none is NaN, 0 <= fraction < 1.
+// Changes the order of the values. pre: none is NaN.
 double quantile_in_place(std::span<double> values, double fraction);
 
 // The same for fraction 0.5. If the number of values is even, the result is the upper one of the two in the

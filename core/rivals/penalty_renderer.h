@@ -43,7 +43,7 @@ inline RenderedContact rendered_contact(const PenaltyParameters& p) {
 
 class PenaltyRenderer final : public RivalRenderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
+  // haptic_rate_hz: the rate at which step() is called.
   PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   Parameters live_parameters() override { return live_ones(parameters(p_)); }
   void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }

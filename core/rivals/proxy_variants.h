@@ -117,7 +117,7 @@ std::string validate(const AveragedProxyParameters& p);
 
 class AveragedProxyRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
+  // haptic_rate_hz: the rate at which step() is called.
   AveragedProxyRenderer(const AveragedProxyParameters& parameters, double haptic_rate_hz,
                         const Kernels& kernels)
       : proxy_(parameters.proxy, haptic_rate_hz, kernels), average_(parameters.average, kernels) {}
@@ -165,7 +165,7 @@ inline RenderedContact rendered_contact(const DensityProxyParameters& p) {
 
 class DensityProxyRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
+  // haptic_rate_hz: the rate at which step() is called.
   DensityProxyRenderer(const DensityProxyParameters& parameters, double haptic_rate_hz,
                        const Kernels& kernels);
   void reserve(std::size_t points) override;
@@ -209,7 +209,7 @@ SurfaceMotion true_motion(const TrueSurface& truth, const Vec3& p_W, double befo
 
 class OracleProxyRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
+  // haptic_rate_hz: the rate at which step() is called.
   OracleProxyRenderer(const OracleProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels)
       : proxy_(parameters.proxy, haptic_rate_hz, kernels) {}
   void reserve(std::size_t points) override { proxy_.reserve(points); }

@@ -52,7 +52,7 @@ inline RenderedContact rendered_contact(const SurfelParameters&) {
 
 class SurfelRenderer final : public RivalRenderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz has no effect: the method does not depend on time.
+  // haptic_rate_hz has no effect: the method does not depend on time.
   SurfelRenderer(const SurfelParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   void reserve(std::size_t points) override;
   Parameters live_parameters() override { return live_ones(parameters(p_)); }

@@ -147,7 +147,6 @@ class BruteForceSearch final : public CloudSearch {
 };
 
 // Tests the points of the image window onto which the ball is projected, 4.2.2. It needs no data structure.
-// pre: cloud.image is set and correct.
 class ImageWindowSearch final : public CloudSearch {
  public:
   explicit ImageWindowSearch(PointCloud cloud);

@@ -222,6 +222,7 @@ double wave_impedance_Ns_per_m(const FeedbackSettings& feedback, const SlaveSett
 }
 
 double felt_stiffness_N_per_m(const SlaveSettings& slave, const FeedbackSettings& feedback) {
+  assert(feedback.force != Feedback::rendered);
   const double drive = drive_stiffness(slave), contact = slave.contact_stiffness_N_per_m;
   if (feedback.force == Feedback::none || contact == 0) return 0;
   if (feedback.force == Feedback::position_position)
@@ -245,6 +246,7 @@ Vec3 WaveReceiver::next(const Wave& newest, double tick_s) {
 
 Ends make_ends(const FeedbackSettings& feedback, const SlaveSettings& slave, double hand_mass_kg,
                double tick_s) {
+  assert(validate(feedback).empty() && tick_s > 0);
   const double response = hand_mass_kg > 0 ? tick_s * tick_s / (2 * hand_mass_kg) : 0;
   switch (feedback.force) {
     case Feedback::passive_slave_force:

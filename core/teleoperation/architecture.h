@@ -62,7 +62,7 @@ std::string validate(const FeedbackSettings& s);
 double wave_impedance_Ns_per_m(const FeedbackSettings& feedback, const SlaveSettings& slave);
 
 // Returns how fast the force on the hand grows with its displacement, at rest and without a delay. With
-// waves, a delay each way and the tick add (delay + T) / b to its inverse. pre: force is not rendered.
+// waves, a delay each way and the tick add (delay + T) / b to its inverse.
 double felt_stiffness_N_per_m(const SlaveSettings& slave, const FeedbackSettings& feedback);
 
 // A wave u, the sum of u T and the sum of |u|^2 T / 2 since the start, which make up for lost packets.
@@ -156,7 +156,7 @@ struct Ends {
 
 // The ends are those of position-force if the hand feels no slave; the caller then ignores their forces.
 // hand_mass_kg: mass of hand and device, with which passivity control and waves predict the motion of the
-// hand; 0: not known, then it is predicted to move as in the last tick. pre: validate() is empty, tick_s > 0.
+// hand; 0: not known, then it is predicted to move as in the last tick.
 Ends make_ends(const FeedbackSettings& feedback, const SlaveSettings& slave, double hand_mass_kg,
                double tick_s);
 

@@ -34,6 +34,7 @@ PacketFates::PacketFates(const ChannelSettings& s, const NoiseKey& key, NoiseUse
       loss_after_loss_(s.loss_probability),
       loss_after_arrival_(s.loss_probability),
       next_loss_(s.loss_probability) {
+  assert(validate(s).empty());
   if (s.mean_burst_packets == 1) return;
   loss_after_loss_ = 1 - 1 / s.mean_burst_packets;
   loss_after_arrival_ = s.loss_probability / (s.mean_burst_packets * (1 - s.loss_probability));

@@ -45,7 +45,6 @@ std::string validate(const ChannelSettings& s);
 // loss_probability.
 class PacketFates {
  public:
-  // pre: validate(settings) is empty.
   PacketFates(const ChannelSettings& settings, const NoiseKey& key, NoiseUse use);
 
   struct Fate {
@@ -83,7 +82,6 @@ struct ChannelCounts {
 template <class Sample>
 class Channel {
  public:
-  // pre: validate(settings) is empty.
   Channel(const ChannelSettings& settings, const NoiseKey& key, NoiseUse use)
       : reorders_(settings.reorders), fates_(settings, key, use) {}
 

@@ -79,7 +79,6 @@ Eigen::Quaterniond shown_orientation(const DeadBandSample& sample, double age_s)
 // reach of 0 orientations are not compared.
 class DeadBandSender {
  public:
-  // pre: validate(settings) is empty, reach_m >= 0.
   explicit DeadBandSender(const DeadBandSettings& settings, double reach_m = 0)
       : s_(settings), reach_m_(reach_m) {}
 
@@ -157,7 +156,6 @@ double surface_motion_m(const NeighbourSearch& before, const NeighbourSearch& no
 
 class FrameDeadBand {
  public:
-  // pre: validate(settings) is empty.
   explicit FrameDeadBand(const FrameDeadBandSettings& settings) : s_(settings) {}
 
   // Returns true if a frame has to be sent, and then keeps it as the newest that was sent. slave_W: position

@@ -60,7 +60,6 @@ struct SlaveScene {
 // the order of w T and sqrt(K / m) T, where T is the duration of a step.
 class Slave {
  public:
-  // pre: validate(settings) is empty, tick_s > 0.
   Slave(const SlaveSettings& settings, double tick_s, SlaveScene scene);
 
   struct State {

@@ -81,6 +81,7 @@ SlaveTool make_slave_tool(const TriangleMesh& mesh, const Eigen::Matrix3d& inert
 
 SlaveToolTree::SlaveToolTree(const std::vector<Vec3>& points_T)
     : points_T_(points_T), order_(points_T.size()) {
+  assert(!points_T.empty());
   std::iota(order_.begin(), order_.end(), 0);
   add(0, static_cast<int>(order_.size()));
 }
@@ -113,16 +114,17 @@ namespace {
 constexpr double kNegligible = 20;  // value of x in exp(-x), a share of 2e-9
 
 // Returns exp(-x), within 3e-4 for x <= 8 and 2 % for x <= 20, with the same bits on every machine.
-// pre: 0 <= x <= kNegligible.
 double decay(double x) {
+  assert(x >= 0 && x <= kNegligible);
   const double y = x / 16;
   double t = 1 + y * (1 + y * (1. / 2 + y * (1. / 6 + y * (1. / 24 + y * (1. / 120)))));
   t *= t, t *= t, t *= t, t *= t;
   return 1 / t;
 }
 
-// Returns ln x within 1e-12, with the same bits on every machine. pre: x > 0 and finite.
+// Returns ln x within 1e-12, with the same bits on every machine.
 double logarithm(double x) {
+  assert(x > 0 && std::isfinite(x));
   int exponent = 0;
   double m = std::frexp(x, &exponent);
   if (m < std::numbers::sqrt2 / 2) m *= 2, --exponent;
@@ -153,6 +155,7 @@ ToolSlave::ToolSlave(const SlaveSettings& settings, const SlaveTool& tool, doubl
       mean_area_m2_(std::accumulate(tool.areas_m2.begin(), tool.areas_m2.end(), 0.0) /
                     static_cast<double>(tool.areas_m2.size())),
       scene_(std::move(scene)) {
+  assert(validate(settings).empty() && tick_s > 0);
   touches_.reserve(tool.points_T.size());
 }
 

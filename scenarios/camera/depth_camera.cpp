@@ -38,6 +38,7 @@ std::string validate(const DepthCameraSettings& s) {
 }
 
 RigidTransform look_at(const Vec3& from, const Vec3& to) {
+  assert(from != to);
   const Vec3 forward = (to - from).normalized();
   const Vec3 level = forward.cross(Vec3::UnitY());
   const bool upright = (to - from).cross(Vec3::UnitY()).norm() < kSamePlace_m;

@@ -34,7 +34,7 @@ std::string validate(const DepthCameraSettings& s);
 
 // Pose of a camera (x right, y down, z forward) that looks from `from` to `to` with the world's y up in the
 // image. If it looks straight down or up, the world's up has no direction in the image. The image's right is
-// then the world's +x; if the camera looks down, the image's up is then -z. pre: from and to differ.
+// then the world's +x; if the camera looks down, the image's up is then -z.
 RigidTransform look_at(const Vec3& from, const Vec3& to);
 
 // First hit of a ray: the position origin + t ray, and its colour.
@@ -54,7 +54,7 @@ struct IdealView {
 
 class DepthCamera {
  public:
-  // Keeps a reference to the kernels. pre: validate(settings) is empty.
+  // Keeps a reference to the kernels.
   DepthCamera(const DepthCameraSettings& settings, const NoiseKey& key, const Kernels& kernels);
 
   const CameraIntrinsics& intrinsics() const { return intrinsics_; }

@@ -104,6 +104,7 @@ struct Lattice {
 
 std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& positions, const NoiseKey& key,
                                    int frame, const Kernels& kernels) {
+  assert(noise.memory >= 0 && noise.memory < 1);
   if (noise.correlation_m == 0) {
     std::vector<std::uint32_t> numbers(positions.size());
     std::iota(numbers.begin(), numbers.end(), 0u);

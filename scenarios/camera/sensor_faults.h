@@ -35,7 +35,7 @@ struct RayNoise {
 //
 // The noise x_j of frame j with memory m has the law of x_j = m x_(j-1) + (1 - m^2)^(1/2) w_j with
 // independent w: the correlation of two frames is m^|i - j|, from the first frame on (to 1e-8). It is not
-// computed by this recursion, so that a frame needs no other frames. pre: 0 <= m < 1.
+// computed by this recursion, so that a frame needs no other frames.
 std::vector<double> standard_noise(const RayNoise& noise, const PointCloud& positions, const NoiseKey& key,
                                    int frame, const Kernels& kernels);
 

@@ -48,6 +48,7 @@ double to_cylinder(const Vec3& q, double radius, double z_low, double z_high) {
 
 Handwheel::Handwheel(const Vec3& centre_m, double ring_radius_m)
     : centre_(centre_m), ring_radius_(ring_radius_m) {
+  assert(ring_radius_m > kTubeRadius_m && centre_m.z() > kHubHalfLength_m);
   const double half = 0.5 * (centre_.z() + kHubHalfLength_m), wide = ring_radius_ + kTubeRadius_m;
   ball_centre_ = {centre_.x(), centre_.y(), half};
   ball_radius_ = 1.001 * std::sqrt(half * half + wide * wide);
@@ -267,6 +268,7 @@ double ValveTank::signed_distance(const Vec3& p_W, double) const {
 }
 
 double ValveTank::distance_to_valve(Valve valve, const Vec3& p_W) const {
+  assert(valve != Valve::none);
   return wheels_[static_cast<std::size_t>(valve) - 1].signed_distance(p_W);
 }
 

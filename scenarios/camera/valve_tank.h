@@ -24,7 +24,6 @@ class Handwheel {
   static constexpr double kTubeRadius_m = 0.007, kSpokeRadius_m = 0.0045;
   static constexpr double kHubRadius_m = 0.011, kHubHalfLength_m = 0.010, kStemRadius_m = 0.008;
 
-  // pre: ring_radius_m > kTubeRadius_m and centre_m.z > kHubHalfLength_m.
   Handwheel(const Vec3& centre_m, double ring_radius_m);
 
   // Distance to the surface of the union, negative inside. Exact outside. Inside, the depth returned is a
@@ -109,7 +108,7 @@ class ValveTank final : public Scenario {
   // Distance to the union of wall and valves; exact outside.
   double signed_distance(const Vec3& p_W, double time_s) const override;
 
-  // Distance to one valve alone, without the wall; used for the clearance of a tool. pre: valve is not none.
+  // Distance to one valve alone, without the wall; used for the clearance of a tool.
   double distance_to_valve(Valve valve, const Vec3& p_W) const;
   // Returns the true class of each pixel as an ideal camera sees it, also for pixels without depth.
   std::vector<Valve> truth() const;

@@ -68,7 +68,7 @@ struct SceneMesh {
 class MeshCamera {
  public:
   // X_WC: camera to world frame; empty: the camera rests where its settings place it. Keeps a reference to
-  // the kernels. Pre: validate(settings) is empty.
+  // the kernels.
   MeshCamera(const DepthSensorSettings& settings, std::optional<PosePath> X_WC, const NoiseKey& key,
              const Kernels& kernels);
 
@@ -102,7 +102,7 @@ class MeshScene : public Scenario {
   };
 
   // camera_path: camera to world frame; empty: the camera rests where the settings place it. Keeps a
-  // reference to the kernels. Pre: validate(settings) is empty.
+  // reference to the kernels.
   MeshScene(const Settings& settings, std::vector<SceneMesh> meshes,
             const std::optional<PosePath>& camera_path, const NoiseKey& key, const Kernels& kernels);
 

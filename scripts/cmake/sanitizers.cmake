@@ -15,10 +15,11 @@ set(rooms_under_thread
 # haply_link.cpp includes Boost.Beast and takes half a minute to compile. It is left out under the address sanitizer; the
 # thread sanitizer and the test tests_under_sanitizers cover it.
 set(sources_not_under_address haply_link)
-# The other checks take a third of the time to compile, and the fuzz targets have them.
-set(flags_for_address -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
+# The other checks take a third of the time to compile, and the fuzz targets have them. Asserts are on; those of Eigen are
+# not, since rooms without a sanitizer share its functions.
+set(flags_for_address -UNDEBUG -DEIGEN_NO_DEBUG -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
   -fno-sanitize=null,object-size,vptr,alignment,pointer-overflow)
-set(flags_for_thread -fsanitize=thread)
+set(flags_for_thread -UNDEBUG -DEIGEN_NO_DEBUG -fsanitize=thread)
 
 # compile_again(TARGET SANITIZER [REGEX]): TARGET_SANITIZER gets the sources of TARGET (those that match, if REGEX is given)
 # with its options and the sanitizer. Called in the folder of TARGET, since properties of sources belong to a folder.

@@ -61,6 +61,7 @@ class FarthestPoints {
 }  // namespace
 
 ToolPositions::ToolPositions(const TriangleMesh& mesh, double group_radius_m, std::size_t max_groups) {
+  assert(!mesh.vertices.empty() && group_radius_m > 0 && max_groups > 0);
   const double spacing_m = 0.125 * group_radius_m;
   const std::vector<Vec3> points = surface_points(mesh, spacing_m);
   FarthestPoints spread(points);

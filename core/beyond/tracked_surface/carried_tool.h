@@ -25,7 +25,7 @@ class ToolPositions {
   // Selects at most kMax positions on the surface of the mesh, spread evenly: each one is the farthest from
   // those before it. It stops when every sampled position of the surface is within group_radius_m / 8 of a
   // selected one. Then it divides them into the smallest number of groups with radii up to group_radius_m,
-  // but at most max_groups groups. pre: the mesh has a vertex; group_radius_m and max_groups are positive.
+  // but at most max_groups groups.
   static constexpr std::size_t kMax = 256;
   ToolPositions(const TriangleMesh& mesh, double group_radius_m, std::size_t max_groups);
 

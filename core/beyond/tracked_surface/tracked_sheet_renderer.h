@@ -31,7 +31,7 @@ inline RenderedContact rendered_contact(const TrackedSheetParameters& p) {
 
 class TrackedSheetRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: the rate at which step() is called.
+  // haptic_rate_hz: the rate at which step() is called.
   TrackedSheetRenderer(const TrackedSheetParameters& parameters, double haptic_rate_hz,
                        const Kernels& kernels);
   void reserve(std::size_t points) override;

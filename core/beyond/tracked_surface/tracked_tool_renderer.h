@@ -33,7 +33,7 @@ inline double max_stiffness_N_per_m(const TrackedToolParameters& p) {
 
 class TrackedToolRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. The tool was built with outer_field if contact_rule = continuous.
+  // The tool was built with outer_field if contact_rule = continuous.
   TrackedToolRenderer(const TrackedToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
                       const Kernels& kernels);
   void prepare(Frame& frame) const override;

@@ -158,7 +158,7 @@ class GuidedRenderer final : public Renderer {
  public:
   // fixtures: all fixtures of the experiment, in order. switches: the switches that its FixtureAssignment
   // reads. A fixture starts disabled if the first step that acts on it enables it. Otherwise it starts
-  // enabled, also if no step acts on it. pre: validate(fixtures, steps) is empty.
+  // enabled, also if no step acts on it.
   GuidedRenderer(std::unique_ptr<Renderer> inner, const GuidanceSettings& settings,
                  const std::vector<FixtureValues>& fixtures, std::vector<SequenceStep> steps,
                  std::shared_ptr<FixtureSwitches> switches);

@@ -44,7 +44,9 @@ ProxyRenderer::ProxyRenderer(const ProxyParameters& parameters, double haptic_ra
       haptic_rate_hz_(haptic_rate_hz),
       near_(parameters.r3_m, kernels),
       velocity_(parameters.max_prediction_s),
-      coupling_(parameters, haptic_rate_hz) {}
+      coupling_(parameters, haptic_rate_hz) {
+  assert(validate(parameters).empty());
+}
 
 // Stores the frame and returns true if it is newer than all before.
 bool ProxyRenderer::take(const Frame& frame) {

@@ -55,7 +55,7 @@ struct SurfaceMotion {
 
 class ProxyRenderer final : public Renderer {
  public:
-  // pre: validate(parameters) is empty. haptic_rate_hz: how often step() is called.
+  // haptic_rate_hz: how often step() is called.
   ProxyRenderer(const ProxyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
 
   void reserve(std::size_t points) override { near_.reserve(points, true, true); }
@@ -69,7 +69,8 @@ class ProxyRenderer final : public Renderer {
   // Selects whether a tick also ends when the proxy in contact has converged (4.8). A tick always ends when a
   // step changes nothing or after steps_per_tick steps.
   void stop_at_convergence(bool stop) { stops_at_convergence_ = stop; }
-  // Sets r1, r2 and r3 of Table 4.2, for methods that adapt them to the points. pre: as for the constructor.
+  // Sets r1, r2 and r3 of Table 4.2, for methods that adapt them to the points. They are valid, as parameters
+  // are.
   void set_radii(double r1_m, double r2_m, double r3_m);
   Parameters live_parameters() override { return live_ones(parameters(p_)); }
   void parameters_changed() override;

@@ -96,8 +96,10 @@ struct Barriers {
   std::array<Vec3, 3> normal{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   std::size_t count = 0;
 
-  // pre: fewer than three.
-  void add(const Vec3& n) { normal[count++] = n; }
+  void add(const Vec3& n) {
+    assert(count < normal.size());
+    normal[count++] = n;
+  }
 };
 
 // Returns v without its component along `by`.

@@ -29,6 +29,7 @@ std::size_t in_whole_groups(std::size_t count) {
 }  // namespace
 
 Sphere bounding_sphere(std::span<const Sphere> spheres) {
+  assert(!spheres.empty());
   return around(spheres.size(), [&](std::size_t i) -> const Sphere& { return spheres[i]; });
 }
 

@@ -19,7 +19,7 @@ struct Sphere {
 };
 
 // Returns the bounding sphere around the mean of the centres, (7.3). It is fast to compute, but not the
-// smallest. pre: not empty.
+// smallest.
 Sphere bounding_sphere(std::span<const Sphere> spheres);
 
 // A box around the centres of spheres, and their largest radius: tighter than a bounding sphere if many large

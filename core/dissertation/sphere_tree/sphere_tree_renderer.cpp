@@ -123,6 +123,7 @@ double PairChoice::within_m(double gap_m) const {
 }
 
 std::uint32_t PairChoice::choose(const CloseLeaf& leaf, const TreeCollision::Found& found) {
+  assert(found.count > 0);
   if (chosen_.size() + kMaxPairsOfLeaf > kCapacity) keep_shortest_motions(kCapacity / 2);
   const NearRegions& near = found.regions;
   RemainingRegions left{kernels_.regions.deepest_region(near, found.count), found.count};

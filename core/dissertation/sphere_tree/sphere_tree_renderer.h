@@ -121,7 +121,7 @@ class PairChoice {
   // gap_m or less.
   double within_m(double gap_m) const;
   // Adds the pairs of a leaf to chosen(). found: all pairs of the leaf with gaps up to within_m(). Returns
-  // the number of its deepest region; pre: found is not empty.
+  // the number of its deepest region.
   std::uint32_t choose(const CloseLeaf& leaf, const TreeCollision::Found& found);
 
   std::span<const ChosenPair> chosen() const { return chosen_; }
@@ -198,8 +198,7 @@ class RegionContacts final : public NearContactSource {
 // of the tool's leaves in these pairs. `tool_penetration_m` is the depth of the deepest leaf in a region.
 class SphereTreeRenderer final : public Renderer {
  public:
-  // Uses only the parameters that region_parameters() lists. spheres: leaves of the tool, in its frame. pre:
-  // validate(parameters) is empty.
+  // Uses only the parameters that region_parameters() lists. spheres: leaves of the tool, in its frame.
   SphereTreeRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
                      const std::shared_ptr<const SphereTree>& spheres, const Kernels& kernels);
 

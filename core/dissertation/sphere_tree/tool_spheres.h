@@ -70,8 +70,8 @@ std::string text(const ToolSpheres& spheres);
 
 inline constexpr int kMinLeaves = 1, kMaxLeaves = 10000;
 
-// Makes at most max_leaves leaves, or fewer if these suffice. pre: kMinLeaves <= max_leaves <= kMaxLeaves.
-// Throws InputError if no node of the tool's grid is inside the tool.
+// Makes at most max_leaves leaves, or fewer if these suffice. Throws InputError if no node of the tool's grid
+// is inside the tool.
 ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves);
 
 }  // namespace remote_touch

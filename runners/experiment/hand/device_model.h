@@ -54,7 +54,6 @@ std::string validate(const DeviceSettings& s);
 
 class DeviceModel {
  public:
-  // pre: validate(settings) is empty, tick_s > 0.
   DeviceModel(const DeviceSettings& settings, double tick_s);
 
   // Returns the pose that the device measures for the pose of the hand. The coordinates of the position and

@@ -44,7 +44,6 @@ std::string validate(const OperatorSettings& s);
 // the hand unstable.
 class OperatorModel {
  public:
-  // pre: validate(settings) is empty.
   OperatorModel(const OperatorSettings& settings, double tick_s, const DeviceResistance& device = {});
 
   // Returns the hand's pose at time_s. intended: the path's pose at time_s. device_wrench: the wrench that

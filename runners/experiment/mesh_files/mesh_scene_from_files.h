@@ -70,7 +70,7 @@ class MeshSceneFromFiles final : public MeshScene {
     bool camera_fit = true;
   };
 
-  // Throws as load(const PlacedMesh&, ...) does. Pre: validate(settings) is empty.
+  // Throws as load(const PlacedMesh&, ...) does.
   MeshSceneFromFiles(const Settings& settings, const NoiseKey& key, const Kernels& kernels);
 
   // "husky: 5316 triangles, 0.200 x 0.042 x 0.143 m; camera at (0.00, 0.31, 0.22) m; path.txt: 12 poses over

@@ -1,6 +1,7 @@
 #include "runners/experiment/sessions/sensor_frame.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 
@@ -77,6 +78,7 @@ void SensedPoints::add_cloud(const SensorFrame& frame, std::size_t numbers_per_p
 }
 
 void SensedPoints::add(const SensorFrame& frame, const SensorView& view) {
+  assert(is_complete(frame, view));
   ++frames_;
   if (view.cloud)
     add_cloud(frame, view.cloud->numbers_per_point());

@@ -54,7 +54,7 @@ PointCloud cloud_of(const SensorFrame& frame, const SensorView& view, const Rigi
 
 class SensedPoints {
  public:
-  // Adds the points of a frame. Allocates nothing. pre: is_complete(frame, view).
+  // Adds the points of a frame. Allocates nothing.
   void add(const SensorFrame& frame, const SensorView& view);
 
   std::int64_t frames() const { return frames_; }

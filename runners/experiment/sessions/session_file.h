@@ -83,7 +83,6 @@ class SessionWriter {
   void append(const SessionChange& change);
   void append(const SessionTick& tick);  // written to the disk a thousand at a time
   void append(const StoredFrame& frame);
-  // pre: is_complete(frame, view).
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off) {
     append(stored_frame(layout_, frame, captured_s, fixtures_off));
   }

@@ -35,7 +35,6 @@ class SessionRecorder {
   // A change must be appended before the tick that has its number.
   void append(const SessionTick& tick);
   void append(const SessionChange& change) { changes_.push_back(change); }
-  // pre: is_complete(frame, view).
   void append(const SensorFrame& frame, double captured_s, std::uint64_t fixtures_off);
   // Makes everything that was written until now survive a power cut. Another thread may call it.
   void sync() const { journal_.sync(); }

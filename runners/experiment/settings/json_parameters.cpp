@@ -169,7 +169,7 @@ std::vector<std::string> all_keys(const Parameters& parameters, const std::vecto
   return keys;
 }
 
-// Returns the known key with the most similar spelling. pre: there is a known key.
+// Returns the known key with the most similar spelling.
 const std::string& nearest_key(const std::string& key, const std::vector<std::string>& known) {
   return *std::ranges::min_element(
       known, [&](const auto& a, const auto& b) { return edit_distance(key, a) < edit_distance(key, b); });

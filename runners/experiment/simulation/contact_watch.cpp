@@ -110,6 +110,7 @@ std::optional<Disk> held_disk(const std::vector<Vec2>& points, Vec2 centre) {
 // the cell: no such disk can have its centre there.
 PointGap widest_gap(const std::vector<Vec3>& points, const Vec3& position, double ball_radius_m,
                     double known_m) {
+  assert(ball_radius_m > 0);
   const std::vector<Vec2> flat = in_their_plane(points, position);
   if (flat.empty()) return {};
   PointGap gap{0, true};

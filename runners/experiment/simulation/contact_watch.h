@@ -36,8 +36,7 @@ struct PointGap {
 // surface, beyond its border, is none, because points do not hold the disk all around.
 //
 // points: all points of the frame within known_m of the position, m. A gap that reaches farther is not
-// decided. Nothing is decided if there are fewer than three points, or if they lie on a line. pre:
-// ball_radius_m > 0.
+// decided. Nothing is decided if there are fewer than three points, or if they lie on a line.
 PointGap widest_gap(const std::vector<Vec3>& points, const Vec3& position, double ball_radius_m,
                     double known_m);
 
@@ -57,7 +56,7 @@ class ContactWatch {
 
   // Returns a note "wide spacing" if a ball passes between the points at the first contact, or where the
   // proxy came nearest to them if there was no contact, or where the proxy passed the true surface. See
-  // widest_gap(). Searches points up to 6 ball radii away. pre: ball_radius_m > 0.
+  // widest_gap(). Searches points up to 6 ball radii away.
   std::vector<Note> spacing_notes(double ball_radius_m, const Kernels& kernels) const;
 
   // Returns a note "starts in contact" if, at the tick of the first frame, the hand is behind the true

@@ -42,7 +42,7 @@ struct TeleoperationSettings {
 
 class Teleoperation {
  public:
-  // pre: the settings are valid, tick_s > 0. key: of the noise of the channels and of the registration.
+  // key: of the noise of the channels and of the registration.
   Teleoperation(const TeleoperationSettings& settings, const NoiseKey& key, double tick_s,
                 const SlaveScene& scene);
 
@@ -138,7 +138,7 @@ class Teleoperation {
 // frame was captured.
 class FrameSender {
  public:
-  // pre: validate(settings) is empty. The kernels must outlive it.
+  // The kernels must outlive it.
   FrameSender(const FrameDeadBandSettings& settings, const Kernels& kernels)
       : dead_band_(settings), kernels_(kernels) {}
 
@@ -168,7 +168,6 @@ class FrameSender {
 // is compared with the last frame that was passed on.
 class FrameLink final : public FrameReceiver {
  public:
-  // pre: validate(settings) is empty.
   FrameLink(const FrameDeadBandSettings& settings, FrameReceiver& receiver, const Kernels& kernels)
       : sender_(settings, kernels), receiver_(receiver) {}
 

@@ -83,7 +83,7 @@ inline constexpr double kFlat_m = 5e-6;
 // Points are not merged if their median spacing is larger than this.
 inline constexpr double kMaxMergedSpacing_m = 6e-4;
 
-// Returns an empty list if merging would not save half of the points. pre: cube_m > 0.
+// Returns an empty list if merging would not save half of the points.
 std::vector<PointOrDisk> merged_points(std::span<const CloudPoint> points, double cube_m);
 
 }  // namespace remote_touch

@@ -59,7 +59,7 @@ DiskPosition nearest_position(const VoxelTool& tool, const SurfaceDisk& disk);
 ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPosition& nearest,
                          double known_side);
 // Returns the constraint of a disk that is too far from the tool to be worth a search: at its centre, with
-// its lower bound as distance. pre: the bound is above 0.
+// its lower bound as distance.
 ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m);
 
 // The result is kept: another query for the same pose costs nothing.
@@ -77,7 +77,7 @@ class NearDisks {
   void on_frame(const TiledCloud& cloud);
   void reserve(std::size_t padded_size);  // reserves memory for clouds of this size
   // Finds the disks whose centres are within reach_m and whose lower bounds are max_lower_m or less, in the
-  // order of the cloud's tiles; no disks if there is no cloud. pre: reach_m <= kFieldMargin_m - 2e-4.
+  // order of the cloud's tiles; no disks if there is no cloud.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
              double max_lower_m = std::numeric_limits<double>::infinity());
 

@@ -180,6 +180,7 @@ std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, c
 }
 
 void take_report(const ToolMotionReport& report, Vec3& normal_W, RenderOutput& out) {
+  assert(out.tool);
   constexpr double kNoDirection = 1e-9;  // a sum of normals that cancel each other
   if (!report.push_W.isZero(0))
     normal_W = report.push_W.normalized();

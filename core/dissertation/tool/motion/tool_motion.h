@@ -51,7 +51,7 @@ struct ToolMotionReport {
 };
 
 // Writes the report of a motion into the output. normal_W: contact normal; it is not changed if the report
-// has no direction. pre: out.tool has a value.
+// has no direction.
 void take_report(const ToolMotionReport& report, Vec3& normal_W, RenderOutput& out);
 
 // Interface of the rules that move the tool.

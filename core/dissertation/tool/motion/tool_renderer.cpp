@@ -20,7 +20,9 @@ ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<con
       contacts_(tool_, parameters, kernels),
       motion_(std::move(rule)),
       velocity_(parameters.max_prediction_s),
-      slave_(parameters.slave_command) {}
+      slave_(parameters.slave_command) {
+  assert(validate(parameters).empty());
+}
 
 namespace {
 

@@ -25,7 +25,6 @@ struct ToolSurfaceMotion {
 // look-ahead rule treats them as points instead of disks. ToolOutput::disabled_points is their number.
 class ToolRenderer : public Renderer {
  public:
-  // pre: validate(parameters) is empty.
   ToolRenderer(const ToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
                const Kernels& kernels);
   // Moves the tool by `rule` instead of parameters.contact_rule, which then only defines how contacts are
