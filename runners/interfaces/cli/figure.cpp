@@ -1,8 +1,8 @@
 #include "runners/interfaces/cli/figure.h"
 
 #include <omp.h>
-#include <CLI/CLI.hpp>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

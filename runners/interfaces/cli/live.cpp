@@ -1,8 +1,8 @@
 // The commands about this machine and live runs: `live`, `devices` and `jitter`.
 #include <spawn.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>

@@ -1,7 +1,7 @@
 // The commands about sweeps: `sweep`, `merge` and `analyse`.
 #include <omp.h>
-#include <CLI/CLI.hpp>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
