@@ -163,7 +163,6 @@ void NearDisks::search(const TouchFinder& finder, const ToolPose& pose, double r
 
 void NearDisks::query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
                       double max_lower_m) {
-  assert(reach_m <= kFieldMargin_m - 2e-4);
   if (!cloud_ || (is_known_ && pose == pose_ && reach_m == reach_m_ && max_lower_m == max_lower_m_)) return;
   const VoxelTool& tool = finder.tool();
   field_ = posed_field(tool, pose);

@@ -77,7 +77,7 @@ class NearDisks {
   void on_frame(const TiledCloud& cloud);
   void reserve(std::size_t padded_size);  // reserves memory for clouds of this size
   // Finds the disks whose centres are within reach_m and whose lower bounds are max_lower_m or less, in the
-  // order of the cloud's tiles; no disks if there is no cloud.
+  // order of the cloud's tiles; no disks if there is no cloud. pre: reach_m <= kFieldMargin_m - 2e-4.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
              double max_lower_m = std::numeric_limits<double>::infinity());
 
