@@ -22,8 +22,8 @@ struct ClosestPoint {
   double root(double low) const;
 };
 
+// pre: excess(low) > 0 and low > 0.
 double ClosestPoint::root(double low) const {
-  assert(low > 0 && excess(low) > 0);
   // Lower bound: where one term alone is 1, the sum is at least 1. Upper bound: at tau = |scaled| the sum
   // would be 1 without gaps, so that it is at most 1.
   low = std::max({low, scaled.x() - gap.x(), scaled.y() - gap.y(), scaled.z() - gap.z()});

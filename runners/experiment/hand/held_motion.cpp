@@ -103,7 +103,6 @@ HeldForceStep::HeldForceStep(const MassOnSpring& system, double duration_s)
       duration_s_(duration_s),
       w_(system.stiffness / system.mass),
       d_((system.path_damping + system.ground_damping) / system.mass) {
-  assert(system.mass > 0 && duration_s > 0);
   const Responses r = responses(w_, d_, duration_s, Squares::left_out);
   phi_ = r.phi, psi_ = r.psi, chi_ = r.chi;
   slope_ = 1 - w_ * psi_ - d_ * phi_;

@@ -49,7 +49,7 @@ struct StepEnergy {
 // derivation. One tick of every hand that the settings accept is within these limits.
 class HeldForceStep {
  public:
-  // pre: the numbers are finite and not negative.
+  // pre: mass > 0, the other numbers >= 0, all finite, duration_s > 0.
   HeldForceStep(const MassOnSpring& system, double duration_s);
 
   // The state at the beginning of the step, and the quantities that are constant during it.

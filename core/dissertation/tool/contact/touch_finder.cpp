@@ -131,7 +131,6 @@ CellTransform TouchFinder::to_cells(const ToolPose& pose) const {
 
 // The margin of two voxels is more than the error of the field far from the surface.
 NearnessCode TouchFinder::code_within(double distance_m) const {
-  assert(distance_m < kFieldMargin_m);
   const double size_m = tool_->grid.size_m;
   return {kNearnessZero_m / kNearnessUnit_m - 1, kNearnessUnit_m / size_m, distance_m / size_m + 2,
           1 / size_m};

@@ -67,7 +67,7 @@ class TouchFinder {
   // Returns the points in shell or interior voxels.
   std::span<const std::uint32_t> in_tool(const ToolPose& pose) const;
   // Returns all points whose field value is distance_m or less, and some that are a little farther away:
-  // those in cells with a node below distance_m + 0.25 mm.
+  // those in cells with a node below distance_m + 0.25 mm. pre: distance_m < kFieldMargin_m.
   std::span<const std::uint32_t> within(const ToolPose& pose, double distance_m) const {
     return within(*cloud_, pose, distance_m);
   }
@@ -76,7 +76,7 @@ class TouchFinder {
                                         double distance_m) const;
 
   // Returns the groups of kLanes points that contain all points of a cloud whose field value is distance_m or
-  // less, and some others. Valid until the next call, like the lists.
+  // less, and some others. Valid until the next call, like the lists. pre: as above.
   std::span<const std::uint32_t> groups_within(const TiledCloud& cloud, const ToolPose& pose,
                                                double distance_m) const;
 
