@@ -39,7 +39,6 @@ void KeptGroups::drop_far_groups() {
 }
 
 GroupsInReach KeptGroups::within(const TouchFinder& finder, const ToolPose& pose, double reach_m) {
-  assert(reach_m <= kFieldMargin_m - 2e-4);
   if (!(searched_m_ - max_change_m(finder, searched_at_, pose) > reach_m)) search(finder, pose, reach_m);
   is_new_ = is_new_ && pose == searched_at_;  // nearest_m_ belongs to that pose
   return {groups_.data(), count_, nearest_m_.data(), is_new_,
@@ -93,7 +92,6 @@ void NearPoints::query(const TouchFinder& finder, const Kernels& kernels, const 
 // Measures the points in portions, because the first portion of a surface in the tool mostly has one.
 bool NearPoints::has_below(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
                            double value_m, double search_m) {
-  assert(value_m <= search_m);
   constexpr std::size_t kPortion = 64;
   const GroupsInReach all = groups_.within(finder, pose, search_m);
   const double passed_m = all.passed_m - search_m + value_m;

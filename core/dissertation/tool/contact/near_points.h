@@ -36,7 +36,7 @@ class KeptGroups {
   void on_frame() { searched_m_ = -1; }   // call it for each new cloud of the finder
   void reserve(std::size_t padded_size);  // reserves memory for clouds of this size
   // Returns groups that contain all points whose field value is reach_m or less, in order. Valid until the
-  // next call. pre: reserve() was called for the finder's cloud.
+  // next call. pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
   GroupsInReach within(const TouchFinder& finder, const ToolPose& pose, double reach_m);
   void on_measured();  // call it after the kernel, if it measured all groups
 
@@ -57,14 +57,15 @@ class NearPoints {
   void on_frame() { groups_.on_frame(), count_ = 0; }  // call it for each new cloud
   void reserve(std::size_t padded_size);               // reserves memory for clouds of this size
   // Finds the points of the finder's cloud whose field value is reach_m or less, in the order of the packed()
-  // cloud's tiles. pre: as for KeptGroups::within().
+  // cloud's tiles. pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
   // Does the same, but leaves out some of the points that are certain to keep way.touch during the motion,
   // and some of those with a normal away from way.ahead_W. pre: way.far is reach_m.
   void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, const SlabWay& way);
 
   // Returns true if the field value of a point is below value_m. The search covers points up to search_m, so
-  // that the next query does not need one. The points of the last query are lost. pre: as above.
+  // that the next query does not need one. The points of the last query are lost. pre: value_m <= search_m,
+  // and as above.
   bool has_below(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double value_m,
                  double search_m);
 
@@ -116,7 +117,7 @@ class TouchedPoints {
   void reserve(std::size_t padded_size);   // reserves memory for clouds of this size
   // Counts the touched points among those whose field value is reach_m or less. A point is touched if it lies
   // in a shell or interior voxel and its field value is voxels_m or less, or if its disk touches the tool.
-  // pre: as for KeptGroups::within().
+  // pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
   Touched query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
                 double voxels_m);
 
