@@ -26,23 +26,6 @@ inline std::string schema_name(const std::string& kind) {
   return kSchemaPrefix + kind + "/" + std::to_string(kSchemaVersion);
 }
 
-// True for a layout that is read but no longer written: baselines have it. It has other names of some
-// settings and values, which stored_configuration() translates.
-inline bool is_earlier_schema(const std::string& schema) {
-  return schema == "remote-touch-trace/2" || schema == "remote-touch-sweep/2";
-}
-
-// Returns the schema of the same kind of file in this layout.
-inline std::string present_schema(const std::string& schema) {
-  return schema.substr(0, schema.rfind('/') + 1) + std::to_string(kSchemaVersion);
-}
-
-// True if the schema is that of a kind of file, in this layout or an earlier one that is read.
-inline bool is_schema_of(const std::string& schema, const std::string& kind) {
-  return schema == schema_name(kind) ||
-         (is_earlier_schema(schema) && present_schema(schema) == schema_name(kind));
-}
-
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
 // The HDF5 library may be at work as long as an object of this class exists. The library crashes in some
 // calls that find no memory, and on some damaged files.

@@ -28,15 +28,6 @@ Column state_column(const SweepResult& result) {
           {"not_sampled", "pending", "done", "failed", "elsewhere"}};
 }
 
-std::vector<std::uint64_t> note_numbers(const Column& notes) {
-  if (const auto* numbers = std::get_if<std::vector<std::uint64_t>>(&notes.values)) return *numbers;
-  std::vector<std::uint64_t> numbers;
-  if (const auto* narrow = std::get_if<std::vector<std::int32_t>>(&notes.values))
-    for (const std::int32_t bits : *narrow)
-      numbers.push_back(static_cast<std::uint64_t>(static_cast<std::int64_t>(bits)));
-  return numbers;
-}
-
 namespace {
 
 Column notes_column(const SweepResult& result) {
@@ -315,14 +306,13 @@ void read_part(const SweepReader& reader, std::size_t all_runs, SweepResult& res
     reader.damaged("/sweep/run does not have increasing numbers of its runs");
 }
 
-// Results of earlier versions have no notes.
+// Results whose maker knows no notes have none.
 void read_notes(const SweepReader& reader, std::size_t runs, SweepResult& result) {
   constexpr std::size_t kBits = 64;
   if (!reader.has("notes")) return;
   if (result.note_kinds.empty() || result.note_kinds.size() > kBits)
     reader.damaged("its attribute note_kinds has no names, or too many");
-  result.notes = note_numbers(reader.column("notes"));
-  if (result.notes.size() != runs) reader.damaged("/sweep/notes has another length or type");
+  result.notes = reader.values<std::uint64_t>("notes", runs);
 }
 
 void require_known_notes(const SweepReader& reader, const SweepResult& result) {
@@ -338,7 +328,6 @@ StoredSweep read_sweep_outline(const Hdf5Reader& file) {
   StoredSweep stored;
   SweepResult& result = stored.result;
   stored.attributes = provenance_of(file.attributes());
-  stored.schema = reader.text("schema");
   stored.in_progress = reader.has("checksum");
   for (const std::string& name : split_names(reader.text("axes"))) result.axes.push_back(reader.axis(name));
   if (reader.has("replicate")) result.replicates = static_cast<int>(reader.axis("replicate").length());

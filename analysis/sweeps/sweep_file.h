@@ -17,8 +17,6 @@ namespace remote_touch {
 // The arrays of a sweep in its file, beside the measures.
 
 Column state_column(const SweepResult& result);
-// Returns the numbers of a stored column of notes. Earlier results store them in 32 bits.
-std::vector<std::uint64_t> note_numbers(const Column& notes);
 
 // Digest of axes, the runs of a part, measures, states, errors and, with refinement, rounds. Notes are not
 // part of it, because they do not change the numbers.
@@ -48,7 +46,6 @@ struct StoredSweep {
   SweepResult result;
   TextAttributes attributes;  // all but schema, digest, and the names of axes, measures and note kinds
   bool in_progress = false;
-  std::string schema = {};
   std::size_t damaged_runs = 0;  // number of runs of a file in progress with a wrong checksum; not done
 };
 StoredSweep read_sweep(const Hdf5Reader& file);

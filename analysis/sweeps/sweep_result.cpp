@@ -110,17 +110,6 @@ SweepResult whole_of(SweepResult result) {
   return whole;
 }
 
-SweepResult without_others(SweepResult result) {
-  if (result.part || result.runs_in(RunState::elsewhere).empty()) return result;
-  std::vector<std::uint64_t> held;
-  for (std::size_t run = 0; run < result.run_count(); ++run)
-    if (result.state[run] != RunState::elsewhere && result.state[run] != RunState::not_sampled)
-      held.push_back(run);
-  SweepResult part = emptied(result, held);
-  for (std::size_t place = 0; place < held.size(); ++place) copy_run(result, held[place], part, place);
-  return part;
-}
-
 EventCounts event_counts(const SweepResult& result, const std::vector<double>& measure, std::size_t cell,
                          double above) {
   EventCounts counts;

@@ -87,9 +87,6 @@ std::vector<NoteCount> note_counts(const SweepResult& result);
 // Returns the whole result of a part: it has an element for each run, and the runs that the part does not
 // hold are `elsewhere`, or not_sampled with refinement. Returns a whole result unchanged.
 SweepResult whole_of(SweepResult result);
-// Returns a result without its runs that are `elsewhere`, as a part. Returns a result without such runs
-// unchanged.
-SweepResult without_others(SweepResult result);
 
 // Returns the outcomes of an event in the finished runs of a cell. The event happens if the measure is above
 // the threshold; it is unknown if the measure is NaN. pre: the result is whole.

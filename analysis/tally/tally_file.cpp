@@ -331,7 +331,7 @@ TextAttributes of_caller(const TextAttributes& all) {
 }  // namespace
 
 bool is_tally(const TextAttributes& of_root) {
-  return is_schema_of(attribute(of_root, "schema"), "tally");
+  return attribute(of_root, "schema") == schema_name("tally");
 }
 
 bool is_tally(const Hdf5Reader& file) {
@@ -358,7 +358,7 @@ void require_trusted(const std::filesystem::path& file, const TextAttributes& at
 
 StoredTally read_tally(const Hdf5Reader& file) {
   TallyReader reader(file);
-  return {reader.tally(), of_caller(file.attributes()), reader.text("schema")};
+  return {reader.tally(), of_caller(file.attributes())};
 }
 
 }  // namespace remote_touch

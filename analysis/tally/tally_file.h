@@ -59,7 +59,6 @@ void require_trusted(const std::filesystem::path& file, const TextAttributes& at
 struct StoredTally {
   SweepTally tally;
   TextAttributes attributes;  // attributes of the caller of write_tally()
-  std::string schema = {};
 };
 // Throws InputError, one line, for a file that is not a tally, or was changed since it was written.
 StoredTally read_tally(const Hdf5Reader& file);

@@ -19,20 +19,19 @@ std::string first_difference(const TextAttributes& theirs, const TextAttributes&
   return all.empty() ? "its title" : all.front();
 }
 
-// Throws InputError for a sweep of an earlier schema. Its settings have other names, so that it would look
-// like another sweep, and another program made it.
-void require_present_schema(const std::filesystem::path& file, const std::string& schema) {
-  if (is_earlier_schema(schema))
-    throw InputError(file.string(), "was written with the earlier schema " + schema +
-                                        ": expected a new file, in which the sweep starts again");
-}
-
 constexpr const char* kBuild[] = {"version", "git_commit", "git_dirty",      "source_digest", "compiler",
                                   "flags",   "program",    "program_sha256", "plugins"};
 
-// Throws InputError for a file of another sweep, shard or build.
-void require_same(const std::filesystem::path& file, const TextAttributes& theirs,
-                  const TextAttributes& ours) {
+}  // namespace
+
+TextAttributes build_of(const TextAttributes& attributes) {
+  TextAttributes build;
+  for (const char* name : kBuild) build.emplace_back(name, attribute(attributes, name));
+  return build;
+}
+
+void require_same_sweep(const std::filesystem::path& file, const TextAttributes& theirs,
+                        const TextAttributes& ours) {
   const auto refuse = [&](const std::string& what) {
     throw InputError(file.string(),
                      what + ": expected a file of the same sweep, shard and build, or a new file");
@@ -45,20 +44,6 @@ void require_same(const std::filesystem::path& file, const TextAttributes& their
   };
   compare("shard");
   for (const char* name : kBuild) compare(name);
-}
-
-}  // namespace
-
-TextAttributes build_of(const TextAttributes& attributes) {
-  TextAttributes build;
-  for (const char* name : kBuild) build.emplace_back(name, attribute(attributes, name));
-  return build;
-}
-
-void require_same_sweep(const std::filesystem::path& file, const std::string& schema,
-                        const TextAttributes& theirs, const TextAttributes& ours) {
-  require_present_schema(file, schema);
-  require_same(file, theirs, ours);
 }
 
 void require_same_origin(const MergedFile& part, const MergedFile& first) {
@@ -127,8 +112,8 @@ SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttribu
                      "a pipe or a device: expected a file, because a sweep stores each run when it is done");
   if (!std::filesystem::is_regular_file(there)) return plan;
   StoredSweep stored = read_sweep(file);
-  require_same_sweep(file, stored.schema, stored.attributes, attributes);
-  take_over(without_others(std::move(stored.result)), file, plan.result);
+  require_same_sweep(file, stored.attributes, attributes);
+  take_over(std::move(stored.result), file, plan.result);
   const std::string inputs = attribute(attributes, "input_digests");
   const auto changed = changed_inputs(attribute(stored.attributes, "input_digests"), inputs);
   require_same_inputs(file, sweep, plan.result, changed);
@@ -287,7 +272,7 @@ TallyPlan tally_plan_in_file(const Sweep& sweep, const Shard& shard, const TextA
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return plan;
   StoredTally stored = read_tally(Hdf5Reader(file));
-  require_same_sweep(file, stored.schema, stored.attributes, attributes);
+  require_same_sweep(file, stored.attributes, attributes);
   const std::string inputs = attribute(attributes, "input_digests");
   for (const auto& input : changed_inputs(attribute(stored.attributes, "input_digests"), inputs))
     throw InputError(file.string(), "has runs on another recording " + input.path + " (" + input.before +

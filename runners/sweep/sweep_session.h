@@ -25,9 +25,9 @@ namespace remote_touch {
 TextAttributes build_of(const TextAttributes& attributes);
 
 // Checks a file that a command continues. Throws InputError, which names the file, if it is of another sweep,
-// shard or build, or was written with an earlier schema, so that it is not overwritten.
-void require_same_sweep(const std::filesystem::path& file, const std::string& schema,
-                        const TextAttributes& theirs, const TextAttributes& ours);
+// shard or build, so that it is not overwritten.
+void require_same_sweep(const std::filesystem::path& file, const TextAttributes& theirs,
+                        const TextAttributes& ours);
 
 // Checks files that are merged, without their attributes `shard`. Throws InputError, which names both files,
 // unless they are of one sweep, one build and the same recordings.
@@ -47,8 +47,8 @@ struct SweepPlan {
   bool is_there = false;
   bool is_finished = false;  // the file exists and equals what a finished sweep with this result would write
 };
-// Throws InputError for a file that is not a sweep (also for a pipe or a device), that has an earlier schema,
-// or that belongs to another configuration, shard or build. Throws InputError also if a recording that a
+// Throws InputError for a file that is not a sweep (also for a pipe or a device), or
+// that belongs to another configuration, shard or build. Throws InputError also if a recording that a
 // finished run has read was changed. A recording that only failed runs have read may be repaired.
 SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                        const std::filesystem::path& file);

@@ -4,19 +4,18 @@ from plotting.plot_error import PlotError
 from plotting.results import trace_panels
 from plotting.sweeps import left_out, sweep_panels
 
-TRACES = ("remote-touch-trace/3", "remote-touch-trace/2")  # baselines are of the earlier version
-SWEEPS = ("remote-touch-sweep/3", "remote-touch-sweep/2")
+TRACE, SWEEP = "remote-touch-trace/3", "remote-touch-sweep/3"
 
 
 def read_drawable(path, wanted=()):
     """A figure, or a trace or a sweep as one. wanted: slices of a sweep, as pairs of an axis and a value."""
     with open_file(path) as file:
         schema = text(file.attrs, "schema")
-        if wanted and schema not in SWEEPS:
+        if wanted and schema != SWEEP:
             raise PlotError(f"{path}: --slice is for sweeps, this is {schema!r}")
-        if schema in TRACES + SWEEPS:
-            panels = sweep_panels(file, wanted) if schema in SWEEPS else trace_panels(file)
-            heading = (text(file.attrs, "command") or path.name) + (left_out(file, wanted) if schema in SWEEPS else "")
+        if schema in (TRACE, SWEEP):
+            panels = sweep_panels(file, wanted) if schema == SWEEP else trace_panels(file)
+            heading = (text(file.attrs, "command") or path.name) + (left_out(file, wanted) if schema == SWEEP else "")
             return Figure(path.stem, {name: text(file.attrs, name) for name in file.attrs} | {"heading": heading}, panels)
     if schema.startswith("remote-touch-tally/"):
         raise PlotError(f"{path}: is a tally: expected a figure, which `remote-touch analyse {path} -o FILE.h5` makes of it")

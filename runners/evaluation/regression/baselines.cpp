@@ -22,7 +22,6 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_run.h"
@@ -61,7 +60,7 @@ ResultComparison compare_run(const std::filesystem::path& folder, const Baseline
   const ColumnsInMemory made(simulate(experiment, options).columns());
   if (notes) notes->add(report.notes);
   const std::string config = present_form(attribute(stored.attributes(), "config"), [](const auto& text) {
-    return Experiment::from_json(stored_configuration(text), "config").to_json();
+    return Experiment::from_json(text, "config").to_json();
   });
   return compare_trace(stored, with_config(stored.attributes(), config), made,
                        provenance(experiment.to_json(), attribute(stored.attributes(), "command"),
@@ -77,7 +76,7 @@ ResultComparison compare_sweep_again(const std::filesystem::path& folder, const 
   const SweepResult made = run_sweep(sweep, {&kernels, stop});
   if (notes) notes->add(made);
   const std::string config = present_form(attribute(stored.attributes, "config"), [](const auto& text) {
-    return Sweep::from_json(stored_configuration(text), "config").to_json();
+    return Sweep::from_json(text, "config").to_json();
   });
   return compare_sweep(
       stored.result, with_config(stored.attributes, config), made,
@@ -259,9 +258,7 @@ std::vector<Column> old_columns(const std::filesystem::path& file, const Baselin
   std::error_code unreachable;
   if (!std::filesystem::exists(file, unreachable)) return {};
   try {
-    if (!configuration_differences(stored_configuration(attribute_of(file, "config")),
-                                   attribute_of(made, "config"))
-             .empty())
+    if (!configuration_differences(attribute_of(file, "config"), attribute_of(made, "config")).empty())
       return {};
     return judged_columns(file, baseline.command);
   } catch (const InputError&) {

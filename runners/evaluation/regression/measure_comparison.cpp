@@ -9,7 +9,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/settings/stored_configuration.h"
 
 namespace remote_touch {
 
@@ -29,7 +28,7 @@ std::optional<Experiment> stored_experiment(const TextAttributes& trace) {
   const std::string configuration = attribute(trace, "config");
   if (configuration.empty()) return std::nullopt;
   try {
-    return Experiment::from_json(stored_configuration(configuration), "configuration");
+    return Experiment::from_json(configuration, "configuration");
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -15,7 +15,6 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 
@@ -28,7 +27,7 @@ ResultComparison begin(const std::string& kind, const TextAttributes& baseline,
   ResultComparison result{"baseline", "candidate", kind};
   const auto configuration = [](const TextAttributes& of) {
     const std::string text = attribute(of, "config");
-    return text.empty() ? std::string("null") : stored_configuration(text);
+    return text.empty() ? std::string("null") : text;
   };
   result.configuration = configuration_differences(configuration(baseline), configuration(candidate));
   for (const char* name : {"command", "version", "git_commit", "git_dirty", "source_digest", "compiler",

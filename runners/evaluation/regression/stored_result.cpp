@@ -8,7 +8,6 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/sweep_answer.h"
 #include "scenarios/text_files/text_file.h"
 
@@ -136,7 +135,7 @@ StoredResult::StoredResult(const Hdf5Reader& result)
       recipe_(recipe_of(attributes_)) {}
 
 std::string StoredResult::config() const {
-  return stored_configuration(of("config"));
+  return of("config");
 }
 
 Experiment StoredResult::experiment() const {

@@ -15,7 +15,6 @@
 #include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "runners/experiment/sessions/session_scene.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/tool_files/loaded_tool.h"
 #include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/camera_scene.h"
@@ -183,9 +182,6 @@ void Catalog::require_name(const std::string& kind, const std::string& name, boo
   if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-_") != std::string::npos)
     throw InputError(kind + " \"" + name + "\"", "expected a name of lower case letters, digits, - and _");
   if (is_taken) throw InputError(kind + " \"" + name + "\"", "is in the catalog already");
-  if (const auto renamed = renamed_entry(kind, name))
-    throw InputError(kind + " \"" + name + "\"",
-                     "is the name of " + *renamed + " in results of version 0.2: expected another name");
 }
 
 Catalog& Catalog::add(Measure measure) {

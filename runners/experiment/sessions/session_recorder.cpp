@@ -225,7 +225,7 @@ class SessionBlocks {
     if (!first || !unpack_start(*first, layout_, found_.attributes))
       throw InputError(journal.string(),
                        "damaged (its first block is not whole): expected an unfinished recording");
-    if (const std::string schema = attribute(found_.attributes, "schema"); !is_schema_of(schema, "session"))
+    if (const std::string schema = attribute(found_.attributes, "schema"); schema != schema_name("session"))
       throw InputError(journal.string(), "is of schema " + schema + ": expected " + schema_name("session"));
     parameters_ = parameter_count(found_.attributes);
     found_.is_growing = reader_.is_growing();

@@ -21,7 +21,6 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
@@ -122,7 +121,7 @@ int command_hashes(const CommandLine& line, const HashesRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.trace});
   const StoredTrace trace(request.trace);
   const TickHashes hashes = hashes_of_trace(trace, request.every);
-  write_hashes(request.output, hashes, provenance_of(present_attributes(trace.attributes())));
+  write_hashes(request.output, hashes, provenance_of(trace.attributes()));
   std::printf("%s: %zu hashes", printable(request.output).c_str(), hashes.tick.size());
   if (!hashes.tick.empty()) std::printf(", the last of tick %d", hashes.tick.back());
   std::printf("\n");

@@ -16,7 +16,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/shards/shard_checks.h"
@@ -132,13 +131,13 @@ void print_datasets(const Hdf5Content& content) {
   const Extents extents(content);
   const std::string note_kinds = attribute(content.attributes, "note_kinds");
   for (const auto& [path, column] : content.datasets) {
-    const bool is_notes = path == "/sweep/notes";
-    const bool has_unit = std::holds_alternative<std::vector<double>>(column.values) ||
-                          (std::holds_alternative<std::vector<std::int32_t>>(column.values) &&
-                           column.value_names.empty() && !is_notes);
+    const bool has_unit =
+        std::holds_alternative<std::vector<double>>(column.values) ||
+        (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
     print_dataset(path, extents.of(path, column), has_unit ? column.units : "");
-    if (is_notes)
-      print_notes(note_numbers(column), note_kinds);
+    const auto* const bits = std::get_if<std::vector<std::uint64_t>>(&column.values);
+    if (bits && path == "/sweep/notes")
+      print_notes(*bits, note_kinds);
     else
       print_values(column);
   }
@@ -165,20 +164,8 @@ void print_attributes(const std::string& file, const TextAttributes& attributes)
 void print_damaged_runs(const std::string& file, const Hdf5Content& content) {
   const auto is_checksum = [](const auto& dataset) { return dataset.first == "/sweep/checksum"; };
   if (std::none_of(content.datasets.begin(), content.datasets.end(), is_checksum)) return;
-  if (const std::string text = damage_text(read_stored_part(file)); !text.empty())
+  if (const std::string text = damage_text(read_sweep(file)); !text.empty())
     std::printf("  note         %s\n", text.c_str());
-}
-
-// Prints one line for a result of an earlier schema, because the names below it are the old ones.
-void print_earlier_schema(const Hdf5Content& content) {
-  const std::string schema = attribute(content.attributes, "schema");
-  if (!is_earlier_schema(schema)) return;
-  const std::vector<std::string> names = translated_names(attribute(content.attributes, "config"));
-  const std::string line =
-      "earlier schema " + schema + "; " +
-      (names.empty() ? "none of its names has changed"
-                     : "these names are translated when the result is used: " + joined(names, ", "));
-  std::printf("  note         %s\n", printable(line).c_str());
 }
 
 void print_unfinished(const std::string& file) {
@@ -208,7 +195,6 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
   if (was_opened_for_writing(file))
     std::puts(
         "  note         another program opened it for writing; every value is as it was written (SHA-256)");
-  print_earlier_schema(content);
   print_damaged_runs(file, content);
   if (const std::string distrust = distrust_of(content.attributes); !distrust.empty())
     std::printf("  note         %s\n", printable(distrust).c_str());
@@ -221,8 +207,8 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
   }
   print_attributes(file, content.attributes);
   print_datasets(content);
-  if (is_schema_of(attribute(content.attributes, "schema"), "sweep"))
-    print_equal_runs(read_stored_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
+  if (attribute(content.attributes, "schema") == schema_name("sweep"))
+    print_equal_runs(read_sweep_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
   return kDone;
 }
 

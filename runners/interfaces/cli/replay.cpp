@@ -20,7 +20,6 @@
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/sessions/session_recorder.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
@@ -88,9 +87,8 @@ void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experimen
 }
 
 Sweep sweep_of(const TextAttributes& attributes, const std::string& file) {
-  return read_configuration(attributes, file, [&] {
-    return Sweep::from_json(stored_configuration(attribute(attributes, "config")), file + " config");
-  });
+  return read_configuration(
+      attributes, file, [&] { return Sweep::from_json(attribute(attributes, "config"), file + " config"); });
 }
 
 // Throws InputError if a recording is missing or has changed since the runs read it: they would differ.
@@ -109,7 +107,7 @@ Recheck recheck_of(const std::string& file, const RecheckOptions& options, TextA
     require_same_recordings(file, sweep, attributes);
     return recheck(stored.tally, sweep, options);
   }
-  StoredSweep stored = read_stored_part(file);
+  StoredSweep stored = read_sweep(file);
   attributes = std::move(stored.attributes);
   const Sweep sweep = sweep_of(attributes, file);
   require_same_recordings(file, sweep, attributes);

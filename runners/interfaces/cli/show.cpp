@@ -22,7 +22,6 @@
 #include "runners/experiment/provenance/cache_file.h"
 #include "runners/experiment/provenance/citation.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
@@ -151,7 +150,7 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
 // none.
 std::string title_of(const std::string& file, const TextAttributes& attributes) {
   if (const std::string title = attribute(attributes, "title"); !title.empty()) return title;
-  const Json config = parse_json(stored_configuration(attribute(attributes, "config")), file + " config");
+  const Json config = parse_json(attribute(attributes, "config"), file + " config");
   const auto title = config.is_object() ? config.find("title") : config.end();
   return title != config.end() && title->is_string() ? title->get<std::string>() : std::string();
 }
@@ -195,7 +194,7 @@ int command_cite(const CommandLine&, const CiteRequest& request) {
     return kDone;
   }
   const Hdf5Reader file(request.file);
-  if (is_schema_of(attribute(file.attributes(), "schema"), "session"))
+  if (attribute(file.attributes(), "schema") == schema_name("session"))
     print_session_entries(request.file, file.attributes());
   else
     print_result_entries(StoredResult(file));

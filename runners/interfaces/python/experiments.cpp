@@ -16,7 +16,6 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/bindings.h"
@@ -167,9 +166,7 @@ StoredSweep stored_sweep(const std::string& file) {
 StoredSweep sweep_of(const TextAttributes& attributes) {
   StoredSweep stored;
   stored.attributes = provenance_of(attributes);
-  stored.result =
-      Sweep::from_json(stored_configuration(attribute(attributes, "config")), "config of the data set")
-          .outline();
+  stored.result = Sweep::from_json(attribute(attributes, "config"), "config of the data set").outline();
   return stored;
 }
 
@@ -177,8 +174,8 @@ StoredSweep sweep_of(const TextAttributes& attributes) {
 RunResult replay(const std::string& file, const TextAttributes& attributes, const std::string& cell_text,
                  int replicate, const std::string& file_or_none, bool force, const LongWork& work) {
   const StoredSweep stored = file.empty() ? sweep_of(attributes) : stored_sweep(file);
-  const Sweep sweep = Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")),
-                                       file.empty() ? "config" : file + " config");
+  const Sweep sweep =
+      Sweep::from_json(attribute(stored.attributes, "config"), file.empty() ? "config" : file + " config");
   sweep.require_fits(stored.result, file);
   const std::size_t cell = cell_of({"cell", cell_text}, stored.result);
   if (replicate < 0 || replicate >= stored.result.replicates)

@@ -20,7 +20,6 @@
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/interfaces/python/bindings.h"
@@ -63,7 +62,7 @@ py::dict open_result(const std::string& file) {
     const FileTurn turn;
     const Hdf5Reader reader(file);
     kind = is_tally(reader) ? "tally" : kind_of(reader);
-    attributes = present_attributes(reader.attributes());
+    attributes = reader.attributes();
     if (kind == "sweep") sweep = read_stored_sweep(reader);
     if (kind == "tally") tally = read_tally(reader);
     if (kind == "trace") columns = all_columns(StoredTrace(reader));

@@ -9,7 +9,6 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "core/geometry/colour.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {
@@ -411,7 +410,7 @@ void write_mcap(const ExportJob& job) {
   job.begin(job.output, McapWriter::opening(kProfile, kLibrary));
   McapWriter mcap(kProfile, kLibrary, [&](const std::string& bytes) { job.files.append(bytes); });
   RunMessages messages(run, mcap);
-  mcap.add_metadata("remote-touch", present_attributes(job.result.attributes()));
+  mcap.add_metadata("remote-touch", job.result.attributes());
   for_each_frame(job, run, [&](const ExportedFrame& frame) { messages.add(frame); });
   messages.add_ticks_before(std::numeric_limits<double>::infinity());
   mcap.finish();

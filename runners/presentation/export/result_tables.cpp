@@ -10,7 +10,6 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
@@ -120,7 +119,7 @@ std::vector<Table> result_tables(const Hdf5Reader& result) {
 }
 
 TextAttributes exported_attributes(const Hdf5Reader& result, const std::vector<Table>& tables) {
-  TextAttributes all = present_attributes(result.attributes());
+  TextAttributes all = result.attributes();
   for (auto& [name, value] : all) {
     if (name != "axes") continue;  // of a sweep: its first columns
     std::vector<std::string> names = names_of(tables.front().columns);

@@ -20,7 +20,7 @@ std::string exported_kind(const Hdf5Reader& result);
 // The columns of each table have the same length. Throws InputError for a file that is damaged.
 std::vector<Table> result_tables(const Hdf5Reader& result);
 
-// Returns the root attributes of the result, see present_attributes(), with the names of axes in its tables.
+// Returns the root attributes of the result, with the names of axes in its tables.
 TextAttributes exported_attributes(const Hdf5Reader& result, const std::vector<Table>& tables);
 
 // Returns the names of the numbers in a row: force_x, force_y, force_z. The endings of a quaternion are w, x,

@@ -12,7 +12,6 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/presentation/view/shown_frames.h"
 #include "runners/presentation/view/shown_meshes.h"
 #include "runners/presentation/view/trace_event.h"
@@ -103,7 +102,7 @@ struct ShownRun::State {
       : source(std::move(run)),
         kernels(best),
         stop(when),
-        configuration(parse_json(stored_configuration(of("config")), source.name)),
+        configuration(parse_json(of("config"), source.name)),
         experiment(experiment_of_run(source.attributes, source.name)),
         r2_m(length_m(configuration["renderer"], "r2_m")),
         contact_radius_m(0.5 * (length_m(configuration["renderer"], "r1_m") + r2_m)) {
@@ -288,8 +287,7 @@ void ShownRun::mark_divergence_from(const ShownRun& other) {
                                               ": expected two runs with the same haptic_rate_hz");
   const TraceComparison comparison =
       compare_traces(*state_->source.columns, *other.state_->source.columns, {},
-                     configuration_differences(stored_configuration(state_->of("config")),
-                                               stored_configuration(other.state_->of("config"))));
+                     configuration_differences(state_->of("config"), other.state_->of("config")));
   if (comparison.divergence)
     state_->divergence = {comparison.divergence->tick, "divergence",
                           "The first difference: " + comparison.divergence->quantity + ". " +

@@ -10,7 +10,6 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
-#include "runners/experiment/settings/stored_configuration.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
@@ -112,7 +111,7 @@ void require_same_recordings(const StoredSweep& stored, const Sweep& sweep, cons
 
 Sweep sweep_of(const StoredSweep& stored, const std::string& file) {
   Sweep sweep = read_configuration(stored.attributes, file, [&] {
-    return Sweep::from_json(stored_configuration(attribute(stored.attributes, "config")), file + " config");
+    return Sweep::from_json(attribute(stored.attributes, "config"), file + " config");
   });
   sweep.require_fits(stored.result, file);
   require_same_recordings(stored, sweep, file);

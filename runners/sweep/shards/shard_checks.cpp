@@ -63,7 +63,7 @@ struct ReadShard {
 };
 
 void read_runs_of(const Hdf5Reader& hdf5, ReadShard& read) {
-  const StoredSweep outline = read_stored_outline(hdf5);
+  const StoredSweep outline = read_sweep_outline(hdf5);
   read.config = attribute(outline.attributes, "config");
   read.runs_of_sweep = outline.result.run_count();
   count_states(hdf5, read.progress);

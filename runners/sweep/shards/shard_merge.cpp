@@ -77,7 +77,7 @@ struct ShardFile {
 };
 
 ShardFile outline_of(const std::string& file, const Hdf5Reader& hdf5) {
-  ShardFile part{file, {}, read_stored_outline(hdf5)};
+  ShardFile part{file, {}, read_sweep_outline(hdf5)};
   part.shards = take_shards(part.outline.attributes, file);
   return part;
 }
@@ -114,19 +114,19 @@ RunSpool::PartValues values_in(const SweepResult& part) {
   };
 }
 
-// Copies the runs of a file. A finished part is read block by block. An unfinished one, and one of an earlier
-// version, which has an element for each run of the sweep, is read as a whole.
+// Copies the runs of a file. A finished part is read block by block, an unfinished one as a whole.
 void add_runs(const std::string& file, const Hdf5Reader& hdf5, const MergeRequest& request, RunSpool& spool) {
-  if (hdf5.has("/sweep/run") && !hdf5.has("/sweep/checksum")) {
+  if (!hdf5.has("/sweep/run")) hdf5.damaged("/sweep/run is missing");
+  if (!hdf5.has("/sweep/checksum")) {
     const std::size_t held = hdf5.column("/sweep/run").length();
     spool.add(file, held, [&](const std::string& array, std::size_t first, std::size_t count) {
       return hdf5.rows("/sweep/" + array, first, count).values;
     });
     return;
   }
-  StoredSweep stored = read_sweep(hdf5);
+  const StoredSweep stored = read_sweep(hdf5);
+  const SweepResult& part = stored.result;
   const std::string damage = damage_text(stored);
-  const SweepResult part = without_others(std::move(stored.result));
   const std::size_t pending = part.runs_in(RunState::pending).size();
   if (request.partial == Partial::no)
     throw InputError(

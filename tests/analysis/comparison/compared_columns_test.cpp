@@ -173,12 +173,7 @@ TEST(CompareColumns, NamesTextsAndFingerprintsAreEqualOrNot) {
   EXPECT_TRUE(compare_columns(counts, more, {2, 0}).is_same());
 }
 
-// Traces of schema /2 are read, because baselines have it; other results are not.
-
-using Names = std::vector<std::string>;
-using Numbers = std::vector<double>;
-
-TEST(StoredColumns, OfAnEarlierFigureAreRefused) {
+TEST(StoredColumns, OfAnEarlierSchemaAreRefused) {
   const TestFolder folder("stored_columns_test");
   Hdf5Writer hdf5;
   hdf5.attribute("/", "schema", "remote-touch-figure/2");
@@ -186,20 +181,6 @@ TEST(StoredColumns, OfAnEarlierFigureAreRefused) {
   EXPECT_HAS(
       refusal([&] { StoredFigure{Hdf5Reader(folder / "old.h5")}; }),
       "old.h5: is of schema remote-touch-figure/2: expected remote-touch-figure/3; make the result again");
-}
-
-TEST(StoredColumns, OfAnEarlierTraceAreRead) {
-  const TestFolder folder("stored_columns_test");
-  Hdf5Writer hdf5;
-  hdf5.attributes("/", {{"schema", "remote-touch-trace/2"}, {"columns", "time,right"}});
-  hdf5.group("/trace");
-  hdf5.columns(
-      "/trace",
-      {{"time", "s", "simulated time", Numbers{0, 0.001}}, {"right", "1", "a number", Numbers{5, 6}}}, "");
-  hdf5.save(folder / "old.h5");
-  const StoredTrace old(folder / "old.h5");
-  EXPECT_EQ(old.column_names(), (Names{"time", "right"})) << "names of a trace have not changed";
-  EXPECT_EQ(std::get<Numbers>(old.column("time").values), (Numbers{0, 0.001}));
 }
 
 // The running hash without its trace: 8 bytes per tick, or less, show where two runs begin to differ.

@@ -131,11 +131,6 @@ TEST_F(SweepFile, SixtyFourKindsOfNotesAreKept) {
   EXPECT_EQ(note_counts(result).back().first, 0u);
 }
 
-TEST(SweepColumns, NotesOfThirtyTwoBitsAreRead) {
-  const Column narrow{"notes", "1", "", std::vector<std::int32_t>{0, 5, 1 << 30}};
-  EXPECT_EQ(note_numbers(narrow), (std::vector<std::uint64_t>{0, 5, 1u << 30}));
-}
-
 // Runs 5 and 11 of the 12 have failed, and 3 and 7 are pending; the others have the bits of run % 8.
 TEST(SweepResult, CountsTheFinishedRunsWithEachKindOfNote) {
   const std::vector<NoteCount> counts = note_counts(awkward());

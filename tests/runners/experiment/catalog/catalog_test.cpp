@@ -180,8 +180,6 @@ TEST(Catalog, AnEntryNeedsAFreeAndPlainName) {
   EXPECT_EQ(own_entries(catalog).scenarios().size(), 1u);
   EXPECT_EQ(refusal([&] { add("mine"); }), "scenario \"mine\": is in the catalog already");
   EXPECT_HAS(refusal([&] { add("flat-grid"); }), "is in the catalog already");
-  EXPECT_EQ(refusal([&] { add("sheet"); }),
-            "scenario \"sheet\": is the name of panel in results of version 0.2: expected another name");
   EXPECT_HAS(refusal([&] {
                catalog.add(Measure{"empty", "N", "no function", MeasuredRuns::all, {}});
              }),

@@ -1,13 +1,12 @@
 """Runs: the same bits as the command line gives, in arrays that are not copied, with units."""
 import json
-import subprocess
 
 import h5py
 import numpy as np
 import pytest
 import remote_touch as rt
 import xarray
-from conftest import PRESS, ROOT, assert_same_file, digest_in
+from conftest import PRESS, assert_same_file, digest_in
 
 EXPERIMENTS = [  # with a proxy, regions, a tool, guidance and a hand, a slave; the last three for a part of their time
     ("fig4.12", {}, 7),
@@ -51,20 +50,6 @@ def test_every_column_is_that_of_the_file_as_h5py_reads_it(command_line, tmp_pat
 def test_opened_is_what_was_run(tmp_path):
     run = rt.run(PRESS, output=tmp_path / "a.h5")
     assert rt.open(tmp_path / "a.h5").identical(run[run.attrs["columns"].split(",")[1:]])
-
-
-def test_what_is_translated_says_so(tmp_path):
-    """A trace of schema /2 has the names of settings, and the schema, of this version."""
-    rt.run(PRESS, output=tmp_path / "a.h5")
-    with h5py.File(tmp_path / "a.h5") as file:
-        old = np.bytes_(file.attrs["config"]).replace(b'"contact_motion":"tangent-plane"', b'"contact_rule":"tangent_plane"')
-    subprocess.run(["/usr/bin/python3", ROOT / "tests" / "system" / "command_line" / "change_result", tmp_path / "a.h5",
-                    tmp_path / "old.h5", "attribute", "schema", "remote-touch-trace/2", "attribute", "config", old], check=True)
-    attrs = rt.open(tmp_path / "old.h5").attrs
-    assert json.loads(old)["renderer"]["contact_rule"] == "tangent_plane"
-    assert json.loads(attrs["config"]) == json.loads(rt.open(tmp_path / "a.h5").attrs["config"])
-    assert attrs["schema"] == "remote-touch-trace/3"
-    assert attrs["translated_from"] == "remote-touch-trace/2"
 
 
 def test_it_is_what_xarray_reads_of_the_file(tmp_path):

@@ -70,48 +70,6 @@ TEST(ResultTables, ASweepHasARowForEachRun) {
   EXPECT_EQ(std::get<std::vector<std::string>>(tables[0].columns[5].values)[5], "no \u00e9lan");
 }
 
-// A sweep of schema /2 over renderer.contact_rule.
-void write_old_sweep(const std::filesystem::path& file) {
-  SweepResult sweep;
-  sweep.axes = {{"contact_rule",
-                 "1",
-                 "renderer.contact_rule",
-                 std::vector<std::int32_t>{0, 1},
-                 1,
-                 {"tangent_plane", "regions"}}};
-  sweep.measures = {{"depth", "m", "", std::vector<double>{1, 2}, 1, {}}};
-  sweep.state = {RunState::done, RunState::done};
-  sweep.error = {"", ""};
-  Hdf5Writer hdf5;
-  hdf5.attributes("/", {{"schema", "remote-touch-sweep/2"},
-                        {"axes", "contact_rule"},
-                        {"measures", "depth"},
-                        {"config", R"({"experiment": {"renderer": {"name": "proxy"}}, "axes": [{"parameter":)"
-                                   R"( "renderer.contact_rule", "values": ["tangent_plane", "regions"]}]})"},
-                        {"digest", digest(sweep)}});
-  hdf5.group("/sweep");
-  hdf5.columns("/sweep",
-               {sweep.axes[0], sweep.measures[0], state_column(sweep), {"error", "1", "reason", sweep.error}},
-               "");
-  hdf5.save(file);
-}
-
-TEST(ResultTables, AttributesOfAnEarlierSchemaHaveThePresentNames) {
-  const TestFolder folder("result_tables");
-  write_old_sweep(folder / "old.h5");
-  const Hdf5Reader old(folder / "old.h5");
-  const std::vector<Table> tables = result_tables(old);
-  EXPECT_EQ(tables[0].columns[0].name, "contact_motion");
-  const TextAttributes attributes = exported_attributes(old, tables);
-  EXPECT_EQ(attribute(attributes, "schema"), "remote-touch-sweep/3");
-  EXPECT_EQ(attribute(attributes, "translated_from"), "remote-touch-sweep/2");
-  EXPECT_EQ(attribute(attributes, "axes"), "contact_motion");
-  EXPECT_HAS(attribute(attributes, "config"), "renderer.contact_motion");
-  write_sweep(folder / "new.h5", two_by_two(), kProvenance);
-  const Hdf5Reader now(folder / "new.h5");
-  EXPECT_EQ(exported_attributes(now, result_tables(now)), now.attributes());
-}
-
 TEST(ResultTables, NameTheKindsOfNotesOfASweep) {
   const TestFolder folder("result_tables");
   SweepResult sweep = two_by_two();
