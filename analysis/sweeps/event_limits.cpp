@@ -52,9 +52,9 @@ struct AxisRuns {
   }
 };
 
-std::vector<std::size_t> axes_without(const SweepResult& result, const std::vector<std::size_t>& left_out) {
+std::vector<std::size_t> axes_without(const SweepGrid& grid, const std::vector<std::size_t>& left_out) {
   std::vector<std::size_t> others;
-  for (std::size_t axis = 0; axis < result.axes.size(); ++axis)
+  for (std::size_t axis = 0; axis < grid.axes.size(); ++axis)
     if (std::find(left_out.begin(), left_out.end(), axis) == left_out.end()) others.push_back(axis);
   return others;
 }
@@ -67,9 +67,9 @@ std::vector<std::size_t> by_value(const std::vector<double>& x) {
   return order;
 }
 
-AxisRuns runs_of(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question,
+AxisRuns runs_of(const SweepGrid& grid, const CellCounts& cells, const LimitQuestion& question,
                  const CellStreams& streams, const CellGroup& group) {
-  const auto& x = std::get<std::vector<double>>(outline.axes[question.along].values);
+  const auto& x = std::get<std::vector<double>>(grid.axes[question.along].values);
   AxisRuns runs;
   runs.are_independent = streams.are_independent(group.cells);
   const std::vector<std::size_t> order = by_value(x);  // the cells of a group follow the axis
@@ -231,12 +231,12 @@ EventLimits event_limits(const SweepResult& result, const LimitQuestion& questio
   return event_limits(result, cells, question, streams);
 }
 
-EventLimits event_limits(const SweepResult& result, const CellCounts& cells, const LimitQuestion& question,
+EventLimits event_limits(const SweepGrid& grid, const CellCounts& cells, const LimitQuestion& question,
                          const CellStreams& streams) {
-  const std::vector<std::size_t> others = axes_without(result, {question.along});
-  const std::vector<CellGroup> groups = cell_groups(result, others);
+  const std::vector<std::size_t> others = axes_without(grid, {question.along});
+  const std::vector<CellGroup> groups = cell_groups(grid, others);
   std::vector<AxisRuns> all;
-  for (const CellGroup& group : groups) all.push_back(runs_of(result, cells, question, streams, group));
+  for (const CellGroup& group : groups) all.push_back(runs_of(grid, cells, question, streams, group));
   const std::optional<bool> rises =
       question.rises ? question.rises : direction_of(all, groups_are_independent(groups, streams));
   std::vector<Estimate> estimates;
@@ -255,9 +255,9 @@ EventLimits event_limits(const SweepResult& result, const CellCounts& cells, con
     noted.push_back(0);
     for (const std::size_t cell : groups[i].cells) noted.back() += cells.noted(cell);
   }
-  const Column& axis = result.axes[question.along];
+  const Column& axis = grid.axes[question.along];
   Table table{"limits", "limit of " + question.measure + " along " + axis.name,
-              axes_of(result, others, groups)};
+              axes_of(grid, others, groups)};
   add_estimates(table, estimates,
                 {axis.units,
                  "value of the axis at which the event has the given probability; NaN: not between values "

@@ -50,8 +50,7 @@ struct CellCounts {
   // The number of clusters of some cells; empty: the most runs of any of the cells that share random numbers.
   std::function<std::int64_t(const std::vector<std::size_t>& cells)> clusters = {};
 };
-// The same with these counts. Only the axes of the outline are used.
-EventLimits event_limits(const SweepResult& outline, const CellCounts& cells, const LimitQuestion& question,
+EventLimits event_limits(const SweepGrid& grid, const CellCounts& cells, const LimitQuestion& question,
                          const CellStreams& streams);
 
 // Returns the differences, or ratios, of the limits at each value of the axis `between` from that at its

@@ -21,19 +21,19 @@ void SweepResult::start(bool refined) {
   notes.assign(note_kinds.empty() ? 0 : runs, 0);
 }
 
-std::size_t SweepResult::cell_count() const {
+std::size_t SweepGrid::cell_count() const {
   std::size_t count = 1;
   for (const Column& axis : axes) count *= axis.length();
   return count;
 }
 
-std::vector<std::size_t> SweepResult::axis_indices(std::size_t cell) const {
+std::vector<std::size_t> SweepGrid::axis_indices(std::size_t cell) const {
   std::vector<std::size_t> indices(axes.size());
   for (std::size_t i = axes.size(); i-- > 0; cell /= axes[i].length()) indices[i] = cell % axes[i].length();
   return indices;
 }
 
-std::size_t SweepResult::cell_at(const std::vector<std::size_t>& indices) const {
+std::size_t SweepGrid::cell_at(const std::vector<std::size_t>& indices) const {
   std::size_t cell = 0;
   for (std::size_t i = 0; i < axes.size(); ++i) cell = cell * axes[i].length() + indices[i];
   return cell;
@@ -57,6 +57,13 @@ const std::vector<double>& SweepResult::measure(const std::string& name) const {
   for (const Column& measure : measures)
     if (measure.name == name) return std::get<std::vector<double>>(measure.values);
   throw std::out_of_range("the sweep has no measure " + name);
+}
+
+SweepGrid grid_of(const SweepResult& result) {
+  SweepGrid grid{result.axes, result.replicates, {}, result.note_kinds};
+  for (const Column& measure : result.measures)
+    grid.measures.push_back({measure.name, measure.units, measure.long_name, {}, measure.width, {}});
+  return grid;
 }
 
 bool is_event(const Column& measure) {
@@ -88,22 +95,12 @@ void copy_run(const SweepResult& from, std::size_t place, SweepResult& to, std::
   if (!to.notes.empty()) to.notes[to_place] = from.notes[place];
 }
 
-// Returns a result of the same sweep that holds other runs, which are not sampled.
-SweepResult emptied(const SweepResult& result, std::optional<std::vector<std::uint64_t>> part) {
-  SweepResult other;
-  other.axes = result.axes, other.replicates = result.replicates, other.part = std::move(part);
-  for (const Column& measure : result.measures)
-    other.measures.push_back({measure.name, measure.units, measure.long_name, {}, measure.width, {}});
-  other.note_kinds = result.note_kinds;
-  other.start(!result.round.empty());
-  return other;
-}
-
 }  // namespace
 
 SweepResult whole_of(SweepResult result) {
   if (!result.part) return result;
-  SweepResult whole = emptied(result, std::nullopt);
+  SweepResult whole(grid_of(result));
+  whole.start(!result.round.empty());
   if (result.round.empty()) whole.state.assign(whole.run_count(), RunState::elsewhere);
   for (std::size_t place = 0; place < result.held_count(); ++place)
     copy_run(result, place, whole, result.run_at(place));
@@ -175,14 +172,14 @@ std::vector<Region> regions_of(const std::vector<Column>& axes) {
   return parts;
 }
 
-std::vector<CellGroup> cell_groups(const SweepResult& result, const std::vector<std::size_t>& axes) {
+std::vector<CellGroup> cell_groups(const SweepGrid& grid, const std::vector<std::size_t>& axes) {
   std::size_t count = 1;
-  for (const std::size_t axis : axes) count *= result.axes[axis].length();
+  for (const std::size_t axis : axes) count *= grid.axes[axis].length();
   std::vector<CellGroup> groups(count);
-  for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
-    const std::vector<std::size_t> places = result.axis_indices(cell);
+  for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
+    const std::vector<std::size_t> places = grid.axis_indices(cell);
     std::size_t number = 0;
-    for (const std::size_t axis : axes) number = number * result.axes[axis].length() + places[axis];
+    for (const std::size_t axis : axes) number = number * grid.axes[axis].length() + places[axis];
     CellGroup& group = groups[number];
     if (group.cells.empty())
       for (const std::size_t axis : axes) group.indices.push_back(places[axis]);
@@ -203,13 +200,13 @@ Column axis_at(const Column& axis, const std::vector<std::size_t>& places) {
   return column;
 }
 
-std::vector<Column> axes_of(const SweepResult& result, const std::vector<std::size_t>& axes,
+std::vector<Column> axes_of(const SweepGrid& grid, const std::vector<std::size_t>& axes,
                             const std::vector<CellGroup>& groups) {
   std::vector<Column> columns;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     std::vector<std::size_t> places;
     for (const CellGroup& group : groups) places.push_back(group.indices[i]);
-    columns.push_back(axis_at(result.axes[axes[i]], places));
+    columns.push_back(axis_at(grid.axes[axes[i]], places));
   }
   return columns;
 }

@@ -22,40 +22,16 @@ enum class RunState : std::int32_t {
   elsewhere = 4  // belongs to another shard, in a result that has an element for it
 };
 
-// Cells are the nodes of the axes' grid, numbered with the last axis running fastest; every cell has the same
-// number of replicates. A run is one replicate of one cell. The arrays have one element for each run that the
-// result holds; its index is the *place* of the run.
-struct SweepResult {
+// What a sweep varies and measures. Cells are the nodes of the axes' grid, numbered with the last axis
+// running fastest; every cell has the same number of replicates. A run is one replicate of one cell.
+struct SweepGrid {
   std::vector<Column> axes;  // one row for each value; names are an enumeration
   int replicates = 1;
-  // The numbers of the runs that the result holds, increasing. Without them it is whole: it holds every run,
-  // and the place of a run is its number.
-  std::optional<std::vector<std::uint64_t>> part;
-  std::vector<Column> measures;  // NaN if the run is not done
-  std::vector<RunState> state;
-  std::vector<std::int32_t> round;  // round of refinement that added the run; empty without refinement
-  std::vector<std::string> error;
-  // note_kinds: the names of the kinds of notes. notes: one number for each run; bit i is set if the run has
-  // a note of the kind note_kinds[i]. It is 0 if the run is not done. Both are empty in results that were
-  // stored without notes.
-  std::vector<std::string> note_kinds;
-  std::vector<std::uint64_t> notes;
-
-  // True if a number of `notes` has bits of the first `kinds` kinds only.
-  static bool are_known_notes(std::uint64_t bits, std::size_t kinds) {
-    return kinds >= 64 || bits >> kinds == 0;
-  }
-
-  // Sizes the arrays and sets every run to not_sampled. pre: axes, replicates, part, measures and note_kinds
-  // are set.
-  void start(bool refined);
+  std::vector<Column> measures;         // name, unit and meaning
+  std::vector<std::string> note_kinds;  // names of the kinds of notes, at most 64; empty: notes are not known
 
   std::size_t cell_count() const;
   std::size_t run_count() const { return cell_count() * static_cast<std::size_t>(replicates); }
-  std::size_t held_count() const { return part ? part->size() : run_count(); }
-  std::size_t run_at(std::size_t place) const { return part ? (*part)[place] : place; }
-  // Returns the place of a run; none if the result does not hold it.
-  std::optional<std::size_t> place_of(std::size_t run) const;
   std::size_t run(std::size_t cell, int replicate) const {
     return cell * static_cast<std::size_t>(replicates) + static_cast<std::size_t>(replicate);
   }
@@ -66,11 +42,44 @@ struct SweepResult {
   // Returns the index of a cell on each axis; cell_at() is the inverse.
   std::vector<std::size_t> axis_indices(std::size_t cell) const;
   std::size_t cell_at(const std::vector<std::size_t>& indices) const;
+};
+
+// The values of each run: a measure is NaN if the run is not done. The arrays have one element for each run
+// that the result holds; its index is the *place* of the run.
+struct SweepResult : SweepGrid {
+  SweepResult() = default;
+  explicit SweepResult(SweepGrid grid) : SweepGrid(std::move(grid)) {}
+
+  // The numbers of the runs that the result holds, increasing. Without them it is whole: it holds every run,
+  // and the place of a run is its number.
+  std::optional<std::vector<std::uint64_t>> part;
+  std::vector<RunState> state;
+  std::vector<std::int32_t> round;  // round of refinement that added the run; empty without refinement
+  std::vector<std::string> error;
+  // One number for each run; bit i is set if the run has a note of the kind note_kinds[i]. It is 0 if the run
+  // is not done. Empty without kinds.
+  std::vector<std::uint64_t> notes;
+
+  // True if a number of `notes` has bits of the first `kinds` kinds only.
+  static bool are_known_notes(std::uint64_t bits, std::size_t kinds) {
+    return kinds >= 64 || bits >> kinds == 0;
+  }
+
+  // Sizes the arrays and sets every run to not_sampled. pre: the grid and `part` are set.
+  void start(bool refined);
+
+  std::size_t held_count() const { return part ? part->size() : run_count(); }
+  std::size_t run_at(std::size_t place) const { return part ? (*part)[place] : place; }
+  // Returns the place of a run; none if the result does not hold it.
+  std::optional<std::size_t> place_of(std::size_t run) const;
 
   // Returns the places of the runs in that state, increasing.
   std::vector<std::size_t> runs_in(RunState requested) const;
   const std::vector<double>& measure(const std::string& name) const;  // throws std::out_of_range
 };
+
+// Returns the grid of the result; its measures have no values.
+SweepGrid grid_of(const SweepResult& result);
 
 // True for a measure that is 1 if an event happened in a run, else 0. Its meaning begins with "1 when".
 bool is_event(const Column& measure);
@@ -117,12 +126,12 @@ struct CellGroup {
 
 // Returns the groups over the axes with these numbers, the last of them running fastest. Without axes there
 // is one group of all cells.
-std::vector<CellGroup> cell_groups(const SweepResult& result, const std::vector<std::size_t>& axes);
+std::vector<CellGroup> cell_groups(const SweepGrid& grid, const std::vector<std::size_t>& axes);
 
 // Returns the axis as a column of a table: its value at the given index in each row.
 Column axis_at(const Column& axis, const std::vector<std::size_t>& places);
 // Returns one such column for each of the axes: the values that the groups have in common.
-std::vector<Column> axes_of(const SweepResult& result, const std::vector<std::size_t>& axes,
+std::vector<Column> axes_of(const SweepGrid& grid, const std::vector<std::size_t>& axes,
                             const std::vector<CellGroup>& groups);
 
 // Returns the values of a column of counts: integers or, if one of them is above 2^31 - 1, doubles.

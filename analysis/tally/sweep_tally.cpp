@@ -126,10 +126,10 @@ bool names_runs_in(const CellTally& tally, RunRange range) {
 
 }  // namespace
 
-std::uint64_t SweepTally::cell_count() const {
-  std::uint64_t count = 1;
-  for (const Column& axis : axes) count *= axis.length();
-  return count;
+CellTally SweepTally::over_all_cells() const {
+  CellTally all(layout());
+  for (const CellTally& cell : tallies) all.add(cell);
+  return all;
 }
 
 TallyLayout SweepTally::layout() const {
@@ -277,10 +277,10 @@ std::int64_t noted_runs(const SweepTally& tally, std::uint64_t cell) {
   return most;
 }
 
-Table tally_means(const SweepTally& tally, const SweepResult& outline, std::size_t measure,
-                  const std::vector<std::size_t>& by, const CellStreams& streams) {
+Table tally_means(const SweepTally& tally, std::size_t measure, const std::vector<std::size_t>& by,
+                  const CellStreams& streams) {
   const Column& column = tally.measures[measure];
-  const std::vector<CellGroup> groups = cell_groups(outline, by);
+  const std::vector<CellGroup> groups = cell_groups(tally, by);
   const auto done = [&](std::size_t cell) {
     const CellTally* const own = tally_of(tally, cell);
     return own ? own->done : 0;
@@ -305,7 +305,7 @@ Table tally_means(const SweepTally& tally, const SweepResult& outline, std::size
     note_unknown(e, runs, is_event(column));
     estimates.push_back(std::move(e));
   }
-  Table table{"mean_" + column.name, "mean of " + column.name, axes_of(outline, by, groups)};
+  Table table{"mean_" + column.name, "mean of " + column.name, axes_of(tally, by, groups)};
   add_estimates(table, estimates,
                 {column.units, (is_event(column) ? "fraction: " : "mean: ") + column.long_name, kRunsMeaning},
                 noted);

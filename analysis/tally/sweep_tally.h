@@ -43,22 +43,16 @@ class RunRanges {
   std::vector<RunRange> ranges_;
 };
 
-// Cells and runs are numbered as in SweepResult: the last axis runs fastest, and a run is the cell times the
-// replicates plus the replicate. The same runs in any order, and in any parts, give an equal tally.
-struct SweepTally {
-  std::vector<Column> axes;             // one row for each value
-  int replicates = 1;                   // number of runs of every cell
-  std::vector<Column> measures;         // name, unit and meaning; no values
-  std::vector<std::string> note_kinds;  // names of the kinds, at most 64
-  bool keeps_events = false;            // keep = "events": the numbers of the runs in which an event happened
-  std::vector<std::uint64_t> cells;     // the cells of which there are runs, increasing
-  std::vector<CellTally> tallies;       // one for each of these cells
-  RunRanges held;                       // the runs in the tallies, done or failed
+// The same runs in any order, and in any parts, give an equal tally. The measures of the grid have no values.
+struct SweepTally : SweepGrid {
+  bool keeps_events = false;         // keep = "events": the numbers of the runs in which an event happened
+  std::vector<std::uint64_t> cells;  // the cells of which there are runs, increasing
+  std::vector<CellTally> tallies;    // one for each of these cells
+  RunRanges held;                    // the runs in the tallies, done or failed
 
-  std::uint64_t cell_count() const;  // number of cells of the whole sweep
-  std::uint64_t run_count() const { return cell_count() * static_cast<std::uint64_t>(replicates); }
   bool is_whole() const { return held.count() == run_count(); }
   RunRanges missing() const { return held.missing_in({0, run_count()}); }
+  CellTally over_all_cells() const;  // the sum of the tallies
   // The events are the measures for which is_event() is true, if keeps_events.
   TallyLayout layout() const;
 
@@ -92,9 +86,9 @@ EventCounts event_counts(const SweepTally& tally, std::size_t measure, std::uint
 std::int64_t noted_runs(const SweepTally& tally, std::uint64_t cell);
 
 // Returns a table as sweep_means() does, but without a correction for skewness: a tally has no third moments.
-// outline: of the tally. Throws InputError, about the options `by`, if a row would pool cells that share
+// Throws InputError, about the options `by`, if a row would pool cells that share
 // random numbers, because a tally does not know which of its runs do.
-Table tally_means(const SweepTally& tally, const SweepResult& outline, std::size_t measure,
-                  const std::vector<std::size_t>& by, const CellStreams& streams);
+Table tally_means(const SweepTally& tally, std::size_t measure, const std::vector<std::size_t>& by,
+                  const CellStreams& streams);
 
 }  // namespace remote_touch

@@ -113,54 +113,54 @@ std::vector<std::string> assignments_of(const std::string& text, const std::vect
 }
 
 // Returns the cell of a text with NAME=VALUE for each axis, in any order.
-std::size_t cell_by_values(const NamedCell& cell, const SweepResult& result) {
-  std::vector<std::optional<std::size_t>> indices(result.axes.size());
+std::size_t cell_by_values(const NamedCell& cell, const SweepGrid& grid) {
+  std::vector<std::optional<std::size_t>> indices(grid.axes.size());
   bool are_known = true;
-  for (const std::string& item : assignments_of(cell.text, result.axes)) {
+  for (const std::string& item : assignments_of(cell.text, grid.axes)) {
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string name = item.substr(0, equals), value = item.substr(std::min(equals + 1, item.size()));
-    const auto axis = std::find_if(result.axes.begin(), result.axes.end(),
+    const auto axis = std::find_if(grid.axes.begin(), grid.axes.end(),
                                    [&](const Column& each) { return each.name == name; });
-    const auto i = static_cast<std::size_t>(axis - result.axes.begin());
-    are_known = axis != result.axes.end() && !indices[i];
+    const auto i = static_cast<std::size_t>(axis - grid.axes.begin());
+    are_known = axis != grid.axes.end() && !indices[i];
     if (!are_known) break;
     indices[i] = row_of(cell, *axis, value);
   }
   std::string names;
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    names.append(names.empty() ? "" : ",").append(result.axes[i].name + "=VALUE");
+    names.append(names.empty() ? "" : ",").append(grid.axes[i].name + "=VALUE");
     if (indices[i]) found.push_back(*indices[i]);
   }
   if (!are_known || found.size() != indices.size()) refuse_cell(cell, names);
-  return result.cell_at(found);
+  return grid.cell_at(found);
 }
 
 }  // namespace
 
-std::string cell_text(const SweepResult& result, std::size_t cell) {
+std::string cell_text(const SweepGrid& grid, std::size_t cell) {
   std::string text;
-  for (const std::size_t at : result.axis_indices(cell))
+  for (const std::size_t at : grid.axis_indices(cell))
     text.append(text.empty() ? "" : ",").append(std::to_string(at));
   return text;
 }
 
-std::size_t cell_of(const NamedCell& cell, const SweepResult& result) {
-  if (cell.text.find('=') != std::string::npos) return cell_by_values(cell, result);
+std::size_t cell_of(const NamedCell& cell, const SweepGrid& grid) {
+  if (cell.text.find('=') != std::string::npos) return cell_by_values(cell, grid);
   std::string allowed;
-  for (const Column& axis : result.axes)
+  for (const Column& axis : grid.axes)
     allowed.append(allowed.empty() ? "0.." : ",0..").append(std::to_string(axis.length() - 1));
   std::vector<std::size_t> indices;
   for (const std::string& item : items_of(cell.text)) {
     std::size_t number = 0;
     const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), number);
-    if (error != std::errc() || end != item.data() + item.size() || indices.size() == result.axes.size() ||
-        number >= result.axes[indices.size()].length())
+    if (error != std::errc() || end != item.data() + item.size() || indices.size() == grid.axes.size() ||
+        number >= grid.axes[indices.size()].length())
       refuse_cell(cell, allowed);
     indices.push_back(number);
   }
-  if (indices.size() != result.axes.size()) refuse_cell(cell, allowed);
-  return result.cell_at(indices);
+  if (indices.size() != grid.axes.size()) refuse_cell(cell, allowed);
+  return grid.cell_at(indices);
 }
 
 namespace {
@@ -185,9 +185,9 @@ std::string text_of_unknown_outcome(const Trace& trace) {
 
 }  // namespace
 
-std::string option_of_run(const SweepResult& result, std::size_t run) {
-  std::string option = "--cell " + cell_text(result, result.cell_of(run));
-  if (result.replicates > 1) option += " --replicate " + std::to_string(result.replicate_of(run));
+std::string option_of_run(const SweepGrid& grid, std::size_t run) {
+  std::string option = "--cell " + cell_text(grid, grid.cell_of(run));
+  if (grid.replicates > 1) option += " --replicate " + std::to_string(grid.replicate_of(run));
   return option;
 }
 
@@ -195,42 +195,27 @@ std::vector<std::string> note_lines(const SweepResult& result) {
   return note_lines(result, note_counts(result), result.runs_in(RunState::done).size());
 }
 
-std::vector<std::string> note_lines(const SweepResult& sweep, const std::vector<NoteCount>& counts,
+std::vector<std::string> note_lines(const SweepGrid& grid, const std::vector<NoteCount>& counts,
                                     std::size_t done) {
   std::vector<std::string> lines;
   for (const NoteCount& count : counts)
     lines.push_back(std::to_string(count.runs) + " of " + std::to_string(done) + " runs: " +
-                    text_of_kind(count.kind) + " (the first: " + option_of_run(sweep, count.first) + ")");
+                    text_of_kind(count.kind) + " (the first: " + option_of_run(grid, count.first) + ")");
   return lines;
 }
 
 std::vector<std::string> note_lines(const SweepTally& tally) {
-  CellTally all(tally.layout());
-  for (const CellTally& cell : tally.tallies) all.add(cell);
+  const CellTally all = tally.over_all_cells();
   std::vector<NoteCount> counts;
   for (std::size_t i = 0; i < all.notes.size(); ++i)
     if (all.notes[i].runs > 0)
       counts.push_back({tally.note_kinds[i], static_cast<std::size_t>(all.notes[i].runs),
                         static_cast<std::size_t>(all.notes[i].first)});
-  return note_lines(outline_of(tally), counts, static_cast<std::size_t>(all.done));
+  return note_lines(tally, counts, static_cast<std::size_t>(all.done));
 }
 
-namespace {
-
-void refuse(const std::vector<std::string>& lines) {
-  std::string all;
-  for (const std::string& line : lines) all += (all.empty() ? "" : "; ") + line;
-  if (!all.empty()) throw InputError("--strict", all);
-}
-
-}  // namespace
-
-void refuse_notes(const SweepResult& result) {
-  refuse(note_lines(result));
-}
-
-void refuse_notes(const SweepTally& tally) {
-  refuse(note_lines(tally));
+void refuse_notes(const std::vector<std::string>& lines) {
+  if (!lines.empty()) throw InputError("--strict", joined(lines, "; "));
 }
 
 void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, std::vector<Note>& notes) {
@@ -305,7 +290,9 @@ StoredSweep read_runs_or_outline(const std::filesystem::path& file) {
   const Hdf5Reader reader(file);
   if (!is_tally(reader)) return read_sweep(file);
   StoredTally tally = read_tally(reader);
-  return {outline_of(tally.tally), std::move(tally.attributes)};
+  SweepResult none(static_cast<SweepGrid&>(tally.tally));
+  none.part.emplace();
+  return {none, std::move(tally.attributes)};
 }
 
 }  // namespace remote_touch

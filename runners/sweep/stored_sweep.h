@@ -19,22 +19,10 @@ namespace remote_touch {
 
 struct Trace;
 
-// A tally as the outline of a sweep, for what needs axes, cells and the names of measures only.
-
-// Returns a part without runs.
-inline SweepResult outline_of(const SweepTally& tally) {
-  SweepResult outline;
-  outline.axes = tally.axes, outline.replicates = tally.replicates;
-  outline.measures = tally.measures, outline.note_kinds = tally.note_kinds;
-  outline.part.emplace();
-  outline.start(false);
-  return outline;
-}
-
 // Cells of a sweep as the user writes them.
 
 // Returns the index on each axis, from 0: "3,4".
-std::string cell_text(const SweepResult& result, std::size_t cell);
+std::string cell_text(const SweepGrid& grid, std::size_t cell);
 
 // text: the indices as cell_text() writes them, or a value of each axis, "noise_sigma_m=0.003,rule=none". A
 // number names the value that is equal to it or, if there is none, the only value of the axis that has the
@@ -45,27 +33,26 @@ struct NamedCell {
 };
 
 // Throws InputError.
-std::size_t cell_of(const NamedCell& cell, const SweepResult& result);
+std::size_t cell_of(const NamedCell& cell, const SweepGrid& grid);
 
 // The notes on the runs of a sweep, as counts by kind.
 
 // The options of `replay` for a run: "--cell 0,3", and "--replicate 2" if there are several replicates.
-std::string option_of_run(const SweepResult& result, std::size_t run);
+std::string option_of_run(const SweepGrid& grid, std::size_t run);
 
 // Returns a line for each kind of note that a finished run has:
 //   "12 of 210 runs: no contact: no point was touched and no force was felt (the first: --cell 0,3)"
 // Empty for a result that was stored without notes.
 std::vector<std::string> note_lines(const SweepResult& result);
 // The same for counts over several results of one sweep, of which `done` runs are finished.
-std::vector<std::string> note_lines(const SweepResult& sweep, const std::vector<NoteCount>& counts,
+std::vector<std::string> note_lines(const SweepGrid& grid, const std::vector<NoteCount>& counts,
                                     std::size_t done);
 
 // The same of a tally.
 std::vector<std::string> note_lines(const SweepTally& tally);
 
 // Throws InputError with all these lines, for --strict. Does nothing if there is none.
-void refuse_notes(const SweepResult& result);
-void refuse_notes(const SweepTally& tally);
+void refuse_notes(const std::vector<std::string>& lines);
 
 // Adds the note "outcome unknown" if the distance to the true surface is known in some tick with a frame but
 // a measure of the outcome is NaN.

@@ -32,7 +32,7 @@ struct Sweep::Definition {
   std::string title;
   Json experiment;  // complete
   std::vector<SweepAxis> axes;
-  SweepResult grid;  // result with the axes, without runs
+  SweepGrid grid;  // has the axes
   int replicates = 1;
   std::vector<Measure> measures;
   std::optional<RefineSettings> refine;
@@ -238,8 +238,8 @@ const std::string& Sweep::title() const {
   return definition_->title;
 }
 
-SweepResult Sweep::outline() const {
-  SweepResult result = definition_->grid;
+SweepGrid Sweep::outline() const {
+  SweepGrid result = definition_->grid;
   result.replicates = definition_->all_replicates();
   for (const Measure& measure : definition_->measures)
     result.measures.push_back({measure.name, measure.unit, measure.meaning, {}, 1, {}});
@@ -248,7 +248,7 @@ SweepResult Sweep::outline() const {
 }
 
 SweepResult Sweep::part(std::vector<std::uint64_t> runs) const {
-  SweepResult result = outline();
+  SweepResult result(outline());
   if (std::adjacent_find(runs.begin(), runs.end(), std::greater_equal<>()) != runs.end() ||
       (!runs.empty() && runs.back() >= result.run_count()))
     throw InputError(title(),
@@ -263,7 +263,7 @@ SweepResult Sweep::plan(const Shard& shard) const {
   if (keep() != Keep::runs)
     throw InputError(title(), std::string("keeps a tally (keep = ") + name_of(keep()) +
                                   "): expected keep = runs, or the command sweep");
-  SweepResult result = outline();
+  SweepResult result(outline());
   const FirstRound first(result, definition_->axes);
   const std::size_t held =
       shard.count > 1 ? shard.cells_of(first.count()) * static_cast<std::size_t>(definition_->replicates)
@@ -289,7 +289,7 @@ Experiment Sweep::experiment(std::size_t cell, int replicate) const {
   return definition_->run(cell, replicate);
 }
 
-void Sweep::require_fits(const SweepResult& stored, const std::string& file) const {
+void Sweep::require_fits(const SweepGrid& stored, const std::string& file) const {
   const auto is_axis = [](const Column& a, const Column& b) {
     return a.long_name == b.long_name && a.values == b.values && a.value_names == b.value_names;
   };

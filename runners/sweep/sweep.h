@@ -30,8 +30,7 @@ class Sweep {
   static Sweep load(const std::string& name_or_file, const std::vector<std::string>& overrides = {});
 
   const std::string& title() const;
-  // Returns axes, replicates, measures and kinds of notes, without runs.
-  SweepResult outline() const;
+  SweepGrid outline() const;
   // Returns a result without values, whose runs of the first round are pending. That of a shard is a part
   // with its runs of the first round. Throws InputError if it would have more than 1e7 runs, or if the sweep
   // keeps a tally.
@@ -46,7 +45,7 @@ class Sweep {
   Experiment experiment(std::size_t cell, int replicate) const;
   // Throws InputError, with the name of the file, for a stored result with other axes, measures or
   // replicates: none of its runs belongs to this sweep.
-  void require_fits(const SweepResult& stored, const std::string& file) const;
+  void require_fits(const SweepGrid& stored, const std::string& file) const;
   // Returns the recordings that the checked cells read, each part once, as named in the configuration.
   const std::vector<InputPart>& inputs() const;
   const std::vector<Measure>& measures() const;

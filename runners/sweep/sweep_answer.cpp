@@ -50,7 +50,7 @@ std::uint64_t seed_of(std::uint64_t seed, const std::vector<SweepAxis>& axes, co
   return seed;
 }
 
-CellStreams known_streams(const SweepResult& result, const std::string& config) {
+CellStreams known_streams(const SweepGrid& grid, const std::string& config) {
   const std::string label = "the configuration of the sweep";
   const Json json = parse_json(config, label);
   const Json refine = json.value("refine", Json::object());
@@ -58,7 +58,7 @@ CellStreams known_streams(const SweepResult& result, const std::string& config) 
       read_axes(json, label, refine.is_object() ? refine.value("levels", 0) : 0);
   const Json experiment = read_experiment(json, label, {});
   const auto has_length = [](const SweepAxis& a, const Column& b) { return a.length() == b.length(); };
-  if (!std::equal(axes.begin(), axes.end(), result.axes.begin(), result.axes.end(), has_length))
+  if (!std::equal(axes.begin(), axes.end(), grid.axes.begin(), grid.axes.end(), has_length))
     throw InputError(label, "has other axes: expected those of the sweep");
   const std::vector<std::size_t> of_draws = axes_with(axes, may_change_streams);
   const std::vector<std::size_t> of_seed =
@@ -68,10 +68,10 @@ CellStreams known_streams(const SweepResult& result, const std::string& config) 
   std::map<std::uint64_t, std::size_t> seeds;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_cell;  // key: seed and noise cell
   CellStreams streams;
-  const std::size_t cells = result.cell_count();
+  const std::size_t cells = grid.cell_count();
   streams.draws.reserve(cells), streams.noise_cell.reserve(cells), streams.seed.reserve(cells);
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    Indices indices = result.axis_indices(cell);
+    Indices indices = grid.axis_indices(cell);
     const auto [draws, is_new] = known.try_emplace(chosen(indices, of_draws));
     if (is_new) {
       Json own = experiment;
@@ -84,7 +84,7 @@ CellStreams known_streams(const SweepResult& result, const std::string& config) 
     streams.seed.push_back(seeds.try_emplace(seed, seeds.size()).first->second);
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (axes[i].common_noise) indices[i] = 0;
-    std::size_t noise_cell = result.cell_at(indices);
+    std::size_t noise_cell = grid.cell_at(indices);
     if (!of_seed.empty())
       noise_cell = first_cell.try_emplace({streams.seed.back(), noise_cell}, cell).first->second;
     streams.noise_cell.push_back(noise_cell);
@@ -111,17 +111,17 @@ bool has_equal_runs(const SweepResult& result, std::size_t cell) {
   return done > 1;
 }
 
-}  // namespace
-
-CellStreams streams_of(const SweepResult& result, const std::string& config) {
+// is_equal: called with a cell if the configuration does not tell; true if its runs are known to be equal.
+template <class IsEqual>
+CellStreams streams(const SweepGrid& grid, const std::string& config, IsEqual&& is_equal) {
   try {
-    return known_streams(result, config);
+    return known_streams(grid, config);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
     CellStreams careful;
-    for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
-      const bool is_fixed = has_equal_runs(result, cell);
+    for (std::size_t cell = 0; cell < grid.cell_count(); ++cell) {
+      const bool is_fixed = is_equal(cell);
       careful.draws.push_back({!is_fixed, !is_fixed});
     }
     careful.noise_cell.assign(careful.draws.size(), 0), careful.seed.assign(careful.draws.size(), 0);
@@ -132,14 +132,25 @@ CellStreams streams_of(const SweepResult& result, const std::string& config) {
   }
 }
 
+}  // namespace
+
+CellStreams streams_of(const SweepResult& result, const std::string& config) {
+  return streams(result, config, [&](std::size_t cell) { return has_equal_runs(result, cell); });
+}
+
+CellStreams streams_of(const SweepGrid& grid, const std::string& config) {
+  return streams(grid, config, [](std::size_t) { return false; });
+}
+
 namespace {
 
 using Axes = std::vector<std::size_t>;  // numbers of axes
 
 // The subject of a question: a sweep with its runs, or a tally.
 struct Asked {
-  const SweepResult& result;  // only the outline if it is a tally
+  const SweepGrid& grid;
   const CellStreams& streams;
+  bool is_refined;
   std::function<EventLimits(const LimitQuestion&)> limits;
   std::function<Table(const LimitQuestion&, std::size_t between, LimitComparison)> limit_comparisons;
   std::function<Table(const std::string& measure, const Axes& by)> means;
@@ -162,42 +173,42 @@ std::size_t number_of_column(const std::vector<Column>& columns, const std::stri
 }
 
 // Returns the axis along which a limit is looked for.
-std::size_t axis_along(const SweepResult& result, const std::string& along) {
+std::size_t axis_along(const SweepGrid& grid, const std::string& along) {
   if (!along.empty()) {
-    const std::size_t axis = number_of_column(result.axes, along, "along");
-    if (has_numbers(result.axes[axis]) && result.axes[axis].length() > 1) return axis;
+    const std::size_t axis = number_of_column(grid.axes, along, "along");
+    if (has_numbers(grid.axes[axis]) && grid.axes[axis].length() > 1) return axis;
     throw InputError("along " + along, "expected an axis of at least two numbers");
   }
-  for (std::size_t axis = result.axes.size(); axis-- > 0;)
-    if (has_numbers(result.axes[axis]) && result.axes[axis].length() > 1) return axis;
+  for (std::size_t axis = grid.axes.size(); axis-- > 0;)
+    if (has_numbers(grid.axes[axis]) && grid.axes[axis].length() > 1) return axis;
   throw InputError("along", "no axis has two numbers: expected a sweep with one, or no limit");
 }
 
 // Returns the axis between whose first and other values something is compared.
-std::size_t axis_between(const SweepResult& result, const std::string& between) {
+std::size_t axis_between(const SweepGrid& grid, const std::string& between) {
   if (!between.empty()) {
-    const std::size_t axis = number_of_column(result.axes, between, "between");
-    if (result.axes[axis].length() > 1) return axis;
+    const std::size_t axis = number_of_column(grid.axes, between, "between");
+    if (grid.axes[axis].length() > 1) return axis;
     throw InputError("between " + between, "expected an axis of at least two values");
   }
-  for (std::size_t axis = 0; axis < result.axes.size(); ++axis)
-    if (!has_numbers(result.axes[axis]) && result.axes[axis].length() > 1) return axis;
-  throw InputError("between", "no axis has names: expected one of " + joined(names_of(result.axes), ", "));
+  for (std::size_t axis = 0; axis < grid.axes.size(); ++axis)
+    if (!has_numbers(grid.axes[axis]) && grid.axes[axis].length() > 1) return axis;
+  throw InputError("between", "no axis has names: expected one of " + joined(names_of(grid.axes), ", "));
 }
 
 // Returns the numbers of the axes `by`, in the order of the sweep; all if none is named.
-Axes axes_by(const SweepResult& result, const std::vector<std::string>& by) {
+Axes axes_by(const SweepGrid& grid, const std::vector<std::string>& by) {
   Axes axes;
-  for (const std::string& name : by) axes.push_back(number_of_column(result.axes, name, "by"));
+  for (const std::string& name : by) axes.push_back(number_of_column(grid.axes, name, "by"));
   if (by.empty())
-    for (std::size_t axis = 0; axis < result.axes.size(); ++axis) axes.push_back(axis);
+    for (std::size_t axis = 0; axis < grid.axes.size(); ++axis) axes.push_back(axis);
   std::sort(axes.begin(), axes.end());
   axes.erase(std::unique(axes.begin(), axes.end()), axes.end());
   return axes;
 }
 
 // rises: the direction that the runs show, or that the question states.
-std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit,
+std::string limit_sentence(const SweepGrid& grid, const LimitQuestion& limit,
                            const std::optional<bool>& rises) {
   char text[80];
   std::snprintf(text, sizeof text, " is above %.6g in %.6g %% of the runs. ", limit.threshold,
@@ -208,7 +219,7 @@ std::string limit_sentence(const SweepResult& result, const LimitQuestion& limit
             "is no limit: state it as direction \"rises\" or \"falls\". "
           : "Along the axis the event becomes " + std::string(*rises ? "more" : "less") + " probable" +
                 (limit.rises ? ", as stated. " : ". ");
-  return "Limit: the " + result.axes[limit.along].name + " at which " + limit.measure + text + direction;
+  return "Limit: the " + grid.axes[limit.along].name + " at which " + limit.measure + text + direction;
 }
 
 std::optional<bool> direction_in(const SweepQuestion& question) {
@@ -224,41 +235,41 @@ bool are_above_0(const Column& axis) {
 }
 
 void add_limits(Figure& figure, const Asked& asked, const SweepQuestion& question, const std::string& event) {
-  const SweepResult& result = asked.result;
-  number_of_column(result.measures, event, "limit");
+  const SweepGrid& grid = asked.grid;
+  number_of_column(grid.measures, event, "limit");
   if (!(question.level > 0 && question.level < 1))
     throw InputError("level " + std::to_string(question.level), "expected a probability between 0 and 1");
   if (!std::isfinite(question.threshold)) throw InputError("above", "expected a finite number");
-  LimitQuestion limit{event, question.threshold, axis_along(result, question.along), question.level,
+  LimitQuestion limit{event, question.threshold, axis_along(grid, question.along), question.level,
                       direction_in(question)};
   const auto [table, rises] = asked.limits(limit);
-  figure.caption += limit_sentence(result, limit, rises);
+  figure.caption += limit_sentence(grid, limit, rises);
   figure.tables.push_back(table);
-  add_answer_limits(figure, table, result.axes.size() - 1, result.axes[limit.along]);
+  add_answer_limits(figure, table, grid.axes.size() - 1, grid.axes[limit.along]);
   if (question.between.empty()) return;
-  const std::size_t between = axis_between(result, question.between);
+  const std::size_t between = axis_between(grid, question.between);
   if (between == limit.along && question.differences.empty())
     throw InputError("between " + question.between, "is the axis of the limit: expected another axis");
   if (between == limit.along) return;
   limit.rises = rises;
   figure.tables.push_back(asked.limit_comparisons(limit, between, LimitComparison::difference));
-  if (are_above_0(result.axes[limit.along]))
+  if (are_above_0(grid.axes[limit.along]))
     figure.tables.push_back(asked.limit_comparisons(limit, between, LimitComparison::ratio));
-  figure.caption += "Differences of limits: from " + result.axes[between].name + " = " +
-                    axis_text(result.axes[between], 0) +
+  figure.caption += "Differences of limits: from " + grid.axes[between].name + " = " +
+                    axis_text(grid.axes[between], 0) +
                     "; the ends of their intervals do not belong to them, and a difference of less than two "
                     "steps of the axis can rarely be shown. ";
 }
 
 void add_means(Figure& figure, const Asked& asked, const std::vector<std::string>& measures, const Axes& by) {
-  const SweepResult& result = asked.result;
+  const SweepGrid& grid = asked.grid;
   for (const std::string& measure : measures) {
-    number_of_column(result.measures, measure, "mean");
+    number_of_column(grid.measures, measure, "mean");
     const Table table = asked.means(measure, by);
     figure.tables.push_back(table);
     add_answer_panel(figure, table, by.size());
   }
-  if (!measures.empty() && !result.round.empty() && by.size() < result.axes.size())
+  if (!measures.empty() && asked.is_refined && by.size() < grid.axes.size())
     figure.caption += "The sweep was refined: a mean over several cells counts only those that have runs. ";
 }
 
@@ -266,11 +277,11 @@ void add_means(Figure& figure, const Asked& asked, const std::vector<std::string
 const char* noise_of_pairs(const Asked& asked, std::size_t between) {
   const CellStreams& streams = asked.streams;
   bool are_fixed = true, is_common = true, are_independent = true;
-  for (std::size_t cell = 0; cell < asked.result.cell_count(); ++cell) {
-    std::vector<std::size_t> indices = asked.result.axis_indices(cell);
+  for (std::size_t cell = 0; cell < asked.grid.cell_count(); ++cell) {
+    std::vector<std::size_t> indices = asked.grid.axis_indices(cell);
     if (indices[between] == 0) continue;
     indices[between] = 0;
-    const std::size_t first = asked.result.cell_at(indices);
+    const std::size_t first = asked.grid.cell_at(indices);
     are_fixed &= streams.is_fixed(cell) && streams.is_fixed(first);
     is_common &= streams.noise_cell[cell] == streams.noise_cell[first];
     are_independent &= streams.are_independent({first, cell});
@@ -281,14 +292,14 @@ const char* noise_of_pairs(const Asked& asked, std::size_t between) {
 }
 
 void add_differences(Figure& figure, const Asked& asked, const SweepQuestion& question, Axes by) {
-  const SweepResult& result = asked.result;
-  const std::size_t between = axis_between(result, question.between);
+  const SweepGrid& grid = asked.grid;
+  const std::size_t between = axis_between(grid, question.between);
   std::erase(by, between);
-  const Column& axis = result.axes[between];
+  const Column& axis = grid.axes[between];
   figure.caption += "Differences: from " + axis.name + " = " + axis_text(axis, 0) +
                     ", in pairs of runs with the same replicate" + noise_of_pairs(asked, between);
   for (const std::string& measure : question.differences) {
-    number_of_column(result.measures, measure, "difference");
+    number_of_column(grid.measures, measure, "difference");
     const Table table = asked.differences(measure, between, by);
     figure.tables.push_back(table);
     add_answer_panel(figure, table, by.size() + 1);
@@ -301,9 +312,9 @@ bool names_no_measure(const SweepQuestion& question) {
 
 // Returns the event whose limit the question wants; an empty text if it wants none.
 std::string event_of(const Asked& asked, const SweepQuestion& question) {
-  const SweepResult& result = asked.result;
+  const SweepGrid& grid = asked.grid;
   if (!question.limit.empty()) return question.limit;
-  const bool has_axis = std::any_of(result.axes.begin(), result.axes.end(), [](const Column& axis) {
+  const bool has_axis = std::any_of(grid.axes.begin(), grid.axes.end(), [](const Column& axis) {
     return has_numbers(axis) && axis.length() > 1;
   });
   if (question.along.empty() && !(names_no_measure(question) && has_axis)) return {};
@@ -347,14 +358,14 @@ std::string default_event(const SweepResult& result) {
 namespace {
 
 Figure answer_of(const Asked& asked, const std::string& config, const SweepQuestion& question) {
-  const SweepResult& result = asked.result;
+  const SweepGrid& grid = asked.grid;
   const Json json = parse_json(config, "the configuration of the sweep");
   Figure figure{kAnswerName, json.is_object() ? json.value("title", std::string()) : "", {}};
   const std::string event = event_of(asked, question);
   refuse_options_without_effect(question, !event.empty());
   if (!event.empty()) add_limits(figure, asked, question, event);
-  const Axes by = axes_by(result, question.by);
-  add_means(figure, asked, names_no_measure(question) ? names_of(result.measures) : question.means, by);
+  const Axes by = axes_by(grid, question.by);
+  add_means(figure, asked, names_no_measure(question) ? names_of(grid.measures) : question.means, by);
   if (!question.differences.empty()) add_differences(figure, asked, question, by);
   figure.caption += adjust_together(figure.tables);
   if (!asked.streams.doubt.empty()) figure.caption += asked.streams.doubt + " ";
@@ -384,7 +395,8 @@ Figure sweep_answer(const SweepResult& result, const std::string& config, const 
   if (result.runs_in(RunState::done).empty()) refuse_without_runs();
   const CellStreams streams = streams_of(result, config);
   return answer_of(
-      {result, streams, [&](const LimitQuestion& limit) { return event_limits(result, limit, streams); },
+      {result, streams, !result.round.empty(),
+       [&](const LimitQuestion& limit) { return event_limits(result, limit, streams); },
        [&](const LimitQuestion& limit, std::size_t between, LimitComparison comparison) {
          return limit_comparisons(result, limit, between, streams, comparison);
        },
@@ -407,22 +419,21 @@ Figure sweep_answer(const SweepTally& tally, const std::string& config, const Sw
   if (!question.differences.empty())
     refuse_for_tally("difference " + question.differences.front(), "a tally does not keep pairs of runs");
   if (!question.between.empty()) refuse_for_tally("between", "a tally does not keep single runs");
-  const SweepResult outline = outline_of(tally);
-  const CellStreams streams = streams_of(outline, config);
+  const CellStreams streams = streams_of(tally, config);
   const auto limits = [&](const LimitQuestion& limit) {
     const std::size_t measure = number_of_event(tally, limit);
     CellCounts counts{[&](std::size_t cell) { return event_counts(tally, measure, cell); }};
     if (!tally.note_kinds.empty()) counts.noted = [&](std::size_t cell) { return noted_runs(tally, cell); };
-    return event_limits(outline, counts, limit, streams);
+    return event_limits(tally, counts, limit, streams);
   };
   const auto means = [&](const std::string& measure, const Axes& by) {
-    return tally_means(tally, outline, number_of_column(tally.measures, measure, "mean"), by, streams);
+    return tally_means(tally, number_of_column(tally.measures, measure, "mean"), by, streams);
   };
   const std::string event = first_event(tally.measures, [&](std::size_t measure) {
     return std::any_of(tally.tallies.begin(), tally.tallies.end(),
                        [&](const CellTally& cell) { return cell.measures[measure].values > 0; });
   });
-  return answer_of({outline, streams, limits, {}, means, {}, event}, config, question);
+  return answer_of({tally, streams, false, limits, {}, means, {}, event}, config, question);
 }
 
 }  // namespace remote_touch

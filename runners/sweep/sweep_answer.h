@@ -16,9 +16,9 @@ namespace remote_touch {
 // every deviation and probability, the axes with common noise, and seeds. So they are known for every stored
 // sweep and tally, of any version. If the configuration cannot be read, as that of an experiment with a scene
 // that only the program that made it knows, `doubt` says so; then runs of one replicate count as one, and so
-// do the runs of a cell that are equal in all measures. Only the outline of the result is needed; without
-// values no runs count as equal.
+// do the runs of a cell that are equal in all measures, if they are known.
 CellStreams streams_of(const SweepResult& result, const std::string& config);
+CellStreams streams_of(const SweepGrid& grid, const std::string& config);
 
 // A question names measures and axes. A question that names no measure asks for the limit of the event that
 // default_event() finds and for the means of all measures. Options without an effect are refused.

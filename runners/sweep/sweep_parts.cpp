@@ -144,7 +144,7 @@ std::optional<Shard> shard_from_environment(const std::function<const char*(cons
   return checked(*rank + 1, *size, "OMPI_COMM_WORLD_RANK = " + std::to_string(*rank));
 }
 
-std::vector<std::size_t> checked_cells(const SweepResult& grid) {
+std::vector<std::size_t> checked_cells(const SweepGrid& grid) {
   const std::size_t all = grid.cell_count(), spread = std::min(all, kMaxChecked);
   std::vector<std::size_t> cells;
   for (std::size_t i = 0; i < spread; ++i)

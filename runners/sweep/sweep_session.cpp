@@ -238,10 +238,9 @@ double seconds_since(Clock::time_point start) {
 }
 
 SweepTally without_runs(const Sweep& sweep) {
-  const SweepResult outline = sweep.outline();
   SweepTally tally;
-  tally.axes = outline.axes, tally.replicates = outline.replicates, tally.measures = outline.measures;
-  tally.note_kinds = outline.note_kinds, tally.keeps_events = sweep.keep() == Keep::events;
+  static_cast<SweepGrid&>(tally) = sweep.outline();
+  tally.keeps_events = sweep.keep() == Keep::events;
   return tally;
 }
 

@@ -104,7 +104,7 @@ std::string subject_of(const std::filesystem::path& folder, const Baseline& base
 namespace {
 
 std::string configuration_of_replay(const Sweep& sweep, const Recipe& replay) {
-  const SweepResult outline = sweep.outline();
+  const SweepGrid outline = sweep.outline();
   const std::vector<std::size_t>& place = replay.cell;
   if (place.size() != outline.axes.size() || replay.replicate < 0 || replay.replicate >= outline.replicates)
     return {};

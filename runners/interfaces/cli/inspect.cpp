@@ -285,8 +285,7 @@ std::string extent_of(const std::string& name, const Column& column, const Sweep
 
 void print_arrays(const SweepTally& tally, const Hdf5Content& content) {
   const bool is_whole = tally.cells.size() == tally.cell_count();
-  const std::string cells =
-      is_whole ? extent_text(outline_of(tally)) : std::to_string(tally.cells.size()) + " cells";
+  const std::string cells = is_whole ? extent_text(tally) : std::to_string(tally.cells.size()) + " cells";
   std::printf(
       "  arrays below /tally: extent (%s: a value of each cell%s), unit, meaning, and range of the values\n",
       cells.c_str(), is_whole ? "" : " with runs");
@@ -309,16 +308,16 @@ void print_arrays(const SweepTally& tally, const Hdf5Content& content) {
 void print_tally(const std::string& file, const Hdf5Content& content) {
   const StoredTally stored = read_tally(Hdf5Reader(file));
   const SweepTally& tally = stored.tally;
-  const CellTally all = over_all_cells(tally);
+  const CellTally all = tally.over_all_cells();
   std::printf("  tally        %s cells, %d replicates each: %lld of %llu runs done, %lld failed\n",
-              extent_text(outline_of(tally)).c_str(), tally.replicates, static_cast<long long>(all.done),
+              extent_text(tally).c_str(), tally.replicates, static_cast<long long>(all.done),
               static_cast<unsigned long long>(tally.run_count()), static_cast<long long>(all.failed));
   std::puts("  measures over all of these runs: mean, least .. greatest, unit, median, meaning");
   for (std::size_t i = 0; i < all.measures.size(); ++i)
     std::printf("    %-22s %s; %s\n", tally.measures[i].name.c_str(),
                 measure_text(all.measures[i], tally.measures[i].units).c_str(),
                 tally.measures[i].long_name.c_str());
-  print_equal_runs(outline_of(tally), attribute(stored.attributes, "config"));
+  print_equal_runs(tally, attribute(stored.attributes, "config"));
   print_arrays(tally, content);
 }
 

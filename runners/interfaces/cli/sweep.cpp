@@ -145,7 +145,7 @@ int dry_run(const Sweep& sweep, const Work& work, const CommandLine& line, const
   for (const std::string& note : note_lines(sample.tried))
     std::printf("  note on the runs that were tried: %s\n", note.c_str());
   print_replaced(request.overrides);
-  if (request.strict) refuse_notes(sample.tried);
+  if (request.strict) refuse_notes(note_lines(sample.tried));
   return kDone;
 }
 
@@ -163,7 +163,7 @@ int dry_run_of_runs(const Sweep& sweep, const SweepPlan& plan, const CommandLine
 // Tries first replicates of cells of the shard.
 int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const TallyPlan& plan, const CommandLine& line,
                      const SweepRequest& request) {
-  const SweepResult outline = sweep.outline();
+  const SweepGrid outline = sweep.outline();
   const std::size_t cells = shard.cells_of(outline.cell_count());
   const std::uint64_t done = plan.tally.held.count(), left = plan.own_runs - done;
   std::vector<std::uint64_t> first_runs;
@@ -198,7 +198,7 @@ int make_runs(const CommandLine& line, const SweepRequest& request, const std::s
     return print_interrupted(file, session.result().runs_in(RunState::done).size());
   const int code = print_summary(file, session.result());
   print_equal_runs(session.result(), config);
-  if (request.strict) refuse_notes(session.result());
+  if (request.strict) refuse_notes(note_lines(session.result()));
   return code;
 }
 
@@ -207,8 +207,8 @@ int make_tally(const CommandLine& line, const SweepRequest& request, const std::
   if (!run_session(line, request, file, session))
     return print_interrupted(file, session.tally().held.count());
   const int code = print_summary(file, session.tally(), session.digest());
-  print_equal_runs(outline_of(session.tally()), config);
-  if (request.strict) refuse_notes(session.tally());
+  print_equal_runs(session.tally(), config);
+  if (request.strict) refuse_notes(note_lines(session.tally()));
   return code;
 }
 
@@ -247,7 +247,7 @@ int command_merge(const CommandLine& line, const MergeCommand& command) {
   }
   std::optional<SweepSummary> summary;
   const std::string digest = merge_shards(request, [&](const SweepResult& block) {
-    if (!summary) summary.emplace(block);
+    if (!summary) summary.emplace(grid_of(block));
     summary->add(block);
   });
   const int code = summary->print(command.output, digest);

@@ -18,16 +18,10 @@ constexpr std::size_t kMaxFailures = 20;  // number that is printed
 
 }  // namespace
 
-std::string extent_text(const SweepResult& result) {
+std::string extent_text(const SweepGrid& grid) {
   std::string text;
-  for (const Column& axis : result.axes) text += (text.empty() ? "" : " x ") + std::to_string(axis.length());
+  for (const Column& axis : grid.axes) text += (text.empty() ? "" : " x ") + std::to_string(axis.length());
   return text;
-}
-
-SweepSummary::SweepSummary(const SweepResult& outline) : ranges_(outline.measures.size()) {
-  outline_.axes = outline.axes, outline_.replicates = outline.replicates;
-  for (const Column& measure : outline.measures)
-    outline_.measures.push_back({measure.name, measure.units, measure.long_name, {}});
 }
 
 // Counts that were there come from lower runs.
@@ -78,40 +72,39 @@ std::string SweepSummary::text_of(const Range& range, const std::string& units) 
 }
 
 int SweepSummary::print(const std::string& file, const std::string& digest) const {
-  std::printf("%s: %s cells, %zu runs done, %zu failed", printable(file).c_str(),
-              extent_text(outline_).c_str(), done_, failed_);
+  std::printf("%s: %s cells, %zu runs done, %zu failed", printable(file).c_str(), extent_text(grid_).c_str(),
+              done_, failed_);
   if (rounds_ > 0) std::printf(" in %d rounds", rounds_);
-  const std::size_t elsewhere = elsewhere_ + (rounds_ == 0 ? outline_.run_count() - held_ : 0);
+  const std::size_t elsewhere = elsewhere_ + (rounds_ == 0 ? grid_.run_count() - held_ : 0);
   if (elsewhere > 0) std::printf(", %zu in other shards", elsewhere);
   std::printf(", digest %s\n", digest.c_str());
   for (std::size_t i = 0; done_ > 0 && i < ranges_.size(); ++i) {
-    const Column& measure = outline_.measures[i];
+    const Column& measure = grid_.measures[i];
     std::printf("  %-20s %s\n", measure.name.c_str(), text_of(ranges_[i], measure.units).c_str());
   }
-  for (const std::string& line : note_lines(outline_, notes_, done_))
-    std::printf("  note: %s\n", line.c_str());
+  for (const std::string& line : note_lines(grid_, notes_, done_)) std::printf("  note: %s\n", line.c_str());
   for (const std::string& failure : failures_) std::printf("  failed: %s\n", failure.c_str());
   if (failed_ > failures_.size())
     std::printf("  and %zu more, in the dataset /sweep/error\n", failed_ - failures_.size());
   return failed_ == 0 ? kDone : kCheckFailed;
 }
 
-void print_equal_runs(const SweepResult& outline, const std::string& config) {
+void print_equal_runs(const SweepGrid& grid, const std::string& config) {
   constexpr std::size_t kMostCells = 1'000'000;
-  if (outline.replicates == 1 || outline.cell_count() > kMostCells) return;
-  const CellStreams streams = streams_of(outline, config);
+  if (grid.replicates == 1 || grid.cell_count() > kMostCells) return;
+  const CellStreams streams = streams_of(grid, config);
   std::size_t fixed = 0, first = 0;
-  for (std::size_t cell = outline.cell_count(); cell-- > 0;)
+  for (std::size_t cell = grid.cell_count(); cell-- > 0;)
     if (streams.doubt.empty() && streams.is_fixed(cell)) ++fixed, first = cell;
   if (fixed > 0)
     std::printf(
         "  note: %zu of %zu cells draw no random numbers: their %d replicates are equal, and analyse "
         "counts them as one run (the first: --cell %s)\n",
-        fixed, outline.cell_count(), outline.replicates, cell_text(outline, first).c_str());
+        fixed, grid.cell_count(), grid.replicates, cell_text(grid, first).c_str());
 }
 
 int print_summary(const std::string& file, const SweepResult& result) {
-  SweepSummary summary(result);
+  SweepSummary summary(grid_of(result));
   summary.add(result);
   return summary.print(file, digest(result));
 }
@@ -121,12 +114,6 @@ namespace {
 constexpr std::size_t kMaxFailedCells = 20;  // number that is printed
 
 }  // namespace
-
-CellTally over_all_cells(const SweepTally& tally) {
-  CellTally all(tally.layout());
-  for (const CellTally& cell : tally.tallies) all.add(cell);
-  return all;
-}
 
 std::string measure_text(const MeasureTally& all, const std::string& units) {
   if (all.values == 0) return "no value in any run";
@@ -140,14 +127,14 @@ std::string measure_text(const MeasureTally& all, const std::string& units) {
 
 namespace {
 
-void print_failures(const SweepTally& tally, const SweepResult& outline) {
+void print_failures(const SweepTally& tally) {
   std::size_t printed = 0, cells = 0;
   for (const CellTally& cell : tally.tallies) {
     if (cell.failed == 0) continue;
     ++cells;
     if (++printed > kMaxFailedCells) continue;
     std::printf("  failed: %lld runs of one cell; the first is %s: %s\n", static_cast<long long>(cell.failed),
-                option_of_run(outline, static_cast<std::size_t>(cell.first_failed)).c_str(),
+                option_of_run(tally, static_cast<std::size_t>(cell.first_failed)).c_str(),
                 cell.first_error.c_str());
   }
   if (cells > kMaxFailedCells)
@@ -157,10 +144,9 @@ void print_failures(const SweepTally& tally, const SweepResult& outline) {
 }  // namespace
 
 int print_summary(const std::string& file, const SweepTally& tally, const std::string& digest) {
-  const SweepResult outline = outline_of(tally);
-  const CellTally all = over_all_cells(tally);
+  const CellTally all = tally.over_all_cells();
   std::printf("%s: %s cells, %lld runs done, %lld failed", printable(file).c_str(),
-              extent_text(outline).c_str(), static_cast<long long>(all.done),
+              extent_text(tally).c_str(), static_cast<long long>(all.done),
               static_cast<long long>(all.failed));
   if (const std::uint64_t others = tally.run_count() - tally.held.count(); others > 0)
     std::printf(", %llu not made here", static_cast<unsigned long long>(others));
@@ -169,7 +155,7 @@ int print_summary(const std::string& file, const SweepTally& tally, const std::s
     std::printf("  %-20s %s\n", tally.measures[i].name.c_str(),
                 measure_text(all.measures[i], tally.measures[i].units).c_str());
   for (const std::string& line : note_lines(tally)) std::printf("  note: %s\n", line.c_str());
-  print_failures(tally, outline);
+  print_failures(tally);
   return all.failed == 0 ? kDone : kCheckFailed;
 }
 

@@ -182,7 +182,7 @@ bool describe_sweep(const std::string& name, std::FILE* out) {
   for (const EmbeddedText& stored : embedded_sweeps()) {
     if (name != stored.name) continue;
     const Sweep sweep = Sweep::load(name);
-    const SweepResult outline = sweep.outline();
+    const SweepGrid outline = sweep.outline();
     const std::size_t runs =
         sweep.keep() == Keep::runs ? sweep.plan().runs_in(RunState::pending).size() : outline.run_count();
     std::fprintf(out, "%s: a sweep: %s\n%s\n", stored.name, sweep.title().c_str(),

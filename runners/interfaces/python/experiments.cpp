@@ -166,7 +166,8 @@ StoredSweep stored_sweep(const std::string& file) {
 StoredSweep sweep_of(const TextAttributes& attributes) {
   StoredSweep stored;
   stored.attributes = provenance_of(attributes);
-  stored.result = Sweep::from_json(attribute(attributes, "config"), "config of the data set").outline();
+  stored.result =
+      SweepResult(Sweep::from_json(attribute(attributes, "config"), "config of the data set").outline());
   return stored;
 }
 

@@ -145,9 +145,7 @@ std::vector<RunState> states_of(const std::vector<std::int32_t>& numbers) {
 // Calls `each` with the runs of the spool, in blocks; with an empty block if there are none.
 void for_each_block(RunSpool& spool, const EachBlock& each) {
   const SweepResult& outline = spool.outline();
-  SweepResult block;
-  block.axes = outline.axes, block.replicates = outline.replicates;
-  block.measures = outline.measures, block.note_kinds = outline.note_kinds;
+  SweepResult block(grid_of(outline));
   for (std::size_t first = 0; first == 0 || first < outline.held_count(); first += RunSpool::kWindow) {
     const std::size_t count = std::min(RunSpool::kWindow, outline.held_count() - first);
     const auto numbers = [&](const char* array) {

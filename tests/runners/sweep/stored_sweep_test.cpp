@@ -33,13 +33,13 @@ SweepResult two_by_three(int replicates) {
 TEST(SweepNotes, AreCountedByKind) {
   SweepResult result = two_by_three(1);
   EXPECT_EQ(note_lines(result), Lines{});
-  EXPECT_NO_THROW(refuse_notes(result));
+  EXPECT_NO_THROW(refuse_notes(note_lines(result)));
   result.notes = {1, 0, 0, 0, 3, 1};
   EXPECT_EQ(
       note_lines(result),
       (Lines{"2 of 5 runs: no contact: no point was touched and no force was felt (the first: --cell 1,1)",
              "1 of 5 runs: a kind of another program (the first: --cell 1,1)"}));
-  EXPECT_EQ(refusal([&] { refuse_notes(result); }),
+  EXPECT_EQ(refusal([&] { refuse_notes(note_lines(result)); }),
             "--strict: " + note_lines(result)[0] + "; " + note_lines(result)[1]);
 }
 

@@ -22,7 +22,6 @@ constexpr std::size_t kMiddle = 1;  // spacing of Fig 4.12, 1.5 mm
 
 struct Study {
   SweepTally tally;
-  SweepResult outline;
   LawAxes axes;
   std::vector<LawLimit> half, few;  // limits at which 50 % and 5 % have popped through
 
@@ -33,12 +32,11 @@ struct Study {
 };
 
 Study study_of(SweepTally tally) {
-  Study study{std::move(tally), {}, {}, {}, {}};
-  study.outline = outline_of(study.tally);
-  study.axes = law_axes(study.outline);
+  Study study{std::move(tally), {}, {}, {}};
+  study.axes = law_axes(study.tally);
   const CellCounts counts{[&](std::size_t cell) { return event_counts(study.tally, 0, cell); }};
-  study.half = law_limits(study.outline, counts, 0.5);
-  study.few = law_limits(study.outline, counts, 0.05);
+  study.half = law_limits(study.tally, counts, 0.5);
+  study.few = law_limits(study.tally, counts, 0.05);
   return study;
 }
 
@@ -103,7 +101,7 @@ void add_map(Figure& figure, const Study& study, std::size_t spacing) {
   for (std::size_t n = 0; n < study.axes.noise.size(); ++n)
     for (std::size_t a = 0; a < study.axes.acceleration.size(); ++a)
       rows.push_back({study.axes.noise[n], study.axes.acceleration[a],
-                      study.share(study.outline.cell_at({spacing, kSpeed, n, a}))});
+                      study.share(study.tally.cell_at({spacing, kSpeed, n, a}))});
   const std::string title = "spacing " + two_digits(study.axes.spacing[spacing]) + " r_c";
   figure.tables.push_back(table_of(name, "share of lifts that pop through, " + title,
                                    {{"noise", "r_c", "standard deviation of the noise"},
@@ -130,9 +128,9 @@ int different_cells(FigureContext& context, const Study& study, const Sweep& swe
   const std::array<std::array<std::size_t, 4>, 3> chosen = {{{0, 1, 19, 20}, {2, 0, 7, 11}, {4, 3, 3, 2}}};
   int different = 0;
   for (const auto& indices : chosen) {
-    const std::size_t cell = study.outline.cell_at({indices.begin(), indices.end()});
+    const std::size_t cell = study.tally.cell_at({indices.begin(), indices.end()});
     std::vector<std::uint64_t> runs;
-    for (int i = 0; i < study.outline.replicates; ++i) runs.push_back(study.outline.run(cell, i));
+    for (int i = 0; i < study.tally.replicates; ++i) runs.push_back(study.tally.run(cell, i));
     const std::vector<double> popped = context.part(sweep, std::move(runs)).measure("popped_through");
     const auto events = std::count(popped.begin(), popped.end(), 1.0);
     different += events != event_counts(study.tally, 0, cell).events;
@@ -212,7 +210,7 @@ void add_claims(Figure& figure, const Study& study, const PopThroughLaw& law, co
   claims.at_least(
       "a start above r_c f_c with points 0.3 r_c apart and noise of 0.05 r_c is lost at the first touch: "
       "share that pops through at the least acceleration",
-      study.share(study.outline.cell_at({kMiddle, 3, 0, 0})), 0.5, "fraction");
+      study.share(study.tally.cell_at({kMiddle, 3, 0, 0})), 0.5, "fraction");
   claims.at_most("30 steps of gamma = 0.3 give the limits of 8 steps of 0.5: largest difference of three",
                  to_30_steps, 0.1, "r_c f_c^2");
 }

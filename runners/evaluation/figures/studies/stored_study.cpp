@@ -32,20 +32,20 @@ std::vector<double> in_units(const Column& axis, const std::string& name, double
 
 }  // namespace
 
-LawAxes law_axes(const SweepResult& outline) {
-  if (outline.axes.size() != 4) throw InputError("a study of pop-through", "expected four axes");
+LawAxes law_axes(const SweepGrid& grid) {
+  if (grid.axes.size() != 4) throw InputError("a study of pop-through", "expected four axes");
   const double speed = kLawRadius_m * kLawRate_hz, acceleration = speed * kLawRate_hz;
-  return {in_units(outline.axes[0], "spacing_m", kLawRadius_m),
-          in_units(outline.axes[1], "start_velocity_m_per_s", speed),
-          in_units(outline.axes[2], "noise_sigma_m", kLawRadius_m),
-          in_units(outline.axes[kAccelerations], "acceleration_m_per_s2", acceleration)};
+  return {in_units(grid.axes[0], "spacing_m", kLawRadius_m),
+          in_units(grid.axes[1], "start_velocity_m_per_s", speed),
+          in_units(grid.axes[2], "noise_sigma_m", kLawRadius_m),
+          in_units(grid.axes[kAccelerations], "acceleration_m_per_s2", acceleration)};
 }
 
-std::vector<LawLimit> law_limits(const SweepResult& outline, const CellCounts& events, double level) {
-  const LawAxes axes = law_axes(outline);
+std::vector<LawLimit> law_limits(const SweepGrid& grid, const CellCounts& events, double level) {
+  const LawAxes axes = law_axes(grid);
   // The lifts of a cell are independent, and cells share no noise.
-  const Table table = event_limits(outline, events, {"popped_through", 0.5, kAccelerations, level, true},
-                                   independent_streams(outline.cell_count()))
+  const Table table = event_limits(grid, events, {"popped_through", 0.5, kAccelerations, level, true},
+                                   independent_streams(grid.cell_count()))
                           .table;
   const auto &limit = numbers(table, "value"), &low = numbers(table, "low"), &high = numbers(table, "high");
   const double unit = kLawRadius_m * kLawRate_hz * kLawRate_hz;

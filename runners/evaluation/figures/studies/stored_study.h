@@ -32,7 +32,7 @@ struct LawAxes {
 };
 // Throws InputError unless the axes are spacing_m, start_velocity_m_per_s, noise_sigma_m and
 // acceleration_m_per_s2.
-LawAxes law_axes(const SweepResult& outline);
+LawAxes law_axes(const SweepGrid& grid);
 
 // The acceleration at which a share of the lifts has popped through, for each spacing, speed and noise; the
 // ends of its 95 % interval. NaN if it is outside the axis. See event_limits.h.
@@ -41,7 +41,7 @@ struct LawLimit {
   double limit = 0, low = 0, high = 0;            // r_c f_c^2
 };
 // The limits of all combinations, the noise running fastest. events: the count of lifts that popped through.
-std::vector<LawLimit> law_limits(const SweepResult& outline, const CellCounts& events, double level);
+std::vector<LawLimit> law_limits(const SweepGrid& grid, const CellCounts& events, double level);
 
 // Returns the known limits at one speed, of the chosen spacings.
 std::vector<LimitPoint> points_at(const LawAxes& axes, const std::vector<LawLimit>& limits, std::size_t speed,

@@ -33,7 +33,7 @@ TEST(StoredStudies, HaveAName) {
 
 // Ten of ten lifts pop through from a known acceleration on, which depends on the spacing and the noise.
 TEST(LawLimits, AreWhereTheEventBegins) {
-  SweepResult outline;
+  SweepGrid outline;
   const auto axis = [&](const char* name, std::vector<double> values) {
     outline.axes.push_back({name, "1", "", std::move(values)});
   };
