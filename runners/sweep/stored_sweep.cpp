@@ -286,13 +286,4 @@ std::string damage_text(const StoredSweep& stored) {
          " left out, and the command of the sweep makes " + (is_one ? "it" : "them") + " again";
 }
 
-StoredSweep read_runs_or_outline(const std::filesystem::path& file) {
-  const Hdf5Reader reader(file);
-  if (!is_tally(reader)) return read_sweep(file);
-  StoredTally tally = read_tally(reader);
-  SweepResult none(static_cast<SweepGrid&>(tally.tally));
-  none.part.emplace();
-  return {none, std::move(tally.attributes)};
-}
-
 }  // namespace remote_touch

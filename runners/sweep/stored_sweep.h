@@ -79,9 +79,6 @@ class NoteCounts {
 StoredSweep read_stored_sweep(const Hdf5Reader& file);
 StoredSweep read_stored_sweep(const std::filesystem::path& file);
 
-// Reads a sweep as read_sweep() does. For a tally, which keeps no runs, returns the outline.
-StoredSweep read_runs_or_outline(const std::filesystem::path& file);
-
 // Returns one line with the number of runs of a sweep in progress that have a wrong checksum; empty if there
 // are none.
 std::string damage_text(const StoredSweep& stored);

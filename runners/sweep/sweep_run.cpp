@@ -117,27 +117,27 @@ namespace {
 
 // Returns the provenance of the replayed run: from the recipe of its sweep or, if that has none, from the
 // text of its command.
-TextAttributes origin(const StoredSweep& stored, std::size_t cell, const Replay& replay, int replicate,
-                      const std::string& isa, const std::string& inputs) {
+TextAttributes origin(const TextAttributes& of_sweep, const SweepGrid& grid, std::size_t run,
+                      const Replay& replay, const std::string& isa, const std::string& inputs) {
+  const std::size_t cell = grid.cell_of(run);
+  const int replicate = grid.replicate_of(run);
   const std::string config = replay.experiment.to_json();
-  if (std::optional<Recipe> recipe = recipe_of(stored.attributes)) {
+  if (std::optional<Recipe> recipe = recipe_of(of_sweep)) {
     recipe->action = "replay";
-    recipe->cell = stored.result.axis_indices(cell), recipe->replicate = replicate;
+    recipe->cell = grid.axis_indices(cell), recipe->replicate = replicate;
     return provenance(config, *recipe, isa, inputs);
   }
-  const std::string command = attribute(stored.attributes, "command") + "; " + program_text() +
-                              " replay --cell " + cell_text(stored.result, cell) + " --replicate " +
-                              std::to_string(replicate);
+  const std::string command = attribute(of_sweep, "command") + "; " + program_text() + " replay --cell " +
+                              cell_text(grid, cell) + " --replicate " + std::to_string(replicate);
   return provenance(config, command, isa, inputs);
 }
 
 }  // namespace
 
-Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run, SimulationOptions options,
-                  const std::filesystem::path& output, Strict strict) {
-  const std::size_t cell = stored.result.cell_of(run);
-  const int replicate = stored.result.replicate_of(run);
-  Replay replay{sweep.experiment(cell, replicate), {}, {}, {}, {}};
+Replay replay_run(const TextAttributes& attributes, const Sweep& sweep, std::size_t run,
+                  SimulationOptions options, const std::filesystem::path& output, Strict strict) {
+  const SweepGrid grid = sweep.outline();
+  Replay replay{sweep.experiment(grid.cell_of(run), grid.replicate_of(run)), {}, {}, {}, {}};
   options.hash_frames = true;
   options.find_true_contact = sweep.needs_true_contact();
   const std::string inputs = input_hashes(replay.experiment.inputs());
@@ -147,7 +147,7 @@ Replay replay_run(const StoredSweep& stored, const Sweep& sweep, std::size_t run
   add_unknown_outcome(sweep.measures(), replay.trace, replay.report.notes);
   if (strict == Strict::yes) refuse_notes(replay.report);
   const std::string isa = (options.kernels ? *options.kernels : kernels_for(best_isa())).isa;
-  replay.attributes = origin(stored, cell, replay, replicate, isa, inputs);
+  replay.attributes = origin(attributes, grid, run, replay, isa, inputs);
   replay.experiment.add_depth_device(replay.attributes);
   add_report(replay.attributes, replay.report);
   const std::vector<Column> columns = replay.trace.columns();

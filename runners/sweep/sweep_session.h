@@ -13,6 +13,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "core/kernels/kernels.h"
+#include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_parts.h"
 #include "runners/sweep/sweep_run.h"
@@ -77,6 +78,7 @@ class SweepSession {
   void forget(const std::vector<std::size_t>& places);
 
   const SweepResult& result() const { return plan_.result; }
+  KeptSweep kept() const { return {plan_.result, plan_.attributes}; }
 
  private:
   bool add_round_if_whole();
@@ -131,7 +133,7 @@ class TallySession {
   void distrust(const std::string& why);
 
   const SweepTally& tally() const { return plan_.tally; }
-  const TextAttributes& attributes() const { return plan_.attributes; }  // the file's, without the digest
+  KeptSweep kept() const { return {plan_.tally, plan_.attributes, distrust_of(plan_.attributes)}; }
   std::uint64_t own_runs() const { return plan_.own_runs; }
   const std::string& digest() const { return digest_; }  // digest of the file, after run()
 

@@ -132,7 +132,7 @@ std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const Sto
     SimulationOptions options;
     options.kernels = &kernels, options.stop = stop;
     if (!is_there(file, sweep.sweep.experiment(level, failure.replicate), stored))
-      replay_run(stored, sweep.sweep, run, options, file);
+      replay_run(stored.attributes, sweep.sweep, run, options, file);
     return failure;
   }
   return {};

@@ -5,7 +5,6 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
-#include <optional>
 
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/figures/result_file.h"
@@ -24,6 +23,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
+#include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/shards/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
@@ -57,17 +57,19 @@ struct RecoverRequest {
 };
 
 // Prints each measure beside the stored one. Returns true if they agree bit for bit, or nothing is stored.
-bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, const Trace& trace) {
-  const std::optional<std::size_t> place = result.place_of(run);
-  const bool stored = place && result.state[*place] == RunState::done;
+bool agrees(const Sweep& sweep, const KeptSweep& kept, std::size_t run, const Trace& trace) {
+  const auto* const result = std::get_if<SweepResult>(&kept.kept);
+  const std::size_t place = result ? result->place_of(run).value_or(result->state.size()) : 0;
+  const bool stored = result && place < result->state.size() && result->state[place] == RunState::done;
   bool same = true;
-  for (std::size_t i = 0; i < result.measures.size(); ++i) {
+  for (std::size_t i = 0; i < sweep.measures().size(); ++i) {
+    const Column& measure = kept.grid().measures[i];
     const double now = value_of(sweep.measures()[i], trace);
-    const double then = stored ? std::get<std::vector<double>>(result.measures[i].values)[*place] : 0;
+    const double then = stored ? std::get<std::vector<double>>(result->measures[i].values)[place] : 0;
     const bool equal = std::bit_cast<std::uint64_t>(now) == std::bit_cast<std::uint64_t>(then);
     same &= equal || !stored;
-    std::printf("  %-20s %12.6g %-6s %s", result.measures[i].name.c_str(), now,
-                result.measures[i].units.c_str(), stored ? equal ? "as stored\n" : "" : "not stored\n");
+    std::printf("  %-20s %12.6g %-6s %s", measure.name.c_str(), now, measure.units.c_str(),
+                stored ? equal ? "as stored\n" : "" : "not stored\n");
     if (stored && !equal) std::printf("stored %.17g, now %.17g\n", then, now);
   }
   return same;
@@ -75,7 +77,7 @@ bool agrees(const Sweep& sweep, const SweepResult& result, std::size_t run, cons
 
 // Prints possible reasons for different values: the commit that made the sweep, and the recordings of this
 // run that have changed since.
-void print_origin(const StoredSweep& stored, const Sweep& sweep, const Experiment& experiment) {
+void print_origin(const KeptSweep& stored, const Sweep& sweep, const Experiment& experiment) {
   std::printf("  the sweep was made by git_commit %s\n", attribute(stored.attributes, "git_commit").c_str());
   std::vector<InputPart> parts;  // all parts that the sweep reads, because one hash covers them
   for (const InputPart& part : sweep.inputs())
@@ -99,19 +101,10 @@ void require_same_recordings(const std::string& file, const Sweep& sweep, const 
                                input.now + "): expected the same recording");
 }
 
-Recheck recheck_of(const std::string& file, const RecheckOptions& options, TextAttributes& attributes) {
-  if (const Hdf5Reader reader(file); is_tally(reader)) {
-    StoredTally stored = read_tally(reader);
-    attributes = std::move(stored.attributes);
-    const Sweep sweep = sweep_of(attributes, file);
-    require_same_recordings(file, sweep, attributes);
-    return recheck(stored.tally, sweep, options);
-  }
-  StoredSweep stored = read_sweep(file);
-  attributes = std::move(stored.attributes);
-  const Sweep sweep = sweep_of(attributes, file);
-  require_same_recordings(file, sweep, attributes);
-  return recheck(stored.result, sweep, options);
+Recheck recheck_of(const KeptSweep& stored, const std::string& file, const RecheckOptions& options) {
+  const Sweep sweep = sweep_of(stored.attributes, file);
+  require_same_recordings(file, sweep, stored.attributes);
+  return std::visit([&](const auto& kept) { return recheck(kept, sweep, options); }, stored.kept);
 }
 
 // Prints the build that made the file, if it is another one: a reason for different bits.
@@ -135,28 +128,28 @@ void print_distrust(const TextAttributes& attributes) {
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
   const FileLock lock = lock_output(line, request.output, {request.sweep});
-  const StoredSweep stored = read_runs_or_outline(request.sweep);
+  const KeptSweep stored = read_kept_sweep(request.sweep, Extent::as_stored);
   const Sweep sweep = sweep_of(stored.attributes, request.sweep);
-  const SweepResult& result = stored.result;
-  sweep.require_fits(result, request.sweep);
-  const std::size_t cell = cell_of({"--cell", request.cell}, result);
-  if (request.replicate < 0 || request.replicate >= result.replicates)
+  const SweepGrid& grid = stored.grid();
+  sweep.require_fits(grid, request.sweep);
+  const std::size_t cell = cell_of({"--cell", request.cell}, grid);
+  if (request.replicate < 0 || request.replicate >= grid.replicates)
     throw InputError("--replicate " + std::to_string(request.replicate),
-                     "expected 0 to " + std::to_string(result.replicates - 1));
+                     "expected 0 to " + std::to_string(grid.replicates - 1));
 
   Progress progress("replay", line.quiet);
   SimulationOptions options;
   options.kernels = line.kernels;
   options.stop = line.stop;
   options.progress = [&](double fraction) { progress.update(fraction); };
-  const std::size_t run = result.run(cell, request.replicate);
-  const Replay replay =
-      replay_run(stored, sweep, run, options, request.output, request.strict ? Strict::yes : Strict::no);
+  const std::size_t run = grid.run(cell, request.replicate);
+  const Replay replay = replay_run(stored.attributes, sweep, run, options, request.output,
+                                   request.strict ? Strict::yes : Strict::no);
   std::printf("%s: %zu ticks, digest %s\n", printable(request.output).c_str(), replay.trace.length(),
               replay.digest.c_str());
   std::fputs(text_of(replay.report).c_str(), stdout);
   print_distrust(stored.attributes);
-  if (agrees(sweep, result, run, replay.trace)) return kDone;
+  if (agrees(sweep, stored, run, replay.trace)) return kDone;
   print_origin(stored, sweep, replay.experiment);
   return kCheckFailed;
 }
@@ -165,9 +158,9 @@ int command_recheck(const CommandLine& line, const RecheckRequest& request) {
   int code = kDone;
   for (const std::string& file : request.sweeps) {
     Progress progress("recheck " + file, line.quiet);
-    TextAttributes attributes;
+    const KeptSweep stored = read_kept_sweep(file, Extent::as_stored);
     const auto show = [&](std::size_t done, std::size_t total) { progress.update(done, total, 0, "runs"); };
-    const Recheck check = recheck_of(file, {line.kernels, line.stop, show}, attributes);
+    const Recheck check = recheck_of(stored, file, {line.kernels, line.stop, show});
     progress.clear();
     std::printf("%s: %zu run%s made again%s, ", printable(file).c_str(), check.made,
                 check.made == 1 ? "" : "s", extent_of(check).c_str());
@@ -175,9 +168,9 @@ int command_recheck(const CommandLine& line, const RecheckRequest& request) {
     if (!check.different.empty()) {
       std::printf("%zu different\n", check.different.size()), code = kCheckFailed;
       for (const std::string& text : check.different) std::printf("  %s\n", text.c_str());
-      print_other_build(attributes);
+      print_other_build(stored.attributes);
     }
-    print_distrust(attributes);
+    print_distrust(stored.attributes);
   }
   return code;
 }

@@ -24,6 +24,7 @@
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/presentation/export/result_tables.h"
 #include "runners/sweep/answer_display.h"
+#include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/shards/shard_merge.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
@@ -302,36 +303,21 @@ struct Answer {
   std::string distrust = {};  // see distrust_of()
 };
 
-Answer answer_of_runs(const AnalyseRequest& request) {
-  const StoredSweep stored = read_stored_sweep(request.sweep);
-  const SweepResult& result = stored.result;
-  const std::string config = attribute(stored.attributes, "config"), damage = damage_text(stored);
-  std::vector<std::string> notes = note_lines(result);
-  if (!damage.empty()) notes.push_back(damage);
-  return {sweep_answer(result, config, question_of(request)),
-          config,
-          digest(result),
-          result.runs_in(RunState::done).size(),
-          result.run_count() - result.runs_in(RunState::not_sampled).size(),
-          std::move(notes)};
-}
-
-Answer answer_of_tally(const AnalyseRequest& request) {
-  const StoredTally stored = read_tally(Hdf5Reader(request.sweep));
-  const SweepTally& tally = stored.tally;
-  std::int64_t done = 0;
-  for (const CellTally& cell : tally.tallies) done += cell.done;
+Answer answer_to(const AnalyseRequest& request) {
+  const KeptSweep stored = read_kept_sweep(request.sweep, Extent::whole);
   const std::string config = attribute(stored.attributes, "config");
-  std::vector<std::string> notes = note_lines(tally);
-  const std::string distrust = distrust_of(stored.attributes);
-  if (!distrust.empty()) notes.push_back(distrust);
-  return {sweep_answer(tally, config, question_of(request)),
-          config,
-          digest(tally),
-          static_cast<std::size_t>(done),
-          static_cast<std::size_t>(tally.run_count()),
-          std::move(notes),
-          distrust};
+  const auto answer = [&](const auto& kept) {
+    std::vector<std::string> notes = note_lines(kept);
+    if (!stored.warning.empty()) notes.push_back(stored.warning);
+    return Answer{sweep_answer(kept, config, question_of(request)),
+                  config,
+                  digest(kept),
+                  count_of(kept, RunState::done),
+                  kept.run_count() - count_of(kept, RunState::not_sampled),
+                  std::move(notes),
+                  distrust_of(stored.attributes)};
+  };
+  return std::visit(answer, stored.kept);
 }
 
 void write_hdf5(const CommandLine& line, const AnalyseRequest& request, const Answer& answer) {
@@ -361,8 +347,7 @@ int command_analyse(const CommandLine& line, const AnalyseRequest& request) {
   const std::string ending = std::filesystem::path(request.output).extension().string();
   if (!request.output.empty() && ending != ".h5" && ending != ".csv")
     throw InputError("--output " + request.output, "expected a file that ends with .h5 or .csv");
-  const Answer answer =
-      is_tally(Hdf5Reader(request.sweep)) ? answer_of_tally(request) : answer_of_runs(request);
+  const Answer answer = answer_to(request);
   if (ending == ".h5") write_hdf5(line, request, answer);
   if (ending == ".csv") write_tables(line, request, answer.figure);
   std::fputs(answer_text(answer.figure, answer.done, answer.asked).c_str(), stdout);

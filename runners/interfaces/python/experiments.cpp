@@ -20,6 +20,7 @@
 #include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
+#include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
 #include "scenarios/recordings/recording.h"
@@ -157,38 +158,30 @@ py::dict run_experiment(const std::string& subject, const std::optional<std::str
 
 // --- replay ---
 
-StoredSweep stored_sweep(const std::string& file) {
-  const FileTurn turn;
-  return read_runs_or_outline(file);
-}
-
-// Returns a sweep that was run in this process. Only its attributes are known, so none of its runs is stored.
-StoredSweep sweep_of(const TextAttributes& attributes) {
-  StoredSweep stored;
-  stored.attributes = provenance_of(attributes);
-  stored.result =
-      SweepResult(Sweep::from_json(attribute(attributes, "config"), "config of the data set").outline());
-  return stored;
-}
-
 // Runs a run of the sweep in a file again, or, without a file, of the sweep that these attributes describe.
 RunResult replay(const std::string& file, const TextAttributes& attributes, const std::string& cell_text,
                  int replicate, const std::string& file_or_none, bool force, const LongWork& work) {
-  const StoredSweep stored = file.empty() ? sweep_of(attributes) : stored_sweep(file);
+  std::optional<KeptSweep> stored;
+  if (!file.empty()) {
+    const FileTurn turn;
+    stored = read_kept_sweep(file, Extent::as_stored);
+  }
+  const TextAttributes of_sweep = stored ? stored->attributes : provenance_of(attributes);
   const Sweep sweep =
-      Sweep::from_json(attribute(stored.attributes, "config"), file.empty() ? "config" : file + " config");
-  sweep.require_fits(stored.result, file);
-  const std::size_t cell = cell_of({"cell", cell_text}, stored.result);
-  if (replicate < 0 || replicate >= stored.result.replicates)
+      Sweep::from_json(attribute(of_sweep, "config"), stored ? file + " config" : "config of the data set");
+  const SweepGrid grid = sweep.outline();
+  if (stored) sweep.require_fits(stored->grid(), file);
+  const std::size_t cell = cell_of({"cell", cell_text}, grid);
+  if (replicate < 0 || replicate >= grid.replicates)
     throw InputError("replicate = " + std::to_string(replicate),
-                     "expected 0 to " + std::to_string(stored.result.replicates - 1));
+                     "expected 0 to " + std::to_string(grid.replicates - 1));
   const OutputFile output(file_or_none, force, file, {});
-  Replay again = replay_run(stored, sweep, stored.result.run(cell, replicate), options_of(work), "");
+  Replay again = replay_run(of_sweep, sweep, grid.run(cell, replicate), options_of(work), "");
   RunResult result{again.trace.columns(), measures_of(again.trace), {}, {}};
   output.write([&](const auto& path) { return write_trace(path, result.columns, again.attributes, {}); },
                [] { return std::string(); });
   result.attributes = trace_attributes(again.attributes, again.digest, result.columns);
-  result.warning = distrust_of(stored.attributes);
+  result.warning = distrust_of(of_sweep);
   return result;
 }
 

@@ -8,10 +8,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <optional>
 
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
@@ -24,7 +27,6 @@
 #include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
-#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 
@@ -55,23 +57,20 @@ py::dict open_result(const std::string& file) {
   std::string kind;
   std::vector<Column> columns;
   TextAttributes attributes;
-  StoredSweep sweep;
-  StoredTally tally;
+  std::optional<KeptSweep> sweep;
   {
     const py::gil_scoped_release without_lock;
     const FileTurn turn;
     const Hdf5Reader reader(file);
     kind = is_tally(reader) ? "tally" : kind_of(reader);
     attributes = reader.attributes();
-    if (kind == "sweep") sweep = read_stored_sweep(reader);
-    if (kind == "tally") tally = read_tally(reader);
+    if (kind == "sweep" || kind == "tally") sweep = read_kept_sweep(file, Extent::whole);
     if (kind == "trace") columns = all_columns(StoredTrace(reader));
     if (kind == "figure") columns = all_columns(StoredFigure(reader));
   }
   if (kind == "hashes") throw InputError(file, "is a file of hashes: expected a trace, a sweep or a figure");
-  if (kind == "tally") return to_python(tally);
-  if (kind != "sweep") return as_dict(kind.c_str(), std::move(columns), attributes);
-  return to_python(std::move(sweep));
+  if (sweep) return to_python(std::move(*sweep));
+  return as_dict(kind.c_str(), std::move(columns), attributes);
 }
 
 Tolerances tolerances_of(const py::dict& given) {
@@ -206,11 +205,8 @@ void add_measure(const SweepTally& tally, std::size_t measure, std::vector<Colum
         [&](const CellTally& cell) { return statistic.of(cell.measures[measure]); }));
 }
 
-}  // namespace
-
-py::dict to_python(const StoredTally& stored) {
+py::dict as_dict(SweepTally& tally) {
   constexpr std::uint64_t kMaxCells = 10'000'000;
-  const SweepTally& tally = stored.tally;
   if (tally.cell_count() > kMaxCells)
     throw InputError("the tally", "has " + std::to_string(tally.cell_count()) + " cells: expected at most " +
                                       std::to_string(kMaxCells) + " as arrays");
@@ -221,15 +217,48 @@ py::dict to_python(const StoredTally& stored) {
   for (const Column& axis : tally.axes) shape.push_back(static_cast<py::ssize_t>(axis.length()));
   py::list arrays;
   for (Column& column : columns) arrays.append(to_python(std::move(column), shape));
-  TextAttributes attributes = {{"schema", schema_name("tally")}};
-  attributes.insert(attributes.end(), stored.attributes.begin(), stored.attributes.end());
-  attributes.emplace_back("digest", digest(tally));
   py::dict all;
   all["kind"] = "tally";
-  all["axes"] = to_python(std::vector<Column>(tally.axes));
   all["columns"] = arrays;
+  return all;
+}
+
+py::dict as_dict(SweepResult& result) {
+  std::vector<py::ssize_t> shape;
+  for (const Column& axis : result.axes) shape.push_back(static_cast<py::ssize_t>(axis.length()));
+  shape.push_back(result.replicates);
+  py::list measures;
+  for (Column& measure : result.measures) measures.append(to_python(std::move(measure), shape));
+  measures.append(to_python(state_column(result), shape));
+  if (!result.round.empty())
+    measures.append(to_python(
+        Column{"round", "1", "round of refinement that added the run", std::move(result.round)}, shape));
+  if (!result.notes.empty())
+    measures.append(to_python(
+        Column{
+            "notes", "1", "notes on the run, one bit for each of note_kinds", std::move(result.notes), 1, {}},
+        shape));
+  py::dict all;
+  all["kind"] = "sweep";
+  all["measures"] = measures;
+  all["error"] = py::cast(result.error);
+  all["replicates"] = result.replicates;
+  return all;
+}
+
+}  // namespace
+
+py::dict to_python(KeptSweep stored) {
+  const bool has_runs = std::holds_alternative<SweepResult>(stored.kept);
+  TextAttributes attributes = {{"schema", schema_name(has_runs ? "sweep" : "tally")}};
+  attributes.insert(attributes.end(), stored.attributes.begin(), stored.attributes.end());
+  attributes.emplace_back("digest", std::visit([](const auto& kept) { return digest(kept); }, stored.kept));
+  if (const auto& kinds = stored.grid().note_kinds; has_runs && !kinds.empty())
+    attributes.emplace_back("note_kinds", joined(kinds, ","));
+  py::dict all = std::visit([](auto& kept) { return as_dict(kept); }, stored.kept);
+  all["axes"] = to_python(std::vector<Column>(stored.grid().axes));
   all["attributes"] = to_python(attributes);
-  all["warning"] = distrust_of(stored.attributes);
+  all["warning"] = stored.warning;
   return all;
 }
 

@@ -8,8 +8,6 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/sweeps/sweep_file.h"
-#include "analysis/tally/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
@@ -17,7 +15,7 @@
 #include "runners/interfaces/python/long_work.h"
 #include "runners/interfaces/python/results.h"
 #include "runners/sweep/answer_display.h"
-#include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_session.h"
@@ -45,46 +43,33 @@ SweepResult in_memory(const Sweep& sweep, const LongWork& work) {
   return result;
 }
 
-SweepResult in_file(const Sweep& sweep, const TextAttributes& origin, const std::string& file,
-                    const LongWork& work) {
+KeptSweep in_file(const Sweep& sweep, const TextAttributes& origin, const std::string& file,
+                  const LongWork& work) {
   require_writable(file);
   const FileTurn turn(FileTurn::For::a_sweep);
-  SweepSession session(sweep, Shard{}, origin, file);
-  session.run(work.kernels, &work.stop, [&](std::size_t done, std::size_t all, std::size_t) {
-    work.progress(static_cast<double>(done) / static_cast<double>(all));
-  });
-  return session.result();
-}
-
-StoredTally tally_in_file(const Sweep& sweep, const TextAttributes& origin, const std::string& file,
-                          const LongWork& work) {
-  if (file.empty())
-    throw InputError(sweep.title(), "keeps a tally: expected an output, which the runs are added to");
-  require_writable(file);
-  const FileTurn turn(FileTurn::For::a_sweep);
-  TallySession session(sweep, Shard{}, origin, file);
-  session.run(work.kernels, &work.stop, [&](std::size_t done, std::size_t all, std::size_t) {
-    work.progress(static_cast<double>(done) / static_cast<double>(all));
-  });
-  return {session.tally(), session.attributes()};
+  const auto run = [&](auto session) {
+    session.run(work.kernels, &work.stop, [&](std::size_t done, std::size_t all, std::size_t) {
+      work.progress(static_cast<double>(done) / static_cast<double>(all));
+    });
+    return session.kept();
+  };
+  return sweep.keep() == Keep::runs ? run(SweepSession(sweep, Shard{}, origin, file))
+                                    : run(TallySession(sweep, Shard{}, origin, file));
 }
 
 py::dict run_sweep_of(const std::string& subject, const std::optional<std::string>& text,
                       const std::vector<std::string>& overrides, int threads, const std::string& output,
                       const py::object& report) {
-  StoredSweep stored;
-  std::optional<StoredTally> tally;
+  KeptSweep made;
   do_long_work(report, threads, [&](const LongWork& work) {
     const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
-    stored.attributes =
+    if (output.empty() && sweep.keep() != Keep::runs)
+      throw InputError(sweep.title(), "keeps a tally: expected an output, which the runs are added to");
+    const TextAttributes origin =
         provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", input_hashes(sweep.inputs()));
-    if (sweep.keep() != Keep::runs)
-      tally = tally_in_file(sweep, stored.attributes, output, work);
-    else
-      stored.result =
-          output.empty() ? in_memory(sweep, work) : in_file(sweep, stored.attributes, output, work);
+    made = output.empty() ? KeptSweep{in_memory(sweep, work), origin} : in_file(sweep, origin, output, work);
   });
-  return tally ? to_python(*tally) : to_python(std::move(stored));
+  return to_python(std::move(made));
 }
 
 // parts: axes and measures as lists of columns, the states of the runs, the number of replicates, and the
@@ -106,20 +91,6 @@ SweepResult result_of(const py::tuple& parts) {
   return result;
 }
 
-// warning: set to one line if some runs are known to be wrong or are left out.
-Figure answer_of(const std::string& file, const SweepQuestion& question, std::string& warning) {
-  const FileTurn turn;
-  const Hdf5Reader reader(file);
-  if (is_tally(reader)) {
-    const StoredTally stored = read_tally(reader);
-    warning = distrust_of(stored.attributes);
-    return sweep_answer(stored.tally, attribute(stored.attributes, "config"), question);
-  }
-  const StoredSweep stored = read_stored_sweep(reader);
-  warning = damage_text(stored);
-  return sweep_answer(stored.result, attribute(stored.attributes, "config"), question);
-}
-
 // file: of a sweep, or empty for one in memory, which has parts and a configuration.
 py::dict analyse(const std::string& file, const py::tuple& parts, const std::string& config,
                  const SweepQuestion& question) {
@@ -131,7 +102,12 @@ py::dict analyse(const std::string& file, const py::tuple& parts, const std::str
     answer = sweep_answer(result, config, question);
   } else {
     const py::gil_scoped_release without_lock;
-    answer = answer_of(file, question, warning);
+    const FileTurn turn;
+    const KeptSweep stored = read_kept_sweep(file, Extent::whole);
+    const std::string stored_config = attribute(stored.attributes, "config");
+    warning = stored.warning;
+    answer = std::visit([&](const auto& kept) { return sweep_answer(kept, stored_config, question); },
+                        stored.kept);
   }
   std::vector<Column> columns;
   for (const Table& table : answer.tables) {
@@ -149,37 +125,6 @@ py::dict analyse(const std::string& file, const py::tuple& parts, const std::str
 }
 
 }  // namespace
-
-py::dict to_python(StoredSweep stored) {
-  SweepResult& result = stored.result;
-  TextAttributes attributes = {{"schema", schema_name("sweep")}};
-  attributes.insert(attributes.end(), stored.attributes.begin(), stored.attributes.end());
-  attributes.emplace_back("digest", digest(result));
-  if (!result.note_kinds.empty()) attributes.emplace_back("note_kinds", joined(result.note_kinds, ","));
-  std::vector<py::ssize_t> shape;
-  for (const Column& axis : result.axes) shape.push_back(static_cast<py::ssize_t>(axis.length()));
-  shape.push_back(result.replicates);
-  py::dict all;
-  all["kind"] = "sweep";
-  all["warning"] = damage_text(stored);
-  all["attributes"] = to_python(attributes);
-  all["axes"] = to_python(std::move(result.axes));
-  py::list measures;
-  for (Column& measure : result.measures) measures.append(to_python(std::move(measure), shape));
-  measures.append(to_python(state_column(result), shape));
-  if (!result.round.empty())
-    measures.append(to_python(
-        Column{"round", "1", "round of refinement that added the run", std::move(result.round)}, shape));
-  if (!result.notes.empty())
-    measures.append(to_python(
-        Column{
-            "notes", "1", "notes on the run, one bit for each of note_kinds", std::move(result.notes), 1, {}},
-        shape));
-  all["measures"] = measures;
-  all["error"] = py::cast(result.error);
-  all["replicates"] = result.replicates;
-  return all;
-}
 
 void bind_sweeps(py::module_& module) {
   module.def("sweep", &run_sweep_of, py::arg("subject"), py::arg("text"), py::arg("overrides"),
@@ -336,7 +281,7 @@ struct WorkElsewhere {
   }
 };
 
-SweepResult runs_elsewhere(SweepSession session, const WorkElsewhere& work) {
+KeptSweep done_elsewhere(SweepSession session, const WorkElsewhere& work) {
   const auto do_runs = [&](SweepResult& result, const std::function<void(std::size_t)>& stored) {
     const std::size_t done = result.runs_in(RunState::done).size();
     work(result, done, done + result.runs_in(RunState::pending).size(), stored,
@@ -344,11 +289,11 @@ SweepResult runs_elsewhere(SweepSession session, const WorkElsewhere& work) {
     return std::size_t{0};
   };
   session.run(do_runs, [](auto...) {});
-  return session.result();
+  return session.kept();
 }
 
 // A batch of a tally takes half a minute, because the workers wait for each other at its end.
-StoredTally tally_elsewhere(TallySession session, const WorkElsewhere& work) {
+KeptSweep done_elsewhere(TallySession session, const WorkElsewhere& work) {
   constexpr double kBatch_s = 30;
   const auto do_batch = [&](SweepResult& batch) {
     const auto forget = [&](const std::vector<std::size_t>& runs, const std::string& why) {
@@ -360,27 +305,25 @@ StoredTally tally_elsewhere(TallySession session, const WorkElsewhere& work) {
         batch, session.tally().held.count(), session.own_runs(), [](std::size_t) {}, forget);
   };
   session.run(do_batch, kBatch_s, [](auto...) {});
-  return {session.tally(), session.attributes()};
+  return session.kept();
 }
 
 py::dict sweep_in_chunks(const std::string& subject, const std::optional<std::string>& text,
                          const Texts& overrides, const std::string& output, const py::function& do_round) {
-  StoredSweep all;
-  std::optional<StoredTally> tally;
+  KeptSweep made;
   {
     const UnchangedCatalog unchanged;
     const py::gil_scoped_release without_lock;
     const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
     const WorkElsewhere work{sweep, input_hashes(sweep.inputs()), do_round};
-    all.attributes = provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", work.inputs);
+    const TextAttributes origin =
+        provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", work.inputs);
     require_writable(output);
     const FileTurn turn(FileTurn::For::a_sweep);
-    if (sweep.keep() == Keep::runs)
-      all.result = runs_elsewhere(SweepSession(sweep, Shard{}, all.attributes, output), work);
-    else
-      tally = tally_elsewhere(TallySession(sweep, Shard{}, all.attributes, output), work);
+    made = sweep.keep() == Keep::runs ? done_elsewhere(SweepSession(sweep, Shard{}, origin, output), work)
+                                      : done_elsewhere(TallySession(sweep, Shard{}, origin, output), work);
   }
-  return tally ? to_python(*tally) : to_python(std::move(all));
+  return to_python(std::move(made));
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ TEST(SweepRuns, HaveANoteIfTheirOutcomeIsUnknown) {
   EXPECT_EQ(result.notes[0] & bit, 0u);
   EXPECT_EQ(result.notes[1] & bit, bit);
   const StoredSweep stored{result, {}, false};
-  EXPECT_EQ(note_bits(replay_run(stored, sweep, 1, {}, "", Strict::no).report.notes) & bit, bit);
+  EXPECT_EQ(note_bits(replay_run(stored.attributes, sweep, 1, {}, "", Strict::no).report.notes) & bit, bit);
   const SweepResult other = run_sweep(quick({"replicates=1", axis, R"(measures=["max_penetration"])"}), {});
   EXPECT_EQ(other.notes[1] & bit, 0u) << "the outcome is not measured";
 }
@@ -245,7 +245,7 @@ TEST(Replays, HaveTheCommandOfTheirOwnProgram) {
   const Sweep sweep = quick();
   const StoredSweep stored{sweep.plan(), {{"command", "press-lab sweep quick.json"}}, false};
   identify_program({"press-lab", "12ab"});
-  const Replay replay = replay_run(stored, sweep, 3, {}, "", Strict::no);
+  const Replay replay = replay_run(stored.attributes, sweep, 3, {}, "", Strict::no);
   identify_program({});
   EXPECT_EQ(attribute(replay.attributes, "command"),
             "press-lab sweep quick.json; press-lab replay --cell 0,1 --replicate 1");
