@@ -244,8 +244,10 @@ SweepTally without_runs(const Sweep& sweep) {
   return tally;
 }
 
-// Adds the runs of the batch that were made.
-void add(const SweepResult& batch, const TallyLayout& layout, SweepTally& tally) {
+}  // namespace
+
+void add_runs(const SweepResult& batch, SweepTally& tally) {
+  const TallyLayout layout = tally.layout();
   std::vector<double> values(batch.measures.size());
   for (std::size_t place = 0; place < batch.held_count(); ++place) {
     for (std::size_t m = 0; m < values.size(); ++m)
@@ -256,8 +258,6 @@ void add(const SweepResult& batch, const TallyLayout& layout, SweepTally& tally)
       tally.add_failed(layout, batch.run_at(place), batch.error[place]);
   }
 }
-
-}  // namespace
 
 TallyPlan tally_plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                              const std::filesystem::path& file) {
@@ -312,7 +312,7 @@ std::vector<std::uint64_t> TallySession::next_runs(std::size_t count) {
 // read it.
 void TallySession::store() {
   require_unchanged(sweep_.inputs(), attribute(plan_.attributes, "input_digests"));
-  digest_ = write_tally(file_, plan_.tally, plan_.attributes);
+  write_tally(file_, plan_.tally, plan_.attributes);
 }
 
 bool TallySession::run(const Kernels& kernels, const std::atomic<bool>* stop, const Progress& progress) {
@@ -323,7 +323,6 @@ bool TallySession::run(const Kernels& kernels, const std::atomic<bool>* stop, co
 }
 
 bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& progress) {
-  const TallyLayout layout = plan_.tally.layout();
   const std::size_t earlier = plan_.tally.held.count();
   std::size_t size = kLeastBatch;
   auto stored = Clock::now();
@@ -335,11 +334,11 @@ bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& 
     try {
       do_batch(batch);
     } catch (...) {
-      add(batch, layout, plan_.tally);
+      add_runs(batch, plan_.tally);
       if (plan_.tally.held.count() > earlier) store();
       throw;
     }
-    add(batch, layout, plan_.tally);
+    add_runs(batch, plan_.tally);
     progress(plan_.tally.held.count(), own_runs(), earlier);
     const double took_s = seconds_since(start);
     if (took_s < batch_s / 2) size = std::min((took_s < batch_s / 16 ? 8 : 2) * size, kMostBatch);
@@ -349,10 +348,7 @@ bool TallySession::run(const DoBatch& do_batch, double batch_s, const Progress& 
     store();
     stored = Clock::now(), storing_s = seconds_since(began);
   }
-  if (plan_.tally.held.count() == earlier) {
-    digest_ = remote_touch::digest(plan_.tally);
-    return false;
-  }
+  if (plan_.tally.held.count() == earlier) return false;
   store();
   return true;
 }

@@ -78,6 +78,7 @@ class SweepSession {
   void forget(const std::vector<std::size_t>& places);
 
   const SweepResult& result() const { return plan_.result; }
+  std::size_t done() const { return count_of(plan_.result, RunState::done); }
   KeptSweep kept() const { return {plan_.result, plan_.attributes}; }
 
  private:
@@ -106,6 +107,9 @@ struct TallyPlan {
 TallyPlan tally_plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttributes& attributes,
                              const std::filesystem::path& file);
 
+// Adds the runs of the batch that were made.
+void add_runs(const SweepResult& batch, SweepTally& tally);
+
 // The file is a tally of the runs that are done. It is written again every ten seconds, or less often if that
 // takes longer than a twentieth of the time: a killed program loses the runs since then. The same command
 // makes the missing runs. A failed run is counted; it is not made again. The finished tally has the same
@@ -132,10 +136,10 @@ class TallySession {
   // continues such a file. why: one line. do_batch may call it, and must then throw.
   void distrust(const std::string& why);
 
-  const SweepTally& tally() const { return plan_.tally; }
+  const SweepTally& result() const { return plan_.tally; }
+  std::size_t done() const { return plan_.tally.held.count(); }  // with the failed runs
   KeptSweep kept() const { return {plan_.tally, plan_.attributes, distrust_of(plan_.attributes)}; }
   std::uint64_t own_runs() const { return plan_.own_runs; }
-  const std::string& digest() const { return digest_; }  // digest of the file, after run()
 
  private:
   std::vector<std::uint64_t> next_runs(std::size_t count);
@@ -147,7 +151,6 @@ class TallySession {
   const FileLock lock_;
   TallyPlan plan_;
   std::size_t next_cell_ = 0;  // index, within the shard, of the first cell that may lack runs
-  std::string digest_;
 };
 
 }  // namespace remote_touch

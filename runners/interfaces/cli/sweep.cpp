@@ -193,23 +193,14 @@ bool run_session(const CommandLine& line, const SweepRequest& request, const std
   return true;
 }
 
-int make_runs(const CommandLine& line, const SweepRequest& request, const std::string& file,
-              const std::string& config, SweepSession session) {
-  if (!run_session(line, request, file, session))
-    return print_interrupted(file, session.result().runs_in(RunState::done).size());
-  const int code = print_summary(file, session.result());
-  print_equal_runs(session.result(), config);
-  if (request.strict) refuse_notes(note_lines(session.result()));
-  return code;
-}
-
-int make_tally(const CommandLine& line, const SweepRequest& request, const std::string& file,
-               const std::string& config, TallySession session) {
-  if (!run_session(line, request, file, session))
-    return print_interrupted(file, session.tally().held.count());
-  const int code = print_summary(file, session.tally(), session.digest());
-  print_equal_runs(session.tally(), config);
-  if (request.strict) refuse_notes(note_lines(session.tally()));
+template <class Session>
+int make_sweep(const CommandLine& line, const SweepRequest& request, const std::string& file,
+               const std::string& config, Session session) {
+  if (!run_session(line, request, file, session)) return print_interrupted(file, session.done());
+  const auto& made = session.result();
+  const int code = print_summary(file, made);
+  print_equal_runs(made, config);
+  if (request.strict) refuse_notes(note_lines(made));
   return code;
 }
 
@@ -230,11 +221,11 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     return request.dry_run
                ? dry_run_of_tally(sweep, shard, tally_plan_in_file(sweep, shard, attributes, file), line,
                                   request)
-               : make_tally(line, request, file, sweep.to_json(),
+               : make_sweep(line, request, file, sweep.to_json(),
                             TallySession(sweep, shard, attributes, file));
   if (request.dry_run)
     return dry_run_of_runs(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
-  return make_runs(line, request, file, sweep.to_json(), SweepSession(sweep, shard, attributes, file));
+  return make_sweep(line, request, file, sweep.to_json(), SweepSession(sweep, shard, attributes, file));
 }
 
 int command_merge(const CommandLine& line, const MergeCommand& command) {
@@ -242,10 +233,8 @@ int command_merge(const CommandLine& line, const MergeCommand& command) {
   std::vector<std::string> notes;
   const MergeRequest request{command.shards, command.output, command.partial ? Partial::yes : Partial::no,
                              line.force, [&](const std::string& note) { notes.push_back(note); }};
-  if (is_tally(Hdf5Reader(command.shards.front()))) {
-    const MergedTally merged = merge_tallies(request);
-    return print_summary(command.output, merged.tally, merged.digest);
-  }
+  if (is_tally(Hdf5Reader(command.shards.front())))
+    return print_summary(command.output, merge_tallies(request));
   std::optional<SweepSummary> summary;
   const std::string digest = merge_shards(request, [&](const SweepResult& block) {
     if (!summary) summary.emplace(grid_of(block));

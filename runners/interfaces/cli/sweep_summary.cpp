@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/sweep/stored_sweep.h"
@@ -143,14 +144,14 @@ void print_failures(const SweepTally& tally) {
 
 }  // namespace
 
-int print_summary(const std::string& file, const SweepTally& tally, const std::string& digest) {
+int print_summary(const std::string& file, const SweepTally& tally) {
   const CellTally all = tally.over_all_cells();
   std::printf("%s: %s cells, %lld runs done, %lld failed", printable(file).c_str(),
               extent_text(tally).c_str(), static_cast<long long>(all.done),
               static_cast<long long>(all.failed));
   if (const std::uint64_t others = tally.run_count() - tally.held.count(); others > 0)
     std::printf(", %llu not made here", static_cast<unsigned long long>(others));
-  std::printf(", digest %s\n", digest.c_str());
+  std::printf(", digest %s\n", digest(tally).c_str());
   for (std::size_t i = 0; i < all.measures.size(); ++i)
     std::printf("  %-20s %s\n", tally.measures[i].name.c_str(),
                 measure_text(all.measures[i], tally.measures[i].units).c_str());

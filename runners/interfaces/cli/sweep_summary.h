@@ -19,7 +19,7 @@ int print_summary(const std::string& file, const SweepResult& result);
 
 // Prints the cells, the runs, the mean and range of each measure over all runs, the number of runs with each
 // kind of note, and the first failed run of each cell. Returns kDone, or kCheckFailed if a run failed.
-int print_summary(const std::string& file, const SweepTally& tally, const std::string& digest);
+int print_summary(const std::string& file, const SweepTally& tally);
 
 // Prints a note on the cells whose replicates are equal, because they draw no random numbers. grid: of the
 // sweep with this configuration (JSON). Prints nothing if each cell has one run, and for more than 1e6 cells.

@@ -302,7 +302,7 @@ KeptSweep done_elsewhere(TallySession session, const WorkElsewhere& work) {
       if (!why.empty()) session.distrust(why);
     };
     work(
-        batch, session.tally().held.count(), session.own_runs(), [](std::size_t) {}, forget);
+        batch, session.done(), session.own_runs(), [](std::size_t) {}, forget);
   };
   session.run(do_batch, kBatch_s, [](auto...) {});
   return session.kept();

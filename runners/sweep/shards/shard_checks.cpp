@@ -17,6 +17,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
+#include "runners/sweep/sweep_session.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
@@ -76,8 +77,8 @@ void read_tally_of(const Hdf5Reader& hdf5, ReadShard& read) {
   read.runs_of_sweep = static_cast<std::size_t>(stored.tally.run_count());
   ShardProgress& shard = read.progress;
   shard.distrust = distrust_of(stored.attributes);
-  for (const CellTally& cell : stored.tally.tallies)
-    shard.done += static_cast<std::size_t>(cell.done), shard.failed += static_cast<std::size_t>(cell.failed);
+  shard.done = count_of(stored.tally, RunState::done),
+  shard.failed = count_of(stored.tally, RunState::failed);
   for (const int index : shard.shards.indices)
     shard.runs +=
         Shard{index, shard.shards.count}.cells_of(static_cast<std::size_t>(stored.tally.cell_count())) *
@@ -221,9 +222,9 @@ std::string digits(double value) {
   return text;
 }
 
-// Makes the runs, some at a time, and calls compare(part, place) for each, in their order.
+// Makes the runs, some at a time, and calls take(part) with each part, in their order.
 void make_again(const Sweep& sweep, const std::vector<std::uint64_t>& runs, const RecheckOptions& options,
-                const std::function<void(const SweepResult& part, std::size_t place)>& compare) {
+                const std::function<void(const SweepResult& part)>& take) {
   constexpr std::size_t kTogether = 64;
   for (std::size_t first = 0; first < runs.size(); first += kTogether) {
     const std::size_t end = std::min(first + kTogether, runs.size());
@@ -231,7 +232,7 @@ void make_again(const Sweep& sweep, const std::vector<std::uint64_t>& runs, cons
     SweepResult part =
         sweep.part({begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(end)});
     if (do_pending_runs(sweep, part, {options.kernels, options.stop}) > 0) throw std::bad_alloc();
-    for (std::size_t place = 0; place < part.held_count(); ++place) compare(part, place);
+    take(part);
     if (options.progress) options.progress(end, runs.size());
   }
 }
@@ -303,9 +304,11 @@ std::vector<std::uint64_t> held_runs(const SweepTally& tally, std::uint64_t cell
 Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options) {
   const std::vector<std::uint64_t> runs = chosen_runs(part);
   Recheck check{runs.size()};
-  make_again(sweep, runs, options, [&](const SweepResult& now, std::size_t place) {
-    const std::string how = difference(part, part.place_of(now.run_at(place)).value(), now, place);
-    if (!how.empty()) check.different.push_back("run " + std::to_string(now.run_at(place)) + ": " + how);
+  make_again(sweep, runs, options, [&](const SweepResult& now) {
+    for (std::size_t place = 0; place < now.held_count(); ++place) {
+      const std::string how = difference(part, part.place_of(now.run_at(place)).value(), now, place);
+      if (!how.empty()) check.different.push_back("run " + std::to_string(now.run_at(place)) + ": " + how);
+    }
   });
   return check;
 }
@@ -313,22 +316,13 @@ Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOption
 Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOptions& options) {
   const std::vector<std::size_t> chosen = chosen_cells(tally);
   Recheck check{0, chosen.size(), tally.cells.size()};
-  const TallyLayout layout = tally.layout();
   for (const std::size_t i : chosen) {
     const std::vector<std::uint64_t> runs = held_runs(tally, tally.cells[i]);
-    CellTally now(layout);
-    make_again(sweep, runs, options, [&](const SweepResult& made, std::size_t place) {
-      std::vector<double> values;
-      for (const Column& measure : made.measures)
-        values.push_back(std::get<std::vector<double>>(measure.values)[place]);
-      const std::uint64_t run = made.run_at(place);
-      if (made.state[place] == RunState::done)
-        now.add_done(layout, run, values, made.notes[place]);
-      else
-        now.add_failed(run, made.error[place]);
-    });
+    SweepTally now;
+    static_cast<SweepGrid&>(now) = tally, now.keeps_events = tally.keeps_events;
+    make_again(sweep, runs, options, [&](const SweepResult& made) { add_runs(made, now); });
     check.made += runs.size();
-    const std::string how = difference(tally.measures, tally.tallies[i], now);
+    const std::string how = difference(tally.measures, tally.tallies[i], now.tallies.front());
     if (!how.empty()) check.different.push_back("cell " + std::to_string(tally.cells[i]) + ": " + how);
   }
   return check;

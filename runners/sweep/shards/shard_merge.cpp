@@ -69,30 +69,12 @@ void SeenShards::require_complete() const {
                                 (is_one ? " is" : " are") + " missing: expected all of them, or --partial");
 }
 
-// A file of some shards, without its runs.
-struct ShardFile {
-  std::string file;
-  ShardSet shards;
-  StoredSweep outline;
-};
-
-ShardFile outline_of(const std::string& file, const Hdf5Reader& hdf5) {
-  ShardFile part{file, {}, read_sweep_outline(hdf5)};
-  part.shards = take_shards(part.outline.attributes, file);
-  return part;
-}
-
-// The array `round` does not tell: an empty shard has none.
-bool is_refined(const ShardFile& part) {
-  return parse_json(attribute(part.outline.attributes, "config"), part.file + " config").contains("refine");
-}
-
-// Throws InputError unless the files have the same runs and kinds of notes.
-void require_same_extent(const ShardFile& part, const ShardFile& first) {
-  const SweepResult &own = part.outline.result, &other = first.outline.result;
-  if (own.run_count() != other.run_count()) throw InputError(part.file, "damaged (another number of runs)");
-  if (own.note_kinds != other.note_kinds)
-    throw InputError(part.file, "damaged (other kinds of notes than " + first.file + ")");
+// Throws InputError unless the part has the runs and the kinds of notes of the sweep of the first file.
+void require_same_extent(const std::string& file, const SweepGrid& part, const std::string& first,
+                         const SweepGrid& sweep) {
+  if (part.run_count() != sweep.run_count()) throw InputError(file, "damaged (another number of runs)");
+  if (part.note_kinds != sweep.note_kinds)
+    throw InputError(file, "damaged (other kinds of notes than " + first + ")");
 }
 
 // Returns the values of a part in memory.
@@ -115,7 +97,8 @@ RunSpool::PartValues values_in(const SweepResult& part) {
 }
 
 // Copies the runs of a file. A finished part is read block by block, an unfinished one as a whole.
-void add_runs(const std::string& file, const Hdf5Reader& hdf5, const MergeRequest& request, RunSpool& spool) {
+void add_runs(const Hdf5Reader& hdf5, const MergeRequest& request, RunSpool& spool) {
+  const std::string& file = hdf5.file();
   if (!hdf5.has("/sweep/run")) hdf5.damaged("/sweep/run is missing");
   if (!hdf5.has("/sweep/checksum")) {
     const std::size_t held = hdf5.column("/sweep/run").length();
@@ -222,32 +205,54 @@ void require_nothing_more(const MergeRequest& request, const std::function<RunRa
       throw KeptFile(request.output, "holds runs that the shards do not: expected another file");
 }
 
-std::string merge_shards(const MergeRequest& request, const EachBlock& each_block) {
-  require_no_device(request.output);
-  std::optional<ShardFile> first;
-  std::optional<RunSpool> spool;
+namespace {
+
+struct MergedParts {
+  TextAttributes attributes;  // of the merged file
+  bool is_whole = true;
+};
+
+// Reads the parts, checks that they belong together, and adds each.
+template <class Read, class Add>
+MergedParts merge_parts(const MergeRequest& request, const Read& read, const Add& add) {
+  MergedParts merged;
   SeenShards seen;
+  require_no_device(request.output);
   for (const std::string& file : request.shards) {
     std::error_code absent;
     if (std::filesystem::equivalent(file, request.output, absent))
       throw InputError(request.output, "is one of the shards: expected another file");
     const Hdf5Reader hdf5(file);
-    ShardFile part = outline_of(file, hdf5);
-    if (!first) {
-      spool.emplace(part.outline.result, is_refined(part), request.output);
-      first = std::move(part);
-      seen.add(file, first->shards);
-    } else {
-      require_same_origin({file, part.outline.attributes}, {first->file, first->outline.attributes});
-      require_same_extent(part, *first);
-      seen.add(file, part.shards);
-    }
-    add_runs(file, hdf5, request, *spool);
+    auto part = read(hdf5);
+    const ShardSet shards = take_shards(part.attributes, file);
+    if (&file == &request.shards.front()) merged.attributes = part.attributes;
+    require_same_origin({file, part.attributes}, {request.shards.front(), merged.attributes});
+    seen.add(file, shards);
+    add(hdf5, shards, std::move(part));
   }
   if (request.partial == Partial::no) seen.require_complete();
-  TextAttributes attributes = first->outline.attributes;
-  if (!seen.are_complete()) attributes.emplace_back("shard", seen.all().text());
-  spool->complete(seen.are_complete());
+  merged.is_whole = seen.are_complete();
+  if (!merged.is_whole) merged.attributes.emplace_back("shard", seen.all().text());
+  return merged;
+}
+
+// The array `round` does not tell: an empty shard has none.
+bool is_refined(const std::string& file, const TextAttributes& attributes) {
+  return parse_json(attribute(attributes, "config"), file + " config").contains("refine");
+}
+
+}  // namespace
+
+std::string merge_shards(const MergeRequest& request, const EachBlock& each_block) {
+  std::optional<RunSpool> spool;
+  const MergedParts parts = merge_parts(
+      request, [](const Hdf5Reader& hdf5) { return read_sweep_outline(hdf5); },
+      [&](const Hdf5Reader& hdf5, const ShardSet&, const StoredSweep& part) {
+        if (!spool) spool.emplace(part.result, is_refined(hdf5.file(), part.attributes), request.output);
+        require_same_extent(hdf5.file(), part.result, request.shards.front(), spool->outline());
+        add_runs(hdf5, request, *spool);
+      });
+  spool->complete(parts.is_whole);
   require_nothing_more(request, [&] { return runs_in(*spool); });
   for_each_block(*spool, each_block);
   const auto values = [&](const std::string& array, std::size_t at, std::size_t count) {
@@ -256,7 +261,7 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
   return or_unchanged([&] {
     return write_sweep(request.output,
                        SweepInBlocks{spool->outline(), spool->is_refined(), spool->longest_error(), values},
-                       attributes);
+                       parts.attributes);
   });
 }
 
@@ -273,35 +278,29 @@ void require_finished(const std::string& file, const ShardSet& shards, const Swe
                   " runs are left): expected a finished shard (repeat its sweep command), or --partial");
 }
 
+StoredTally trusted_tally(const Hdf5Reader& hdf5) {
+  StoredTally stored = read_tally(hdf5);
+  require_trusted(hdf5.file(), stored.attributes);
+  return stored;
+}
+
 }  // namespace
 
-MergedTally merge_tallies(const MergeRequest& request) {
-  require_no_device(request.output);
-  std::optional<StoredTally> merged;
-  SeenShards seen;
-  for (const std::string& file : request.shards) {
-    std::error_code absent;
-    if (std::filesystem::equivalent(file, request.output, absent))
-      throw InputError(request.output, "is one of the shards: expected another file");
-    StoredTally part = read_tally(Hdf5Reader(file));
-    require_trusted(file, part.attributes);
-    const ShardSet shards = take_shards(part.attributes, file);
-    if (merged) require_same_origin({file, part.attributes}, {request.shards.front(), merged->attributes});
-    seen.add(file, shards);
-    if (request.partial == Partial::no) require_finished(file, shards, part.tally);
-    if (!merged)
-      merged = std::move(part);
-    else if (const std::string obstacle = merged->tally.obstacle(part.tally); !obstacle.empty())
-      throw InputError(file, "cannot be added (" + obstacle + "): expected shards of one sweep");
-    else
-      merged->tally.add(std::move(part.tally));
-  }
-  if (request.partial == Partial::no) seen.require_complete();
-  if (!seen.are_complete()) merged->attributes.emplace_back("shard", seen.all().text());
-  require_nothing_more(request, [&] { return merged->tally.held; });
-  const std::string digest =
-      or_unchanged([&] { return write_tally(request.output, merged->tally, merged->attributes); });
-  return {std::move(merged->tally), digest};
+SweepTally merge_tallies(const MergeRequest& request) {
+  std::optional<SweepTally> merged;
+  const MergedParts parts = merge_parts(
+      request, trusted_tally, [&](const Hdf5Reader& hdf5, const ShardSet& shards, StoredTally part) {
+        if (request.partial == Partial::no) require_finished(hdf5.file(), shards, part.tally);
+        if (!merged)
+          merged = std::move(part.tally);
+        else if (const std::string obstacle = merged->obstacle(part.tally); !obstacle.empty())
+          throw InputError(hdf5.file(), "cannot be added (" + obstacle + "): expected shards of one sweep");
+        else
+          merged->add(std::move(part.tally));
+      });
+  require_nothing_more(request, [&] { return merged->held; });
+  or_unchanged([&] { return write_tally(request.output, *merged, parts.attributes); });
+  return *std::move(merged);
 }
 
 }  // namespace remote_touch

@@ -56,13 +56,9 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
 
 // Merges the shards of a sweep that keeps tallies.
 
-struct MergedTally {
-  SweepTally tally;
-  std::string digest;
-};
-// Writes the merged tally, as merge_shards() does. Throws InputError also for a shard some of whose runs are
-// known to be wrong, see require_trusted(). An output that exists is replaced if its runs are all in the
-// shards. The memory holds the whole tally and one shard.
-MergedTally merge_tallies(const MergeRequest& request);
+// Writes and returns the merged tally, as merge_shards() does. Throws InputError also for a shard some of
+// whose runs are known to be wrong, see require_trusted(). An output that exists is replaced if its runs are
+// all in the shards. The memory holds the whole tally and one shard.
+SweepTally merge_tallies(const MergeRequest& request);
 
 }  // namespace remote_touch

@@ -172,7 +172,7 @@ TEST_F(TallyMerges, TakeUnfinishedShardsOnlyAsAPart) {
                merge_tallies({{one, two}, file("m.h5")});
              }),
              "1.h5: is not finished (" + std::to_string(left) + " runs are left)");
-  EXPECT_EQ(merge_tallies({{one, two}, file("m.h5"), Partial::yes}).tally.held.count(), 60 - left);
+  EXPECT_EQ(merge_tallies({{one, two}, file("m.h5"), Partial::yes}).held.count(), 60 - left);
   EXPECT_HAS(refusal([&] {
                merge_tallies({{two}, file("m.h5"), Partial::yes});
              }),
