@@ -57,6 +57,9 @@ int rename_or_keep(const std::filesystem::path& temporary, const std::filesystem
 // the permissions of the file that it replaces. The only device that can be written is /dev/null. A file that
 // appeared at the target meanwhile is kept if a ReplacementRule requires it.
 void write_file_atomically(const std::filesystem::path& target, const void* data, std::size_t size);
+inline void write_file_atomically(const std::filesystem::path& target, const std::string& text) {
+  write_file_atomically(target, text.data(), text.size());
+}
 
 // Throws the InputError of write_file_atomically() if the folder is missing or not writable, or if the target
 // is not a file, before any work is done for the file. Never blocks.

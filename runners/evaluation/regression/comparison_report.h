@@ -1,34 +1,28 @@
-// The report of a comparison: as JSON, and as tables for people.
+// The report of a comparison: as text for people, as JSON, and as test cases for build servers.
 #pragma once
 
-#include <cstdio>
-#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "runners/evaluation/regression/junit_report.h"
 #include "runners/evaluation/regression/result_comparison.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 
-// Comparisons in machine-readable form, JSON.
+struct ComparisonReport {
+  std::string text;  // tables
+  Json json;         // {"outcome", "verdict", "kind", "columns": [...], "divergence": {...}, ...}
+  // A case for each column or measure, and one for the whole. A measure that got worse is a failure. Any
+  // other difference is "skipped", so that nobody mistakes it for a failure or for a pass, and its text
+  // describes it. A comparison that was not possible or not decided is an error.
+  std::vector<ReportCase> cases = {};
+};
+ComparisonReport report_of(const ResultComparison& comparison);
 
-// The whole comparison, {"outcome", "verdict", "kind", "columns": [...], "divergence": {...}, ...}. Numbers
-// that are not finite are null.
-std::string comparison_json(const ResultComparison& comparison);
-std::string comparison_json(const std::vector<ResultComparison>& comparisons);  // a list
-
-// Writes a report; throws InputError when it cannot.
-void write_report(const std::filesystem::path& file, const std::string& text);
-
-// Prints a comparison for people, as tables, on standard output unless another stream is given.
-
-void print_comparison(const ResultComparison& comparison, std::FILE* out = stdout);
-
-// "same", "REGRESSED", "CHANGED", "COULD NOT COMPARE".
-const char* word_for(Outcome outcome);
-
-// "exact", or "1e-09 + 1e-06 relative".
-std::string tolerance_text(const Tolerance& tolerance);
+// Returns the text of a JSON file. Numbers that are not finite are null.
+std::string json_text(const Json& report);
 
 // The fewest digits that state the number exactly: "0.033", not "0.033000000000000002".
 std::string shortest_text(double number);

@@ -180,17 +180,8 @@ ResultComparison compare_by_kind(const Hdf5Reader& first_file, const Hdf5Reader&
 }  // namespace
 
 const char* name_of(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::same:
-      return "same";
-    case Outcome::regressed:
-      return "regressed";
-    case Outcome::changed:
-      return "changed";
-    case Outcome::not_comparable:
-      break;
-  }
-  return "not_comparable";
+  constexpr const char* kNames[] = {"same", "regressed", "not_comparable", "", "changed"};
+  return kNames[static_cast<int>(outcome)];
 }
 
 std::vector<MeasureJudgement> judged_measures(const ResultComparison& comparison) {

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/comparison_report.h"
-#include "runners/evaluation/regression/junit_report.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
@@ -31,22 +31,6 @@ struct BaselineBlessRequest {
 
 using State = BaselineCheck::State;
 
-const char* word_for(State state) {
-  switch (state) {
-    case State::same:
-      return "same";
-    case State::changed:
-      return "CHANGED";
-    case State::missing:
-      return "MISSING";
-    case State::not_run:
-      return "not run";
-    case State::not_comparable:
-      break;
-  }
-  return "COULD NOT COMPARE";
-}
-
 std::vector<Baseline> chosen(const Manifest& manifest, const BaselineCheckRequest& request) {
   std::vector<Baseline> list;
   for (const std::string& name : request.names) {
@@ -69,8 +53,11 @@ std::vector<std::string> files_of(const std::string& folder, const std::vector<B
 }
 
 void print(const BaselineCheck& check) {
-  std::printf("%-18s %-24s %s\n", word_for(check.state), check.name.c_str(), check.text.c_str());
-  if (check.comparison && check.state != State::same) print_comparison(*check.comparison);
+  constexpr const char* kWords[] = {"same", "CHANGED", "MISSING", "COULD NOT COMPARE", "not run"};
+  std::printf("%-18s %-24s %s\n", kWords[static_cast<int>(check.state)], check.name.c_str(),
+              check.text.c_str());
+  if (check.comparison && check.state != State::same)
+    std::fputs(report_of(*check.comparison).text.c_str(), stdout);
 }
 
 // "66 baselines: 63 same, 1 changed, 1 could not be compared, 1 not run; 0 missing"
@@ -86,31 +73,24 @@ void print_summary(const std::vector<BaselineCheck>& checks) {
 }
 
 ReportSuite suite_of(const std::vector<BaselineCheck>& checks) {
+  using Case = ReportCase::State;
+  constexpr Case kStates[] = {Case::passed, Case::failed, Case::failed, Case::error, Case::skipped};
   ReportSuite suite{"baselines"};
-  for (const BaselineCheck& check : checks) {
-    using Case = ReportCase::State;
-    const Case state = check.state == State::same                                       ? Case::passed
-                       : check.state == State::changed || check.state == State::missing ? Case::failed
-                       : check.state == State::not_run                                  ? Case::skipped
-                                                                                        : Case::error;
-    suite.cases.push_back({check.name, state, check.text});
-  }
+  for (const BaselineCheck& check : checks)
+    suite.cases.push_back({check.name, kStates[static_cast<int>(check.state)], check.text});
   return suite;
 }
 
-// Returns the comparison of each check. A check without a comparison gets an entry with its verdict and
-// without columns.
-std::vector<ResultComparison> comparisons(const std::vector<BaselineCheck>& checks) {
-  std::vector<ResultComparison> list;
+// Returns the report of each check. A check without a comparison has one with its verdict and without
+// columns.
+Json json_of(const std::vector<BaselineCheck>& checks) {
+  Json list = Json::array();
   for (const BaselineCheck& check : checks) {
-    if (check.comparison)
-      list.push_back(*check.comparison);
-    else
-      list.push_back({check.name, "this program", check.state == State::not_run ? "not run" : "none"});
-    list.back().baseline = check.name;
-    if (check.comparison) continue;
-    list.back().verdict = check.text;
-    if (check.state == State::missing) list.back().outcome = Outcome::changed;
+    ResultComparison none{"", "this program", check.state == State::not_run ? "not run" : "none"};
+    none.verdict = check.text;
+    if (check.state == State::missing) none.outcome = Outcome::changed;
+    list.push_back(report_of(check.comparison.value_or(none)).json);
+    list.back()["baseline"] = check.name;
   }
   return list;
 }
@@ -147,8 +127,8 @@ int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& 
   if (checks.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
   for (const std::string& note : notes.lines()) std::printf("note: %s\n", note.c_str());
   print_summary(checks);
-  if (!request.json.empty()) write_report(request.json, comparison_json(comparisons(checks)));
-  if (!request.junit.empty()) write_report(request.junit, junit({suite_of(checks)}));
+  if (!request.json.empty()) write_file_atomically(request.json, json_text(json_of(checks)));
+  if (!request.junit.empty()) write_file_atomically(request.junit, junit({suite_of(checks)}));
   return exit_code(checks);
 }
 

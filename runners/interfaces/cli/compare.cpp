@@ -11,7 +11,9 @@
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/figures/result_file.h"
+#include "analysis/storage/atomic_file.h"
 #include "analysis/trace/trace.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/junit_report.h"
@@ -71,13 +73,9 @@ Recipe recipe(const CompareRequest& request) {
 }
 
 void require_traces_to_draw(const CompareRequest& request, const ResultComparison& comparison) {
-  if (comparison.kind == "trace") return;
-  if (!request.plot.empty())
-    throw InputError("--plot " + request.plot,
-                     "the results are of kind " + comparison.kind + ": expected two traces");
-  if (!request.view.empty())
-    throw InputError("--view " + request.view,
-                     "the results are of kind " + comparison.kind + ": expected two traces");
+  if (comparison.kind == "trace" || (request.plot.empty() && request.view.empty())) return;
+  throw InputError(request.plot.empty() ? "--view " + request.view : "--plot " + request.plot,
+                   "the results are of kind " + comparison.kind + ": expected two traces");
 }
 
 void write_plot(const CommandLine& line, const CompareRequest& request, const ResultComparison& comparison) {
@@ -106,9 +104,10 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   if (!request.plot.empty()) lock.emplace(lock_output(line, request.plot, inputs));
   const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);
   require_traces_to_draw(request, comparison);
-  print_comparison(comparison);
-  if (!request.json.empty()) write_report(request.json, comparison_json(comparison));
-  if (!request.junit.empty()) write_report(request.junit, junit({suite_of(comparison, request.baseline)}));
+  const ComparisonReport report = report_of(comparison);
+  std::fputs(report.text.c_str(), stdout);
+  if (!request.json.empty()) write_file_atomically(request.json, json_text(report.json));
+  if (!request.junit.empty()) write_file_atomically(request.junit, junit({{request.baseline, report.cases}}));
   if (!request.plot.empty()) write_plot(line, request, comparison);
   if (!request.view.empty()) write_view(line, view);
   return static_cast<int>(comparison.outcome);
@@ -122,9 +121,8 @@ int command_hashes(const CommandLine& line, const HashesRequest& request) {
   const StoredTrace trace(request.trace);
   const TickHashes hashes = hashes_of_trace(trace, request.every);
   write_hashes(request.output, hashes, provenance_of(trace.attributes()));
-  std::printf("%s: %zu hashes", printable(request.output).c_str(), hashes.tick.size());
-  if (!hashes.tick.empty()) std::printf(", the last of tick %d", hashes.tick.back());
-  std::printf("\n");
+  const std::string last = hashes.tick.empty() ? "" : formatted(", the last of tick %d", hashes.tick.back());
+  std::printf("%s: %zu hashes%s\n", printable(request.output).c_str(), hashes.tick.size(), last.c_str());
   return kDone;
 }
 
@@ -132,12 +130,9 @@ namespace {
 
 std::string text(const CheckResult& result) {
   std::string all = result.scene + ", tick " + std::to_string(result.comparison.first_violation) + ":";
-  for (const Deviation& d : result.comparison.deviations) {
-    if (d.max <= d.tolerance) continue;
-    char part[128];
-    std::snprintf(part, sizeof part, " %s %.3g %s (allowed %.3g)", d.quantity, d.max, d.unit, d.tolerance);
-    all += part;
-  }
+  for (const Deviation& d : result.comparison.deviations)
+    if (!(d.max <= d.tolerance))
+      all += formatted(" %s %.3g %s (allowed %.3g)", d.quantity, d.max, d.unit, d.tolerance);
   return all + (result.remark.empty() ? "" : "; " + result.remark);
 }
 
@@ -158,13 +153,10 @@ void print_check(const CheckName& check, const std::vector<CheckResult>& results
   }
   std::printf("  %-4s %-18s %d scene(s), %4d ticks  %s\n", failed > 0 ? "FAIL" : "pass", check.name, scenes,
               ticks, check.meaning);
-  bool explained = false;
-  for (const auto& [quantity, d] : worst) {
-    if (d.tolerance == 0 && d.max == 0) continue;
-    if (!explained) std::printf("       tolerance: %s\n", reason.c_str());
-    explained = true;
+  std::erase_if(worst, [](const auto& one) { return one.second.tolerance == 0 && one.second.max == 0; });
+  if (!worst.empty()) std::printf("       tolerance: %s\n", reason.c_str());
+  for (const auto& [quantity, d] : worst)
     std::printf("       %-20s at most %.3g %s, allowed %.3g\n", quantity.c_str(), d.max, d.unit, d.tolerance);
-  }
   for (const CheckResult& result : results)
     if (result.check == check.name && !result.passed()) std::printf("       in %s\n", text(result).c_str());
 }
@@ -198,7 +190,7 @@ int command_verify(const CommandLine& line, const VerifyRequest& request) {
     for (const CheckResult& result : results) all_pass &= result.passed();
     suites.push_back(suite_of(entry->name, results));
   }
-  if (!request.junit.empty()) write_report(request.junit, junit(suites));
+  if (!request.junit.empty()) write_file_atomically(request.junit, junit(suites));
   print_replaced(request.overrides);
   return all_pass ? kDone : kCheckFailed;
 }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "runners/evaluation/regression/comparison_report.h"
-#include "runners/evaluation/regression/junit_report.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "tests/support/test_files.h"
 
@@ -28,10 +27,10 @@ inline bool any_has(const std::vector<std::string>& texts, const std::string& pa
 }
 
 inline json json_of(const ResultComparison& comparison) {
-  return json::parse(comparison_json(comparison));
+  return json::parse(json_text(report_of(comparison).json));
 }
 inline std::string junit_of(const ResultComparison& comparison) {
-  return junit({suite_of(comparison, "baseline.h5")});
+  return junit({{"baseline.h5", report_of(comparison).cases}});
 }
 inline std::string counts(int tests, int failures, int errors, int skipped = 0) {
   return "tests=\"" + std::to_string(tests) + "\" failures=\"" + std::to_string(failures) + "\" errors=\"" +

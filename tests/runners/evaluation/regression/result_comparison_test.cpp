@@ -352,16 +352,6 @@ TEST(Reports, AnyTextIsWellFormed) {
                 "  </testsuite>\n</testsuites>\n");
 }
 
-TEST_F(CompareTraceFiles, WritesReportsOfSeveralFiles) {
-  write("a.h5"), write("b.h5", {"seed=2"});
-  const ResultComparison same = compare("a.h5", "a.h5"), other = compare("a.h5", "b.h5");
-  const json list = json::parse(comparison_json({same, other}));
-  ASSERT_EQ(list.size(), 2u);
-  EXPECT_EQ(list[0], json_of(same));
-  EXPECT_EQ(list[1], json_of(other));
-  EXPECT_EQ(json::parse(comparison_json(std::vector<ResultComparison>{})), json::array());
-}
-
 TEST(Reports, AreWrittenForANameThatIsNotUtf8) {
   ResultComparison comparison{"bad \xff name", "x", "trace"};
   EXPECT_HAS(json_of(comparison)["baseline"].get<std::string>(), "bad ");
