@@ -473,7 +473,7 @@ PairedVerdict paired_verdict(const SweepResult& baseline, const SweepComparison&
   for (const auto* only : {&result.baseline_only, &result.candidate_only})
     for (const std::size_t run : *only)
       if (is_planned(baseline, run)) return PairedVerdict::runs_missing;
-  if (!result.first) return PairedVerdict::equal;
+  if (result.is_equal()) return PairedVerdict::equal;
   bool undecided = false;
   for (const RegionComparison& c : result.by_region) {
     if (is_change(c.judgement)) return PairedVerdict::changed;
@@ -523,7 +523,6 @@ SweepComparison compare(const SweepResult& baseline, const SweepResult& candidat
     }
   }
   result.first = first_difference(baseline, candidate, result);
-  result.exact = result.first ? ExactVerdict::different : ExactVerdict::equal;
   judge(rule, pairing.needs_tests, result);
   result.paired = paired_verdict(baseline, result);
   return result;

@@ -128,12 +128,6 @@ struct PairedRule {
   double alpha = 0.01;  // probability of a false "better", "worse" or "changed" anywhere
 };
 
-enum class ExactVerdict {
-  not_comparable,
-  equal,     // the same runs are done, and every pair of every measure is within the tolerance
-  different  // some are not
-};
-
 // The verdict is the first of these that holds, in this order; equal and within_margin are a pass.
 //
 // A measure in a region is changed if one direction prevails (adjusted p < alpha, whatever the margins) or a
@@ -159,7 +153,7 @@ enum class ExactVerdict {
 enum class PairedVerdict {
   not_comparable,
   runs_missing,   // some runs of the first round are done in one sweep only
-  equal,          // same meaning as in ExactVerdict
+  equal,          // see is_equal()
   changed,        // some measure in some region: better, worse, or without a direction
   undecided,      // some measure over the whole
   within_margin,  // over the whole every measure is equal or within_margin
@@ -181,9 +175,10 @@ struct SweepComparison {
   // The fewest clusters of a region with which an adjusted p can be below alpha. 0: some region has as many,
   // or there is no test.
   std::int64_t needed_clusters = 0;
-  ExactVerdict exact = ExactVerdict::not_comparable;
   PairedVerdict paired = PairedVerdict::not_comparable;
 
+  // The same runs are done in both, and every pair of every measure is within the tolerance.
+  bool is_equal() const { return problems.empty() && !first; }
   const RegionComparison& at(std::size_t region, std::size_t measure) const {
     return by_region[region * measures.size() + measure];
   }

@@ -1,18 +1,20 @@
 #include "runners/evaluation/regression/result_comparison.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/figures/result_file.h"
+#include "analysis/measures/no_value.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/hash64.h"
 #include "analysis/trace/trace.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/regression/measure_comparison.h"
 #include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/sweep/stored_sweep.h"
@@ -46,34 +48,37 @@ void conclude(ResultComparison& result, Outcome outcome, std::string verdict) {
   result.verdict = std::move(verdict);
 }
 
-// "proxy_position and 3 more of 16 columns"
-std::string count_text(const std::vector<std::string>& names, std::size_t of, const char* things) {
-  std::string text = names.front();
-  if (names.size() > 1) text += " and " + std::to_string(names.size() - 1) + " more";
-  return text + " of " + std::to_string(of) + " " + things;
+// "max_sink, max_float and 3 more"; `most` names are listed.
+std::string first_of(std::vector<std::string> names, std::size_t most) {
+  const std::size_t more = names.size() - std::min(names.size(), most);
+  names.resize(names.size() - more);
+  return joined(names, ", ") + (more > 0 ? " and " + std::to_string(more) + " more" : "");
+}
+
+// Returns the measures of two traces that differ, or of two sweeps, that are judged so.
+std::vector<std::string> judged_as(Judgement judgement, const ResultComparison& comparison) {
+  std::vector<std::string> names;
+  for (const ValueComparison& measure : comparison.measures)
+    if (measure.judgement == judgement) names.push_back(measure.name);
+  if (comparison.sweep && comparison.sweep->problems.empty())
+    for (std::size_t i = 0; i < comparison.sweep->measures.size(); ++i)
+      if (judgement_of(*comparison.sweep, i, comparison.paired) == judgement)
+        names.push_back(comparison.sweep->measures[i].name);
+  return names;
 }
 
 // "; worse: force_noise; better: max_sink, max_float"; empty where every measure is equal or within a margin.
 std::string judgements_text(const ResultComparison& result) {
-  constexpr std::size_t kNamed = 4;  // names that are listed for each judgement
   std::string text;
-  for (const Judgement requested :
-       {Judgement::worse, Judgement::better, Judgement::changed, Judgement::undecided}) {
-    std::string names;
-    std::size_t count = 0;
-    for (const MeasureJudgement& measure : judged_measures(result))
-      if (measure.judgement == requested && ++count <= kNamed)
-        names += (names.empty() ? "" : ", ") + measure.name;
-    if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
-    if (count > 0) text += std::string("; ") + name_of(requested) + ": " + names;
-  }
+  for (const Judgement judgement :
+       {Judgement::worse, Judgement::better, Judgement::changed, Judgement::undecided})
+    if (const auto names = judged_as(judgement, result); !names.empty())
+      text += std::string("; ") + name_of(judgement) + ": " + first_of(names, 4);
   return text;
 }
 
-bool got_worse(const ResultComparison& result) {
-  for (const MeasureJudgement& measure : judged_measures(result))
-    if (measure.judgement == Judgement::worse) return true;
-  return false;
+Outcome difference_of(const ResultComparison& result, bool some_failed) {
+  return some_failed || !judged_as(Judgement::worse, result).empty() ? Outcome::regressed : Outcome::changed;
 }
 
 void judge_columns(ResultComparison& result) {
@@ -91,7 +96,7 @@ void judge_columns(ResultComparison& result) {
     return conclude(result, Outcome::same,
                     std::to_string(columns.size()) + " columns, " +
                         (exact ? "every number is the same" : "every number is within its tolerance"));
-  std::string text = count_text(failed, columns.size(), "columns");
+  std::string text = first_of(failed, 1) + " of " + std::to_string(columns.size()) + " columns";
   if (const auto& first = result.columns->divergence)
     text += ", from tick " + std::to_string(first->tick) + " on (" + name_of(first->cause) + ")";
   if (const ColumnComparison& first = columns.front(); first.baseline_rows != first.candidate_rows)
@@ -100,7 +105,7 @@ void judge_columns(ResultComparison& result) {
             (result.columns->divergence ? "" : ", and the common rows are the same");
   if (!result.no_measures.empty()) text += "; no measures: " + result.no_measures;
   if (!result.not_judged.empty()) text += "; " + result.not_judged;
-  conclude(result, got_worse(result) ? Outcome::regressed : Outcome::changed, text + judgements_text(result));
+  conclude(result, difference_of(result, false), text + judgements_text(result));
 }
 
 // Throws InputError for a tolerance that is of no column or measure: a misspelt one would leave its column
@@ -116,7 +121,7 @@ void check_names(const Tolerances& tolerances, const std::vector<std::string>& n
 }
 
 std::string exact_text(const SweepComparison& sweep) {
-  if (sweep.exact == ExactVerdict::equal)
+  if (sweep.is_equal())
     return std::to_string(sweep.done_in_both) + " runs, every measure is the same or within its tolerance";
   std::int64_t outside = 0;
   for (const MeasureComparison& measure : sweep.measures) outside = std::max(outside, measure.outside);
@@ -132,10 +137,9 @@ std::string exact_text(const SweepComparison& sweep) {
 void judge_sweep(ResultComparison& result, const PairedRule& rule) {
   const SweepComparison& sweep = *result.sweep;
   const std::string text = exact_text(sweep), measures = judgements_text(result);
-  char margins[160];
-  std::snprintf(margins, sizeof margins, "the margins (%.3g of the runs for events, %.3g for other measures)",
-                rule.margin, rule.shift_margin);
-  if (result.paired ? sweep.paired == PairedVerdict::equal : sweep.exact == ExactVerdict::equal)
+  const std::string margins = formatted("the margins (%.3g of the runs for events, %.3g for other measures)",
+                                        rule.margin, rule.shift_margin);
+  if (result.paired ? sweep.paired == PairedVerdict::equal : sweep.is_equal())
     return conclude(result, Outcome::same, text);
   if (result.paired && sweep.paired == PairedVerdict::within_margin)
     return conclude(result, Outcome::same, text + "; over all runs, all changes are within " + margins);
@@ -144,7 +148,7 @@ void judge_sweep(ResultComparison& result, const PairedRule& rule) {
                     text + "; too few runs to be sure of " + margins + measures);
   const bool some_failed =
       sweep.newly_failed > 0 && (!result.paired || sweep.paired == PairedVerdict::runs_missing);
-  conclude(result, got_worse(result) || some_failed ? Outcome::regressed : Outcome::changed, text + measures);
+  conclude(result, difference_of(result, some_failed), text + measures);
 }
 
 StoredHashes hashes_of(const Hdf5Reader& result, const std::string& kind) {
@@ -182,16 +186,6 @@ ResultComparison compare_by_kind(const Hdf5Reader& first_file, const Hdf5Reader&
 const char* name_of(Outcome outcome) {
   constexpr const char* kNames[] = {"same", "regressed", "not_comparable", "", "changed"};
   return kNames[static_cast<int>(outcome)];
-}
-
-std::vector<MeasureJudgement> judged_measures(const ResultComparison& comparison) {
-  std::vector<MeasureJudgement> all;
-  for (const ValueComparison& measure : comparison.measures) all.push_back({measure.name, measure.judgement});
-  if (comparison.sweep && comparison.sweep->problems.empty())
-    for (std::size_t i = 0; i < comparison.sweep->measures.size(); ++i)
-      all.push_back(
-          {comparison.sweep->measures[i].name, judgement_of(*comparison.sweep, i, comparison.paired)});
-  return all;
 }
 
 std::string kind_of(const Hdf5Reader& result) {
@@ -235,6 +229,161 @@ ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes
   return result;
 }
 
+namespace {
+
+// --- the measures of two traces that differ ---
+
+struct Measured {
+  std::size_t ticks = 0;
+  std::vector<std::optional<double>> values = {};  // none for a measure that does not apply
+  bool lacks_outcome = false;                      // an outcome depends on a held depth that is not known
+  bool is_random = true;                           // the run drew random numbers, or this is not known
+  bool has_contact = false;                        // there was one in some tick
+};
+
+// Returns the experiment of a trace. Returns none if the trace stores no configuration, or if this program
+// cannot read it or does not have its parts.
+std::optional<Experiment> stored_experiment(const TextAttributes& trace) {
+  const std::string configuration = attribute(trace, "config");
+  if (configuration.empty()) return std::nullopt;
+  try {
+    return Experiment::from_json(stored_configuration(configuration), "configuration");
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+// Returns held_depth_m() of the experiment; 0 if the trace stores none. Returns none if it is not known.
+std::optional<double> held_depth_of(const TextAttributes& trace,
+                                    const std::optional<Experiment>& experiment) {
+  if (attribute(trace, "config").empty()) return 0;
+  if (!experiment) return std::nullopt;
+  try {
+    return held_depth_m(experiment->rendered_contact());
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+// True for measures that depend on Trace::held_depth_m.
+bool needs_held_depth(const std::string& measure) {
+  return measure.starts_with("popped_through") || measure == "tool_popped_through" ||
+         measure == "wrong_side_fraction" || measure.starts_with("first_pop_through_");
+}
+
+std::optional<Measured> measured(const ColumnSource& source, const TextAttributes& attributes) {
+  auto trace = trace_of([&](const std::string& name) {
+    return source.has(name) ? std::optional(source.column(name)) : std::nullopt;
+  });
+  if (!trace) return std::nullopt;
+  const std::optional<Experiment> experiment = stored_experiment(attributes);
+  const std::optional<double> held_depth_m = held_depth_of(attributes, experiment);
+  trace->held_depth_m = held_depth_m.value_or(0);
+  Measured result{trace->length()};
+  result.is_random = !experiment || !random_streams(*experiment).is_fixed();
+  for (const Measure& measure : measures()) {
+    if (!applies(measure, *trace)) {
+      result.values.emplace_back();
+      continue;
+    }
+    const bool is_known = held_depth_m || !needs_held_depth(measure.name);
+    const double value = measure.compute(*trace);
+    result.lacks_outcome |= !is_known && is_outcome(measure.name) && !std::isnan(value);
+    result.values.emplace_back(is_known ? value : kNoValue);
+    result.has_contact |= measure.name == "first_contact_time" && !std::isnan(value);
+  }
+  return result;
+}
+
+std::string text_of_outcome(const ValueComparison& measure) {
+  if (!std::isfinite(measure.baseline) && !std::isfinite(measure.candidate))
+    return measure.name + " is unknown in both runs";
+  if (!std::isfinite(measure.baseline) || !std::isfinite(measure.candidate))
+    return measure.name + " is unknown in one run";
+  if (measure.name == "popped_through") return "one run popped through";
+  if (measure.name == "tool_popped_through") return "the tool of one run popped through";
+  return measure.name + " differs";
+}
+
+// Judges the measures that do not show a direction as changed, unless they are equal.
+template <class Shows>
+void unjudge(ResultComparison& result, const std::string& why, Shows&& shows) {
+  bool any = false;
+  for (ValueComparison& measure : result.measures)
+    if (!shows(measure.name) && measure.judgement != Judgement::equal)
+      any |= measure.judgement != Judgement::changed, measure.judgement = Judgement::changed;
+  if (any && result.not_judged.empty()) result.not_judged = why;
+}
+
+// The mean time between two ticks, s; none if the trace does not state it.
+std::optional<double> tick_s(const ColumnSource& trace, std::size_t& ticks) {
+  if (!trace.has("time")) return std::nullopt;
+  const Column time = trace.column("time");
+  const auto* time_s = std::get_if<std::vector<double>>(&time.values);
+  if (!time_s || time_s->size() < 2) return std::nullopt;
+  ticks = time_s->size();
+  return (time_s->back() - time_s->front()) / static_cast<double>(ticks - 1);
+}
+
+// "the baseline has a tick every 1 ms, the candidate every 2 ms": runs of as many ticks, but of another
+// duration, whose measures say nothing about each other. Empty if the ticks are equally far apart, if the
+// runs have other numbers of ticks, or if one does not state its times.
+std::string tick_difference(const ColumnSource& baseline, const ColumnSource& candidate) {
+  std::size_t before = 0, now = 0;
+  const auto a = tick_s(baseline, before), b = tick_s(candidate, now);
+  constexpr double kRounding = 1e-9;  // relative; a time is a tick's number over the rate, exact to 1e-16
+  if (!a || !b || before != now || std::abs(*a - *b) <= kRounding * std::abs(*a)) return {};
+  return formatted("the baseline has a tick every %.6g ms, the candidate every %.6g ms", 1e3 * *a, 1e3 * *b);
+}
+
+// Compares the measures of the catalog in use that both traces have, in its order. A stored trace has no
+// measures of settled contact, which need more than its columns. There are no measures if one of the traces
+// lacks a column, or if they differ in length. Measures are only judged as changed
+// - if the experiments differ and one of the runs drew random numbers: one run of each shows no direction,
+// - if the outcomes of the runs differ, see is_outcome(), except the outcomes,
+// - if a run has no contact and the measure needs one, see needs_contact().
+// The attributes of each trace hold its configuration, which determines how far its proxy may lie behind the
+// surface. If this program cannot read it, the measures that depend on this are NaN. Holds one trace at a
+// time.
+void compare_measures(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
+                      const ColumnSource& candidate, const TextAttributes& candidate_attributes,
+                      const Tolerances& tolerances, ResultComparison& result) {
+  result.no_measures = tick_difference(baseline, candidate);
+  if (!result.no_measures.empty()) return;
+  const auto before = measured(baseline, baseline_attributes);
+  const auto now = before ? measured(candidate, candidate_attributes) : std::nullopt;
+  if (!now || now->ticks != before->ticks || now->ticks == 0) {
+    result.no_measures = "a column is missing, or the runs are not of one length";
+    return;
+  }
+  for (std::size_t i = 0; i < measures().size(); ++i) {
+    const Measure& measure = measures()[i];
+    const std::optional<double>&b = before->values[i], &c = now->values[i];
+    if (!b || !c) continue;
+    const Tolerance tolerance = tolerance_of(tolerances, measure.name);
+    const bool is_unknown = needs_held_depth(measure.name) && (before->lacks_outcome || now->lacks_outcome);
+    result.measures.push_back(
+        {measure.name, measure.unit, measure.better, tolerance, *b, *c,
+         is_unknown ? Judgement::changed : judge_value(*b, *c, measure.better, tolerance)});
+  }
+  const bool is_known = !before->lacks_outcome && !now->lacks_outcome;
+  if (is_known && !result.configuration.empty() && (before->is_random || now->is_random))
+    unjudge(result, "one run of each shows no direction, because they drew random numbers",
+            [](const std::string&) { return false; });
+  for (const ValueComparison& measure : result.measures)
+    if (is_outcome(measure.name) && measure.judgement != Judgement::equal) {
+      if (result.not_judged.empty())
+        result.not_judged = text_of_outcome(measure) + ": the other measures are not judged";
+      unjudge(result, "", is_outcome);
+      break;
+    }
+  if (!before->has_contact || !now->has_contact)
+    unjudge(result, "a run without contact: measures that need one are not judged",
+            [](const std::string& name) { return !needs_contact(name); });
+}
+
+}  // namespace
+
 ResultComparison compare_trace(const ColumnSource& baseline, const TextAttributes& baseline_attributes,
                                const ColumnSource& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules) {
@@ -243,17 +392,9 @@ ResultComparison compare_trace(const ColumnSource& baseline, const TextAttribute
   check_names(rules.tolerances, names, directions());
   ResultComparison result = begin("trace", baseline_attributes, candidate_attributes);
   result.columns = compare_traces(baseline, candidate, rules.tolerances, result.configuration);
-  if (!result.columns->is_same()) {
-    result.no_measures = tick_difference(baseline, candidate);
-    auto measures = result.no_measures.empty()
-                        ? compare_measures(baseline, baseline_attributes, candidate, candidate_attributes,
-                                           rules.tolerances, result.configuration)
-                        : std::nullopt;
-    if (measures)
-      result.measures = std::move(measures->all), result.not_judged = std::move(measures->not_judged);
-    else if (result.no_measures.empty())
-      result.no_measures = "a column is missing, or the runs are not of one length";
-  }
+  if (!result.columns->is_same())
+    compare_measures(baseline, baseline_attributes, candidate, candidate_attributes, rules.tolerances,
+                     result);
   judge_columns(result);
   return result;
 }

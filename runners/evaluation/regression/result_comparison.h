@@ -31,7 +31,7 @@ struct ResultComparison {
   std::vector<std::string> configuration = {};  // differences of the experiments
   std::vector<std::string> provenance = {};     // differences of the builds: reported, not judged
   std::optional<TraceComparison> columns = {};  // set for traces and figures
-  std::vector<ValueComparison> measures = {};   // set for traces that differ, see compare_measures()
+  std::vector<ValueComparison> measures = {};   // set for traces that differ
   std::string no_measures = {};                 // why there are none although the traces differ
   std::string not_judged = {};                  // why only some of them, or none, are judged
   std::optional<SweepComparison> sweep = {};
@@ -40,13 +40,6 @@ struct ResultComparison {
   Outcome outcome = Outcome::not_comparable;
   std::string verdict = {};  // one line
 };
-
-struct MeasureJudgement {
-  std::string name;
-  Judgement judgement = Judgement::equal;
-};
-// The judgements of all measures of two traces that differ, or of two sweeps, by the rule of the comparison.
-std::vector<MeasureJudgement> judged_measures(const ResultComparison& comparison);
 
 // "trace", "sweep", "figure" or "hashes", from the schema; the reader refuses another version. Throws
 // InputError for any other file.
