@@ -24,7 +24,7 @@ std::string json_text(const Json& report) {
 
 namespace {
 
-using State = ReportCase::State;
+using CaseState = ReportCase::State;
 
 template <class Number>
 Json optional_json(const std::optional<Number>& value) {
@@ -65,7 +65,7 @@ ReportCase case_of(const ColumnComparison& column) {
   std::string why = column.problem;
   if (!why.empty() && column.outside > 0) why += "; ";
   why += outside_text(column.outside, column.rows, "rows", column.max);
-  return {column.name, column.is_same() ? State::passed : State::skipped, why};
+  return {column.name, column.is_same() ? CaseState::passed : CaseState::skipped, why};
 }
 
 Json column_json(const ColumnComparison& column) {
@@ -188,11 +188,11 @@ const char* word_for(Judgement judgement) {
 }
 
 // An undecided measure is an error only if the whole comparison could not decide either.
-State state_of(Judgement judgement, Outcome whole) {
-  if (judgement == Judgement::equal || judgement == Judgement::within_margin) return State::passed;
-  if (judgement == Judgement::worse) return State::failed;
-  return judgement == Judgement::undecided && whole == Outcome::not_comparable ? State::error
-                                                                               : State::skipped;
+CaseState state_of(Judgement judgement, Outcome whole) {
+  if (judgement == Judgement::equal || judgement == Judgement::within_margin) return CaseState::passed;
+  if (judgement == Judgement::worse) return CaseState::failed;
+  return judgement == Judgement::undecided && whole == Outcome::not_comparable ? CaseState::error
+                                                                               : CaseState::skipped;
 }
 
 template <class Measure>
@@ -428,7 +428,8 @@ void add_sweep(const ResultComparison& comparison, ComparisonReport& report) {
 
 ComparisonReport report_of(const ResultComparison& comparison) {
   constexpr const char* kWords[] = {"same", "REGRESSED", "COULD NOT COMPARE", "", "CHANGED"};
-  constexpr State kStates[] = {State::passed, State::failed, State::error, {}, State::skipped};
+  constexpr CaseState kStates[] = {
+      CaseState::passed, CaseState::failed, CaseState::error, {}, CaseState::skipped};
   const auto outcome = static_cast<std::size_t>(comparison.outcome);
   // The lines below state the baseline first, too: "seed 1 against 7".
   ComparisonReport report{comparison.kind + ": baseline " + comparison.baseline + " against candidate " +
