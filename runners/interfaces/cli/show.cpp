@@ -142,7 +142,7 @@ int command_list(const CommandLine&, const ListRequest& request) {
 }
 
 int command_describe(const CommandLine&, const DescribeRequest& request) {
-  describe(request.name, stdout);
+  std::fputs(described(request.name).c_str(), stdout);
   return kDone;
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figures.h"
@@ -46,49 +47,53 @@ std::string unit_text(std::string_view unit) {
   return text;
 }
 
-void print(const Owner& owner, const Parameter& parameter, std::FILE* out) {
-  const Unit* unit = unit_of(parameter.name);
-  std::fprintf(out, "%s.%s: a parameter of \"%s\": %s\n  %sdefault %s; allowed %s%s\n", owner.name.c_str(),
-               parameter.name.c_str(), owner.section.c_str(), parameter.help.c_str(),
-               unit_text(unit ? unit->text : "").c_str(), value_text(parameter).c_str(),
-               allowed(parameter).c_str(), parameter.is_live ? "; live" : "");
-}
-
-void describe_column(const std::string& name, std::FILE* out) {
+std::string column_text(const std::string& name) {
   std::vector<std::string> known;
   for (const TraceColumn& column : trace_columns()) {
     known.emplace_back(column.name);
     if (name != column.name) continue;
-    std::fprintf(out, "trace.%s: a column of a trace: %s\n", column.name, meaning_of(column).c_str());
+    std::string text = "trace." + name + ": a column of a trace: " + meaning_of(column) + "\n";
     if (std::string_view(column.meaning) != column.meaning_with_tool)
-      std::fprintf(out, "  with a tool: %s\n", column.meaning_with_tool);
-    std::fprintf(out, "  %s%d in each row; in %s\n", unit_text(column.unit).c_str(), column.width,
-                 runs_with(column.part));
-    return;
+      text += std::string("  with a tool: ") + column.meaning_with_tool + "\n";
+    return text + "  " + unit_text(column.unit) + std::to_string(column.width) + " in each row; in " +
+           runs_with(column.part) + "\n";
   }
   refuse_key(name, known, "trace.");
 }
 
-}  // namespace
+std::string allowed_text(const Parameter& parameter) {
+  return "default " + value_text(parameter) + "; allowed " + allowed(parameter) +
+         (parameter.is_live ? "; live\n" : "\n");
+}
 
-bool describe_parameter(const std::string& path, std::FILE* out) {
+// Returns the parameter of a path, once for every entry that has it:
+//   proxy.r1_m, run.seed    of an entry of a catalog, or of a section
+//   renderer.r1_m           of every renderer that has it, as in --set
+//   fixtures.0.radius_m     the same for a list
+//   trace.force             a column of a trace
+// Empty if no section and no entry has the first name. Throws InputError, with the most similar name, if it
+// has no such parameter.
+std::string parameter_text(const std::string& path) {
   const std::vector<std::string> keys = path_keys(path);
   const bool in_list = keys.size() == 3 && is_index(keys[1]);
-  if (keys.size() != 2 && !in_list) return false;
-  if (keys[0] == "trace" && !in_list) return describe_column(keys[1], out), true;
+  if (keys.size() != 2 && !in_list) return {};
+  if (keys[0] == "trace" && !in_list) return column_text(keys[1]);
   std::vector<std::string> known;
-  bool found = false;
+  std::string text;
   const std::vector<Owner> owners = owners_of(keys.front());
   for (const Owner& owner : owners)
     for (const Parameter& parameter : owner.settings->settings()) {
       known.push_back(parameter.name);
       if (parameter.name != keys.back()) continue;
-      print(owner, parameter, out);
-      found = true;
+      const Unit* unit = unit_of(parameter.name);
+      text += owner.name + "." + parameter.name + ": a parameter of \"" + owner.section +
+              "\": " + parameter.help + "\n  " + unit_text(unit ? unit->text : "") + allowed_text(parameter);
     }
-  if (!found && !owners.empty()) refuse_key(keys.back(), known, keys.front() + ".");
-  return found;
+  if (text.empty() && !owners.empty()) refuse_key(keys.back(), known, keys.front() + ".");
+  return text;
 }
+
+}  // namespace
 
 std::string meaning_of(const TraceColumn& column) {
   std::string meaning = column.meaning;
@@ -125,165 +130,144 @@ const char* runs_with(TracePart part) {
 
 namespace {
 
-void print(const Parameters& parameters, std::FILE* out) {
+std::string json_text(const std::string& json, const std::string& name) {
+  return parse_json(json, name).dump(2) + "\n";
+}
+
+std::string text_of(const Parameters& parameters) {
+  std::string text;
   for (const Parameter& p : parameters)
-    std::fprintf(out, "  %-24s %s\n  %-24s default %s; allowed %s%s\n", p.name.c_str(), p.help.c_str(), "",
-                 value_text(p).c_str(), allowed(p).c_str(), p.is_live ? "; live" : "");
+    text += formatted("  %-24s %s\n  %-24s ", p.name.c_str(), p.help.c_str(), "") + allowed_text(p);
+  return text;
 }
 
-// Prints the entries of the section's catalog, or the parameters of a section without a catalog.
-void print_section(const ExperimentSection& section, std::FILE* out) {
-  for (const SectionEntry& entry : section.entries())
-    if (section.heading)
-      std::fprintf(out, "  %-24s %s\n", entry.name.c_str(), entry.summary.c_str());
-    else
-      print(entry.make()->settings(), out);
-}
-
-bool describe_section(const std::string& name, std::FILE* out) {
+// Returns the entries of the section's catalog, or the parameters of a section without a catalog.
+std::string section_text(const std::string& name) {
+  std::string text;
   for (const ExperimentSection& section : experiment_sections()) {
     if (name != section.key) continue;
-    std::fprintf(out, "%s: \"%s\" of an experiment: %s\n", section.key, section.key, section.summary);
-    print_section(section, out);
-    return true;
+    text += name + ": \"" + name + "\" of an experiment: " + section.summary + "\n";
+    for (const SectionEntry& entry : section.entries())
+      text += section.heading ? formatted("  %-24s %s\n", entry.name.c_str(), entry.summary.c_str())
+                              : text_of(entry.make()->settings());
   }
-  return false;
+  return text;
 }
 
-// Searches the catalogs of all sections: a scenario and a trajectory may have the same name. Prints every
-// entry that has it. Returns false if there is none.
-bool describe_entry(const std::string& name, std::FILE* out) {
-  bool found = false;
+// Searches the catalogs of all sections: a scenario and a trajectory may have the same name.
+std::string entry_text(const std::string& name) {
+  std::string text;
   for (const ExperimentSection& section : experiment_sections())
-    for (const SectionEntry& entry : section.entries()) {
-      if (name.empty() || name != entry.name) continue;  // a section without a catalog has a nameless entry
-      std::fprintf(out, "%s: a \"%s\" of an experiment: %s\n", name.c_str(), section.key,
-                   entry.summary.c_str());
-      print(entry.make()->settings(), out);
-      found = true;
-    }
-  return found;
+    for (const SectionEntry& entry : section.entries())
+      if (!name.empty() && name == entry.name)  // a section without a catalog has a nameless entry
+        text += name + ": a \"" + section.key + "\" of an experiment: " + entry.summary + "\n" +
+                text_of(entry.make()->settings());
+  return text;
 }
 
-bool describe_experiment(const std::string& name, std::FILE* out) {
+std::string experiment_text(const std::string& name) {
   for (const EmbeddedText& stored : embedded_experiments()) {
     if (name != stored.name) continue;
     const Experiment experiment = Experiment::load(name);
-    std::fprintf(out, "%s: an experiment: %s\n%s\n", stored.name, experiment.settings().title.c_str(),
-                 parse_json(experiment.to_json(), name).dump(2).c_str());
-    std::fputs("Parameters of the run itself; those of its sections: remote-touch describe SECTION\n", out);
-    describe_section("run", out);
-    return true;
+    return name + ": an experiment: " + experiment.settings().title + "\n" +
+           json_text(experiment.to_json(), name) +
+           "Parameters of the run itself; those of its sections: remote-touch describe SECTION\n" +
+           section_text("run");
   }
-  return false;
+  return {};
 }
 
-bool describe_sweep(const std::string& name, std::FILE* out) {
+std::string sweep_text(const std::string& name) {
   for (const EmbeddedText& stored : embedded_sweeps()) {
     if (name != stored.name) continue;
     const Sweep sweep = Sweep::load(name);
     const SweepGrid outline = sweep.outline();
     const std::size_t runs =
         sweep.keep() == Keep::runs ? sweep.plan().runs_in(RunState::pending).size() : outline.run_count();
-    std::fprintf(out, "%s: a sweep: %s\n%s\n", stored.name, sweep.title().c_str(),
-                 parse_json(sweep.to_json(), name).dump(2).c_str());
-    std::fprintf(out, "Axes: %zu cells; %zu runs in the first round\n", outline.cell_count(), runs);
+    std::string text =
+        name + ": a sweep: " + sweep.title() + "\n" + json_text(sweep.to_json(), name) +
+        formatted("Axes: %zu cells; %zu runs in the first round\n", outline.cell_count(), runs);
     for (const Column& axis : outline.axes)
-      std::fprintf(out, "  %-24s %zu values of %s\n", axis.name.c_str(), axis.length(),
-                   axis.long_name.c_str());
-    return true;
+      text +=
+          formatted("  %-24s %zu values of %s\n", axis.name.c_str(), axis.length(), axis.long_name.c_str());
+    return text;
   }
-  return false;
+  return {};
 }
 
-bool describe_method(const std::string& name, std::FILE* out) {
-  for (const Method& method : chosen_methods({})) {
-    if (name != method.name) continue;
-    std::fprintf(out, "%s: a method of the scorecard: %s\n%s\n", name.c_str(), method.title.c_str(),
-                 parse_json(method.renderer, name).dump(2).c_str());
-    return true;
-  }
-  return false;
+std::string method_text(const std::string& name) {
+  for (const Method& method : chosen_methods({}))
+    if (name == method.name)
+      return name + ": a method of the scorecard: " + method.title + "\n" + json_text(method.renderer, name);
+  return {};
 }
 
-bool describe_scene(const std::string& name, std::FILE* out) {
+std::string scene_text(const std::string& name) {
   for (const BenchmarkScene& scene : chosen_scenes({})) {
     if (name != scene.name) continue;
-    std::fprintf(out, "%s: a scene of the scorecard: %s\n%s\n", name.c_str(), scene.title.c_str(),
-                 parse_json(scene.experiment, name).dump(2).c_str());
-    std::fprintf(out, "Noise: %s\nSuccess: %s\n", scene.noise.empty() ? "its own" : scene.noise.c_str(),
-                 scene.meaning.c_str());
+    std::string text =
+        name + ": a scene of the scorecard: " + scene.title + "\n" + json_text(scene.experiment, name) +
+        "Noise: " + (scene.noise.empty() ? "its own" : scene.noise) + "\nSuccess: " + scene.meaning + "\n";
     for (const Bound& bound : scene.success)
-      std::fprintf(out, "Bound: %s within %g .. %g\n", bound.measure.c_str(), bound.min, bound.max);
-    return true;
+      text += formatted("Bound: %s within %g .. %g\n", bound.measure.c_str(), bound.min, bound.max);
+    return text;
   }
-  return false;
+  return {};
 }
 
-// Prints what the renderers make of a built-in tool or a mesh file in metres by default. Returns false if the
-// name is neither.
-bool describe_tool(const std::string& name, std::FILE* out) {
+// Returns what the renderers make of a built-in tool or a mesh file in metres by default. Empty if the name
+// is neither.
+std::string tool_text(const std::string& name) {
   const GeneratedTool* built_in = find_generated_tool(name);
-  if (built_in == nullptr && !is_mesh_file(name)) return false;
+  if (built_in == nullptr && !is_mesh_file(name)) return {};
   LoadedSpheres::Settings settings;
   settings.tool.mesh = name;
   std::string report;
   load_tool_of_spheres(settings.tool, settings.leaves, &report);
-  std::fprintf(out, "%s: a tool: %s\n%s\n", name.c_str(), built_in ? built_in->summary : "from a mesh file",
-               report.c_str());
-  return true;
+  return name + ": a tool: " + (built_in ? built_in->summary : "from a mesh file") + "\n" + report + "\n";
 }
 
-void print(const TraceColumn& column, std::FILE* out) {
-  std::fprintf(out, "  %-24s %-4s x %d  %s\n", column.name, column.unit, column.width,
-               meaning_of(column).c_str());
-  if (std::string_view(column.meaning) != column.meaning_with_tool)
-    std::fprintf(out, "  %-24s            with a tool: %s\n", "", column.meaning_with_tool);
-}
-
-// Prints the columns that a run stores, in the order of the file.
-bool describe_trace(const std::string& name, std::FILE* out) {
-  if (name != "trace") return false;
-  std::fputs(
-      "trace: what a run records, one row for each tick. For each column: unit, numbers per row, meaning:\n",
-      out);
+// Returns the columns that a run stores, in the order of the file.
+std::string trace_text(const std::string& name) {
+  if (name != "trace") return {};
+  std::string text =
+      "trace: what a run records, one row for each tick. For each column: unit, numbers per row, meaning:\n";
   std::optional<TracePart> part;
   for (const TraceColumn& column : trace_columns()) {
-    if (part != column.part) std::fprintf(out, "In %s:\n", runs_with(column.part));
+    if (part != column.part) text += std::string("In ") + runs_with(column.part) + ":\n";
     part = column.part;
-    print(column, out);
+    text += formatted("  %-24s %-4s x %d  %s\n", column.name, column.unit, column.width,
+                      meaning_of(column).c_str());
+    if (std::string_view(column.meaning) != column.meaning_with_tool)
+      text += formatted("  %-24s            with a tool: %s\n", "", column.meaning_with_tool);
   }
-  return true;
+  return text;
 }
 
 // Tests read the time and --quick from this line, so that they keep no list of slow figures of their own.
-bool describe_figure(const std::string& name, std::FILE* out) {
+std::string figure_text(const std::string& name) {
   const auto is_it = [&](const FigureEntry& entry) { return name == entry.name; };
   const auto entry = std::find_if(figures().begin(), figures().end(), is_it);
-  if (entry == figures().end()) return false;
-  std::fprintf(out, "%s: a figure: %s; about %g s on one fast core", entry->name, entry->summary,
-               entry->expected_s);
-  if (entry->quick_coarse > 1)
-    std::fprintf(out, "; --quick uses one in %d values of each axis of its map", entry->quick_coarse);
-  return std::fputs("\n", out) >= 0;
+  if (entry == figures().end()) return {};
+  const std::string text = formatted("%s: a figure: %s; about %g s on one fast core", entry->name,
+                                     entry->summary, entry->expected_s);
+  return text +
+         (entry->quick_coarse > 1
+              ? formatted("; --quick uses one in %d values of each axis of its map\n", entry->quick_coarse)
+              : "\n");
 }
 
 }  // namespace
 
-void describe(const std::string& name, std::FILE* out) {
-  bool found = describe_section(name, out);
-  found |= describe_entry(name, out);
-  found |= describe_experiment(name, out);
-  found |= describe_sweep(name, out);
-  found |= describe_method(name, out);
-  found |= describe_scene(name, out);
-  found |= describe_trace(name, out);
-  found |= describe_tool(name, out);
-  found |= describe_figure(name, out);
+std::string described(const std::string& name) {
+  std::string text;
+  for (const auto of_kind : {section_text, entry_text, experiment_text, sweep_text, method_text, scene_text,
+                             trace_text, tool_text, figure_text})
+    text += of_kind(name);
   for (const Measure& measure : measures())
-    if (name == measure.name)
-      found = std::fprintf(out, "%s: a measure: %s\n", name.c_str(), summary_of(measure).c_str()) > 0;
-  if (found || describe_parameter(name, out)) return;
+    if (name == measure.name) text += name + ": a measure: " + summary_of(measure) + "\n";
+  if (text.empty()) text = parameter_text(name);
+  if (!text.empty()) return text;
   throw InputError(
       name, "unknown: expected a name from `remote-touch list`, or NAME.PARAMETER, such as proxy.r1_m");
 }

@@ -4,9 +4,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <functional>
-#include <string>
-
 namespace remote_touch {
 
 void bind_clouds(pybind11::module_& module);   // Cloud, Frame, Device, Output, NoiseKey, Scene
@@ -16,8 +13,5 @@ void bind_sweeps(pybind11::module_& module);
 void bind_chunks(pybind11::module_& module);  // runs of a sweep in workers of an executor
 void bind_scorecards(pybind11::module_& module);
 void bind_results(pybind11::module_& module);  // files, comparisons, descriptions
-
-// Returns the text that print() writes to the C file that it is given.
-std::string printed(const std::function<void(std::FILE*)>& print);
 
 }  // namespace remote_touch

@@ -4,8 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -130,23 +128,6 @@ py::dict list_names() {
 
 }  // namespace
 
-std::string printed(const std::function<void(std::FILE*)>& print) {
-  char* text = nullptr;
-  std::size_t size = 0;
-  std::FILE* out = ::open_memstream(&text, &size);
-  if (out == nullptr) throw std::bad_alloc();
-  try {
-    print(out);
-  } catch (...) {
-    std::fclose(out), std::free(text);
-    throw;
-  }
-  std::fclose(out);
-  const std::string all(text, size);
-  std::free(text);
-  return all;
-}
-
 void bind_results(py::module_& module) {
   module.def("open", &open_result, py::arg("file"), "Reads a trace, a sweep or a figure.");
   module.def("compare_files", &compare_files, py::arg("baseline"), py::arg("candidate"),
@@ -154,10 +135,7 @@ void bind_results(py::module_& module) {
   module.def("compare_columns", &compare_traces_given, py::arg("baseline"), py::arg("baseline_attributes"),
              py::arg("candidate"), py::arg("candidate_attributes"), py::arg("tolerances"),
              "The same of two traces in memory.");
-  module.def(
-      "describe",
-      [](const std::string& name) { return printed([&](std::FILE* out) { describe(name, out); }); },
-      py::arg("name"), "All that has the name, as text.");
+  module.def("describe", &described, py::arg("name"), "All that has the name, as text.");
   module.def("list", &list_names, "Names and summaries by kind.");
   module.def("version", &version, "Returns the version of the program.");
 }

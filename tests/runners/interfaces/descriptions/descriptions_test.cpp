@@ -3,20 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "tests/support/test_files.h"
 
 namespace remote_touch::descriptions_test {
 namespace {
 
-std::string described(const std::string& name) {
-  testing::internal::CaptureStdout();
-  describe(name, stdout);
-  return testing::internal::GetCapturedStdout();
-}
 std::string refused(const std::string& name) {
-  return refusal([&] { describe(name, stdout); });
+  return refusal([&] { described(name); });
 }
 auto line_count(const std::string& text) {
   return std::ranges::count(text, '\n');
