@@ -10,9 +10,6 @@
 
 namespace remote_touch {
 
-struct Column;
-struct Hdf5Content;
-
 // kChanged is returned only by `compare`: the results differ and nothing got worse.
 enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3, kChanged = 4 };
 
@@ -61,14 +58,5 @@ struct ViewRequest {
   std::string claims = {};  // claims.json of figures; empty: none
 };
 void write_view(const CommandLine& line, const ViewRequest& request);
-
-// Prints how far the shards of a sweep in a folder are.
-int inspect_folder(const std::string& folder);
-// Prints the runs and the measures of a tally, and the extent, unit, meaning and values of each of its
-// arrays. content: the content of the file.
-void print_tally(const std::string& file, const Hdf5Content& content);
-// Prints the values of a column and ends the line: the range and the mean of numbers, the counts of names,
-// the number of texts that are not empty and the first of them, or the last of hashes.
-void print_values(const Column& column);
 
 }  // namespace remote_touch

@@ -13,6 +13,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/column.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/json_parameters.h"
@@ -27,11 +28,6 @@ namespace {
 struct InspectRequest {
   std::string file;
 };
-
-// The columns of the table are printed in two parts: what a dataset is, and what its values are.
-void print_dataset(const std::string& path, const std::string& extent, const std::string& units) {
-  std::printf("  %-32s %12s  %-6s", path.c_str(), extent.c_str(), units.c_str());
-}
 
 // "867 x 3": rows, and numbers in a row. An array of a sweep has one value for each cell and replicate. Its
 // text is the lengths of the axes and the number of replicates instead: "3 x 7 x 3".
@@ -76,11 +72,15 @@ void print_numbers(const std::vector<double>& values) {
   std::puts("");
 }
 
-void print_states(const Column& column, const std::vector<std::int32_t>& values) {
-  for (std::size_t i = 0; i < column.value_names.size(); ++i) {
-    const auto count = std::count(values.begin(), values.end(), static_cast<std::int32_t>(i));
-    if (count > 0) std::printf("  %s %td", column.value_names[i].c_str(), count);
-  }
+// Prints how many of the values each name has, unless it is none. has(value, i): true if it has the i-th
+// name.
+template <class Value, class Has>
+void print_counts(const std::vector<std::string>& names, const std::vector<Value>& values, const Has& has) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (const auto count =
+            std::count_if(values.begin(), values.end(), [&](const Value& value) { return has(value, i); });
+        count > 0)
+      std::printf("  %s %td", names[i].c_str(), count);
   std::puts("");
 }
 
@@ -98,20 +98,8 @@ void print_hashes(const std::vector<std::uint64_t>& values) {
   std::puts("");
 }
 
-// Prints how many runs of a sweep have each kind of note, see SweepResult::notes. kinds: the names of the
-// kinds, separated by commas.
-void print_notes(const std::vector<std::uint64_t>& all, const std::string& kinds) {
-  const std::vector<std::string> names = split_names(kinds);
-  for (std::size_t bit = 0; bit < std::min<std::size_t>(names.size(), 64); ++bit) {
-    const auto has = [bit](std::uint64_t notes) { return (notes >> bit & 1) != 0; };
-    if (const auto count = std::count_if(all.begin(), all.end(), has); count > 0)
-      std::printf("  %s %td", names[bit].c_str(), count);
-  }
-  std::puts("");
-}
-
-}  // namespace
-
+// Prints the values of a column and ends the line: the range and the mean of numbers, the counts of names,
+// the number of texts that are not empty and the first of them, or the last of hashes.
 void print_values(const Column& column) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) return print_numbers(*numbers);
   if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) return print_texts(*texts);
@@ -121,23 +109,24 @@ void print_values(const Column& column) {
   if (column.value_names.empty())
     print_numbers({integers.begin(), integers.end()});
   else
-    print_states(column, integers);
+    print_counts(column.value_names, integers,
+                 [](std::int32_t value, std::size_t i) { return static_cast<std::size_t>(value) == i; });
 }
-
-namespace {
 
 // The unit is printed only for columns whose values are printed as numbers.
 void print_datasets(const Hdf5Content& content) {
   const Extents extents(content);
-  const std::string note_kinds = attribute(content.attributes, "note_kinds");
+  const std::vector<std::string> note_kinds = split_names(attribute(content.attributes, "note_kinds"));
   for (const auto& [path, column] : content.datasets) {
     const bool has_unit =
         std::holds_alternative<std::vector<double>>(column.values) ||
         (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
-    print_dataset(path, extents.of(path, column), has_unit ? column.units : "");
+    std::printf("  %-32s %12s  %-6s", path.c_str(), extents.of(path, column).c_str(),
+                has_unit ? column.units.c_str() : "");
     const auto* const bits = std::get_if<std::vector<std::uint64_t>>(&column.values);
     if (bits && path == "/sweep/notes")
-      print_notes(*bits, note_kinds);
+      print_counts(note_kinds, *bits,
+                   [](std::uint64_t notes, std::size_t bit) { return bit < 64 && (notes >> bit & 1) != 0; });
     else
       print_values(column);
   }
@@ -160,75 +149,42 @@ void print_attributes(const std::string& file, const TextAttributes& attributes)
   }
 }
 
-// Prints one line for a sweep in progress that has runs with a wrong checksum.
-void print_damaged_runs(const std::string& file, const Hdf5Content& content) {
+// Returns what a user may not expect of a result, a line each.
+std::vector<std::string> notes_on(const std::string& file, const Hdf5Content& content) {
+  std::vector<std::string> notes;
+  if (was_opened_for_writing(file))
+    notes.emplace_back("another program opened it for writing; every value is as it was written (SHA-256)");
   const auto is_checksum = [](const auto& dataset) { return dataset.first == "/sweep/checksum"; };
-  if (std::none_of(content.datasets.begin(), content.datasets.end(), is_checksum)) return;
-  if (const std::string text = damage_text(read_sweep(file)); !text.empty())
-    std::printf("  note         %s\n", text.c_str());
+  if (std::any_of(content.datasets.begin(), content.datasets.end(), is_checksum))  // a sweep in progress
+    notes.push_back(damage_text(read_sweep(file)));
+  notes.push_back(distrust_of(content.attributes));
+  std::erase(notes, "");
+  return notes;
 }
 
 void print_unfinished(const std::string& file) {
   const UnfinishedSession session = read_unfinished(file);
   std::printf("%s\n  unfinished, %" PRIu64 " ticks and %" PRIu64 " frames%s\n", printable(file).c_str(),
               session.ticks, session.frames, session.is_growing ? "; it is being recorded" : "");
-  if (session.has_end) std::puts("  note         the recording has ended, but its file was not made");
+  if (session.has_end) print_attribute("note", "the recording has ended, but its file was not made");
   if (session.left_out_bytes > 0)
-    std::printf("  note         the last %" PRIu64
-                " bytes are left out, from the first damaged or incomplete block on\n",
-                session.left_out_bytes);
-  std::printf("  next         remote-touch recover %s -o FILE\n", printable(file).c_str());
+    print_attribute("note", "the last " + std::to_string(session.left_out_bytes) +
+                                " bytes are left out, from the first damaged or incomplete block on");
+  print_attribute("next", "remote-touch recover " + printable(file) + " -o FILE");
   print_attributes(file, session.attributes);
   print_attributes(file, session.ending);
 }
 
-int command_inspect(const CommandLine&, const InspectRequest& request) {
-  const std::string& file = request.file;
-  std::error_code unreachable;
-  if (std::filesystem::is_directory(file, unreachable)) return inspect_folder(file);
-  if (is_journal(file)) {
-    print_unfinished(file);
-    return kDone;
-  }
-  const Hdf5Content content = read_hdf5(file);
-  std::printf("%s\n", printable(file).c_str());
-  if (was_opened_for_writing(file))
-    std::puts(
-        "  note         another program opened it for writing; every value is as it was written (SHA-256)");
-  print_damaged_runs(file, content);
-  if (const std::string distrust = distrust_of(content.attributes); !distrust.empty())
-    std::printf("  note         %s\n", printable(distrust).c_str());
-  if (is_tally(content.attributes)) {
-    TextAttributes others = content.attributes;  // all but those that print_tally() prints
-    std::erase_if(others, [](const auto& each) { return each.first.starts_with("measure_"); });
-    print_attributes(file, others);
-    print_tally(file, content);
-    return kDone;
-  }
-  print_attributes(file, content.attributes);
-  print_datasets(content);
-  if (attribute(content.attributes, "schema") == schema_name("sweep"))
-    print_equal_runs(read_sweep_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
-  return kDone;
-}
-
-// `inspect` of a folder with the shards of a sweep, and of a tally: its measures over all runs, and what each
-// of its arrays is.
+// --- a folder with the shards of a sweep ---
 
 // "40 s", "12 min", "3.5 h"
 std::string duration_text(double seconds) {
-  char text[32];
-  if (seconds < 90)
-    std::snprintf(text, sizeof text, "%.0f s", seconds);
-  else if (seconds < 5400)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-  else
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
-  return text;
+  return seconds < 90     ? formatted("%.0f s", seconds)
+         : seconds < 5400 ? formatted("%.0f min", seconds / 60)
+                          : formatted("%.1f h", seconds / 3600);
 }
 
-}  // namespace
-
+// Prints how far the shards of a sweep in a folder are.
 int inspect_folder(const std::string& folder) {
   const SweepProgress all = progress_of_shards(folder);
   std::printf("%s: %s\n", printable(folder).c_str(), printable(all.title).c_str());
@@ -252,7 +208,7 @@ int inspect_folder(const std::string& folder) {
   return all.unread.empty() ? kDone : kCheckFailed;
 }
 
-namespace {
+// --- a tally ---
 
 bool ends_with_one_of(const std::string& name, std::initializer_list<const char*> ends) {
   return std::any_of(ends.begin(), ends.end(), [&](const char* end) { return name.ends_with(end); });
@@ -303,8 +259,8 @@ void print_arrays(const SweepTally& tally, const Hdf5Content& content) {
   }
 }
 
-}  // namespace
-
+// Prints the runs and the measures of a tally, and the extent, unit, meaning and values of each of its
+// arrays.
 void print_tally(const std::string& file, const Hdf5Content& content) {
   const StoredTally stored = read_tally(Hdf5Reader(file));
   const SweepTally& tally = stored.tally;
@@ -320,6 +276,33 @@ void print_tally(const std::string& file, const Hdf5Content& content) {
   print_equal_runs(tally, attribute(stored.attributes, "config"));
   print_arrays(tally, content);
 }
+
+int command_inspect(const CommandLine&, const InspectRequest& request) {
+  const std::string& file = request.file;
+  std::error_code unreachable;
+  if (std::filesystem::is_directory(file, unreachable)) return inspect_folder(file);
+  if (is_journal(file)) {
+    print_unfinished(file);
+    return kDone;
+  }
+  const Hdf5Content content = read_hdf5(file);
+  std::printf("%s\n", printable(file).c_str());
+  for (const std::string& note : notes_on(file, content)) print_attribute("note", printable(note));
+  if (is_tally(content.attributes)) {
+    TextAttributes others = content.attributes;  // all but those that print_tally() prints
+    std::erase_if(others, [](const auto& each) { return each.first.starts_with("measure_"); });
+    print_attributes(file, others);
+    print_tally(file, content);
+    return kDone;
+  }
+  print_attributes(file, content.attributes);
+  print_datasets(content);
+  if (attribute(content.attributes, "schema") == schema_name("sweep"))
+    print_equal_runs(read_sweep_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
+  return kDone;
+}
+
+}  // namespace
 
 void add_inspect(Subcommands& commands) {
   auto [inspect, inspected] =
