@@ -21,10 +21,6 @@
 
 namespace remote_touch {
 
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
-}
-
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop) {
   const std::size_t cell = std::min(kCostLevel, sweep.sweep.plan().cell_count() - 1);
@@ -56,15 +52,12 @@ void write_costs(const std::filesystem::path& file, const std::vector<Cost>& cos
                  const TextAttributes& origin) {
   Json list = Json::array();
   for (const Cost& cost : costs)
-    list.push_back({{"scene", cost.scene},
-                    {"method", cost.method},
-                    {"tick_s", number_or_null(cost.tick_s)},
-                    {"frame_s", number_or_null(cost.frame_s)}});
+    list.push_back(
+        {{"scene", cost.scene}, {"method", cost.method}, {"tick_s", cost.tick_s}, {"frame_s", cost.frame_s}});
   Json all = Json::object();
   for (const auto& [name, value] : origin) all[name] = value;
   all["costs"] = list;
-  const std::string text = all.dump(1) + "\n";
-  write_file_atomically(file, text.data(), text.size());
+  write_file_atomically(file, all.dump(1) + "\n");
 }
 
 std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin) {

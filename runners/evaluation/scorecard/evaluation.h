@@ -17,11 +17,6 @@
 
 namespace remote_touch {
 
-// Numbers for a JSON file.
-
-// JSON has neither NaN nor infinity.
-Json number_or_null(double value);
-
 // The cost of renderers: wall-clock time of ticks and frames on this machine. It varies from run to run, so
 // it is stored apart from all results.
 

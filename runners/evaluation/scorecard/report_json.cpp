@@ -13,16 +13,13 @@ namespace {
 Json proportion_json(const Proportion& share) {
   return {{"successes", share.events},
           {"runs", share.runs},
-          {"fraction", number_or_null(share.fraction)},
-          {"low", number_or_null(share.low)},
-          {"high", number_or_null(share.high)}};
+          {"fraction", share.fraction},
+          {"low", share.low},
+          {"high", share.high}};
 }
 
 Json mean_json(const Estimate& mean) {
-  return {{"runs", mean.clusters},
-          {"mean", number_or_null(mean.value)},
-          {"low", number_or_null(mean.low)},
-          {"high", number_or_null(mean.high)}};
+  return {{"runs", mean.clusters}, {"mean", mean.value}, {"low", mean.low}, {"high", mean.high}};
 }
 
 const char* mark_word(Mark mark) {
@@ -30,25 +27,8 @@ const char* mark_word(Mark mark) {
 }
 
 const char* better_word(Better better) {
-  switch (better) {
-    case Better::larger:
-      return "larger";
-    case Better::smaller:
-      return "smaller";
-    case Better::near_zero:
-      return "near_zero";
-    case Better::not_negative:
-      return "not_negative";
-    case Better::neither:
-      break;
-  }
-  return "reported";
-}
-
-Json levels_json(const std::vector<double>& noise_m) {
-  Json levels = Json::array();
-  for (const double noise : noise_m) levels.push_back(number_or_null(noise));
-  return levels;
+  constexpr const char* kWords[] = {"reported", "smaller", "larger", "near_zero", "not_negative"};
+  return kWords[static_cast<int>(better)];
 }
 
 Json failure_json(const std::optional<FailureTrace>& failure) {
@@ -110,7 +90,7 @@ Json scene_json(const ScorecardReport& report, std::size_t number) {
           {"success_meaning", scene.meaning},
           {"truth", scene.truth.empty() ? Json() : Json(scene.truth)},
           {"verdict", verdict(report.card, scene)},
-          {"noise_sigma_m", levels_json(scene.noise_m)},
+          {"noise_sigma_m", scene.noise_m},
           {"success", successes_json(report, number)},
           {"measures", measures}};
 }
@@ -141,9 +121,9 @@ Json behind_json(const Scorecard& card) {
                     {"units", one.units},
                     {"other", one.other},
                     {"ahead", one.ahead},
-                    {"own_mean", number_or_null(one.own_mean)},
-                    {"other_mean", number_or_null(one.other_mean)},
-                    {"p", number_or_null(one.p)},
+                    {"own_mean", one.own_mean},
+                    {"other_mean", one.other_mean},
+                    {"p", one.p},
                     {"significant", one.is_significant}});
   return {{"method", own}, {"list", list}};
 }
@@ -181,7 +161,7 @@ Json audited_scene_json(const Scorecard& audit, const SceneScore& scene,
     Json levels = Json::array();
     for (const EnergySummary& energy : all[c])
       levels.push_back({{"energy_per_cycle_J", mean_json(energy.per_cycle_J)},
-                        {"energy_per_update_J", number_or_null(energy.per_update_J)},
+                        {"energy_per_update_J", energy.per_update_J},
                         {"mark", energy_word(energy.per_cycle_J)}});
     laws.push_back({{"name", audit.methods[c]},
                     {"title", audit.method_titles[c]},
@@ -190,10 +170,7 @@ Json audited_scene_json(const Scorecard& audit, const SceneScore& scene,
                     {"noise_free",
                      scene.success[c].noise_free ? proportion_json(*scene.success[c].noise_free) : Json()}});
   }
-  return {{"name", scene.name},
-          {"title", scene.title},
-          {"noise_sigma_m", levels_json(scene.noise_m)},
-          {"laws", laws}};
+  return {{"name", scene.name}, {"title", scene.title}, {"noise_sigma_m", scene.noise_m}, {"laws", laws}};
 }
 
 Json audit_json(const std::optional<Scorecard>& audit) {
@@ -208,10 +185,10 @@ Json costs_json(const ScorecardReport& report) {
   if (report.costs.empty() || report.card.scenes.empty()) return {};
   Json methods = Json::array();
   for (const CostSummary& cost : cost_summary(report.card, report.costs))
-    methods.push_back({{"tick_ratio", number_or_null(cost.tick_ratio)},
-                       {"frame_ratio", number_or_null(cost.frame_ratio)},
-                       {"tick_s", number_or_null(cost.tick_s)},
-                       {"frame_s", number_or_null(cost.frame_s)}});
+    methods.push_back({{"tick_ratio", cost.tick_ratio},
+                       {"frame_ratio", cost.frame_ratio},
+                       {"tick_s", cost.tick_s},
+                       {"frame_s", cost.frame_s}});
   return {{"cpu", report.cpu},
           {"noise_sigma_m", scorecard_noise_m()[kCostLevel]},
           {"reference", cost_reference(report.card)},
@@ -247,7 +224,8 @@ std::string to_json(const ScorecardReport& report) {
                     {"scenes", scenes},
                     {"audit", audit_json(report.audit)},
                     {"costs", costs_json(report)}};
-  // Messages contain names of files, which can be any bytes. Bytes that are not UTF-8 are replaced.
+  // NaN is written as null. Messages contain names of files, which can be any bytes. Bytes that are not UTF-8
+  // are replaced.
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
