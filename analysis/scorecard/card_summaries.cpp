@@ -1,8 +1,8 @@
 #include "analysis/scorecard/card_summaries.h"
+#include "core/parameters/formatted.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -41,15 +41,11 @@ std::tuple<std::string, std::string, double> key_of(const CardCell& cell) {
 
 std::string words(const CardCell& cell) {
   if (std::isnan(cell.noise_m)) return cell.scene + ", " + cell.method + ", own noise";
-  char noise[40];
-  std::snprintf(noise, sizeof noise, ", noise %g mm", 1e3 * cell.noise_m);
-  return cell.scene + ", " + cell.method + noise;
+  return cell.scene + ", " + cell.method + formatted(", noise %g mm", 1e3 * cell.noise_m);
 }
 
 std::string sentence(const CardCell& cell, const char* format, auto... numbers) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, numbers...);
-  return words(cell) + ": " + text;
+  return words(cell) + ": " + formatted(format, numbers...);
 }
 
 void compare(const CardNumbers::Count& then, const CardNumbers::Count& now, std::vector<std::string>& list) {

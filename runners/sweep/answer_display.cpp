@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <set>
 
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 
@@ -144,9 +144,7 @@ bool is_of_curve(const Figure& figure, const Table& table) {
 
 std::string axis_text(const Column& axis, std::size_t row) {
   if (const auto* numbers = numbers_in(axis)) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.10g", (*numbers)[row]);
-    return text;
+    return formatted("%.10g", (*numbers)[row]);
   }
   const std::int32_t number = std::get<std::vector<std::int32_t>>(axis.values)[row];
   return axis.value_names.empty() ? std::to_string(number)
@@ -249,9 +247,7 @@ constexpr std::size_t kMostRows = 60;
 
 std::string number_text(double value) {
   if (std::isnan(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value);
-  return text;
+  return formatted("%.5g", value);
 }
 
 // True for the columns before the answer itself: the axes, whose values must not look alike.

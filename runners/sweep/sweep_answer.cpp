@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/sweep/answer_display.h"
@@ -210,9 +210,8 @@ Axes axes_by(const SweepGrid& grid, const std::vector<std::string>& by) {
 // rises: the direction that the runs show, or that the question states.
 std::string limit_sentence(const SweepGrid& grid, const LimitQuestion& limit,
                            const std::optional<bool>& rises) {
-  char text[80];
-  std::snprintf(text, sizeof text, " is above %.6g in %.6g %% of the runs. ", limit.threshold,
-                100 * limit.level);
+  const std::string text =
+      formatted(" is above %.6g in %.6g %% of the runs. ", limit.threshold, 100 * limit.level);
   const std::string direction =
       !rises
           ? "The runs do not show whether the event becomes more or less probable along the axis, so there "

@@ -17,6 +17,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/hash64.h"
 #include "analysis/trace/trace.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/spread.h"
 #include "runners/experiment/provenance/provenance.h"
@@ -301,12 +302,6 @@ void enter(const Baseline& baseline, Manifest& manifest) {
             [](const Baseline& a, const Baseline& b) { return a.name < b.name; });
 }
 
-std::string with_precision(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", number);
-  return text;
-}
-
 // Returns the changed columns or measures as text: "force: 12 of 867 rows, up to 0.4 N; normal: ...".
 std::string moved(const std::vector<Column>& before, const std::vector<Column>& now) {
   std::string text;
@@ -323,9 +318,9 @@ std::string moved(const std::vector<Column>& before, const std::vector<Column>& 
     const ColumnComparison c = compare_columns(*old, column, {});
     if (c.is_same()) continue;
     add(column.name + ": " +
-        (c.problem.empty() ? std::to_string(c.outside) + " of " + std::to_string(c.rows) + " rows, up to " +
-                                 with_precision(c.max) + " " + c.units
-                           : c.problem));
+        (c.problem.empty()
+             ? formatted("%zu of %zu rows, up to %.3g %s", c.outside, c.rows, c.max, c.units.c_str())
+             : c.problem));
   }
   for (const Column& column : before)
     if (named(now, column.name) == now.end()) add(column.name + ": gone");
@@ -335,7 +330,8 @@ std::string moved(const std::vector<Column>& before, const std::vector<Column>& 
 std::string spread_text(const Tolerances& spread) {
   if (spread.empty()) return "exact";
   std::string text = "spread";
-  for (const auto& [name, tolerance] : spread) text += " " + name + " " + with_precision(tolerance.absolute);
+  for (const auto& [name, tolerance] : spread)
+    text += formatted(" %s %.3g", name.c_str(), tolerance.absolute);
   return text;
 }
 

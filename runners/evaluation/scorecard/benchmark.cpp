@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <deque>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include <typeinfo>
 
 #include "analysis/measures/contact_measures.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/embedded_data.h"
@@ -208,13 +208,10 @@ std::vector<Bound> held_bounds(double tolerance_m) {
 }
 
 std::string held_meaning(double tolerance_m) {
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
+  return formatted(
       "held: from %g s after the HIP got below the true surface on, the contact point is never more "
       "than %g mm from it, above or below, and there is a force in 90 %% of these ticks",
       kSettling_s, 1e3 * tolerance_m);
-  return text;
 }
 
 Method read_method(const std::string& name, const std::string& json) {

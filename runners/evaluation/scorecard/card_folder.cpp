@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -12,6 +11,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/column.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/experiment/provenance/provenance.h"
@@ -57,8 +57,7 @@ std::string write_scorecard(const std::filesystem::path& folder, const Benchmark
                             const ScorecardReport& report, const std::string& command) {
   std::string digest = write_figure(folder / kScorecardFile, scorecard_figure(report.card),
                                     provenance(configuration_of(plan), command, ""));
-  const std::string text = to_json(report);
-  write_file_atomically(folder / "scorecard.json", text.data(), text.size());
+  write_file_atomically(folder / "scorecard.json", to_json(report));
   return digest;
 }
 
@@ -90,9 +89,7 @@ Hdf5Reader stored_card_file(const std::filesystem::path& file) {
 // Returns a number with three digits; a dash for NaN.
 std::string digits(double value) {
   if (std::isnan(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return formatted("%.3g", value);
 }
 
 std::string with_unit(double value, const std::string& units) {

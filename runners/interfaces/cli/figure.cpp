@@ -12,6 +12,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
@@ -94,8 +95,7 @@ namespace fs = std::filesystem;
 std::string line_of(const Claim& claim) {
   const std::string verdict = claim.verdict == Verdict::fail ? "FAIL" : verdict_name(claim.verdict);
   const std::string paper = claim.verdict == Verdict::differs ? ", " + claim.source + ": " + claim.paper : "";
-  char measured[40];
-  std::snprintf(measured, sizeof measured, "%.6g", claim.measured);
+  const std::string measured = formatted("%.6g", claim.measured);
   return "  " + verdict + std::string(verdict.size() < 7 ? 7 - verdict.size() : 0, ' ') + " " +
          (claim.set_up ? "set-up: " : "") + claim.claim + ": " + measured + " " + claim.unit + " (" +
          claim.criterion + paper + ")\n";
@@ -205,7 +205,7 @@ void FigureFolder::write_progress(const FigureProgress& progress) {
   const std::string text =
       nlohmann::ordered_json{{"left_s", std::round(progress.left.all_s)}, {"figures", list}}.dump(1) + "\n";
   if (text == written_) return;
-  write_file_atomically(progress_file(), text.data(), text.size());
+  write_file_atomically(progress_file(), text);
   written_ = text;
 }
 

@@ -17,6 +17,7 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/provenance/provenance.h"
@@ -270,10 +271,9 @@ void print_entry(const Entry& entry) {
 
 std::string verdict(const FoundDepthDevice& device) {
   if (!device.trial.failure.empty()) return "cannot be used: " + device.trial.failure;
-  char times[120];
-  std::snprintf(times, sizeof times, "320 x 240 pixels in %.1f ms, on the CPU in %.1f ms: %s",
-                device.trial.device_ms, device.trial.cpu_ms,
-                device.trial.device_ms < device.trial.cpu_ms ? "faster" : "not faster");
+  const std::string times =
+      formatted("320 x 240 pixels in %.1f ms, on the CPU in %.1f ms: %s", device.trial.device_ms,
+                device.trial.cpu_ms, device.trial.device_ms < device.trial.cpu_ms ? "faster" : "not faster");
   return (device.inexact_because.empty() ? "the bits of the CPU; "
                                          : "only with exact = false: it " + device.inexact_because + "; ") +
          times;

@@ -1,4 +1,5 @@
 #include "runners/interfaces/cli/progress.h"
+#include "core/parameters/formatted.h"
 
 #include <unistd.h>
 
@@ -9,13 +10,6 @@
 namespace remote_touch {
 
 namespace {
-
-template <class... Values>
-std::string filled(const char* form, Values... values) {
-  char text[160];
-  std::snprintf(text, sizeof text, form, values...);
-  return text;
-}
 
 // left_s: the time left, relative to the time since the program began; missing if nothing was done since.
 template <class Number>
@@ -29,18 +23,18 @@ nlohmann::ordered_json counted_json(const std::string& what, Number done, Number
 }  // namespace
 
 std::string progress_text(double fraction, double elapsed_s) {
-  const std::string done = filled("%3.0f %%", 100 * fraction);
+  const std::string done = formatted("%3.0f %%", 100 * fraction);
   if (!(fraction > 0 && elapsed_s > 0)) return done;
   return done +
-         filled(", %.1f %%/s, %.0f s left", 100 * fraction / elapsed_s, elapsed_s / fraction - elapsed_s);
+         formatted(", %.1f %%/s, %.0f s left", 100 * fraction / elapsed_s, elapsed_s / fraction - elapsed_s);
 }
 
 std::string progress_text(std::size_t done, std::size_t total, std::size_t earlier, const char* things,
                           double elapsed_s) {
-  const std::string counted = filled("%zu of %zu %s", done, total, things);
+  const std::string counted = formatted("%zu of %zu %s", done, total, things);
   if (!(done > earlier && elapsed_s > 0)) return counted;
   const double rate = static_cast<double>(done - earlier) / elapsed_s;
-  return counted + filled(", %.4g/s, %.0f s left", rate, static_cast<double>(total - done) / rate);
+  return counted + formatted(", %.4g/s, %.0f s left", rate, static_cast<double>(total - done) / rate);
 }
 
 Progress::Progress(std::string what, bool quiet)

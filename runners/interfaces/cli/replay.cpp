@@ -212,7 +212,7 @@ class Repro {
                        "a figure has no single configuration: expected a trace, a sweep or hashes");
     const std::string text = result_.config() + "\n";
     require_text(line_, target, {result_.file()}, text);
-    write_file_atomically(target, text.data(), text.size());
+    write_file_atomically(target, text);
     std::printf("# configuration written to %s\n", target.c_str());
   }
 

@@ -91,8 +91,8 @@ void make_failure_pages(const CommandLine& line, const std::string& folder, Scor
   for (std::size_t i = 0; i < failures.size(); ++i) {
     std::filesystem::path page = failures[i]->file;
     page.replace_extension(".html");
-    const std::string html = trace_page({folder / std::filesystem::path(failures[i]->file)}, options).html;
-    write_file_atomically(folder / page, html.data(), html.size());
+    write_file_atomically(folder / page,
+                          trace_page({std::filesystem::path(folder) / failures[i]->file}, options).html);
     failures[i]->page = page.string();
     progress.update(i + 1, failures.size(), 0, "pages");
   }

@@ -97,7 +97,7 @@ void write_view(const CommandLine& line, const ViewRequest& request) {
   options.kernels = line.kernels;
   options.stop = line.stop;
   const ViewPage page = page_of(request, options);
-  write_file_atomically(request.output, page.html.data(), page.html.size());
+  write_file_atomically(request.output, page.html);
   std::printf("%s: %.1f MB\n%s", printable(request.output).c_str(),
               1e-6 * static_cast<double>(page.html.size()), page.shown.c_str());
 }

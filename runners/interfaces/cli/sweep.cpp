@@ -16,6 +16,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/tally/tally_file.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
@@ -152,8 +153,8 @@ int dry_run(const Sweep& sweep, const Work& work, const CommandLine& line, const
 
 int dry_run_of_runs(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line,
                     const SweepRequest& request) {
-  char text[80];
-  std::snprintf(text, sizeof text, "%.3g MB while it runs, less when it is finished",
+  const std::string text =
+      formatted("%.3g MB while it runs, less when it is finished",
                 1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));
   return dry_run(sweep,
                  {plan.result.runs_in(RunState::pending).size(), plan.result.runs_in(RunState::done).size(),
@@ -271,8 +272,7 @@ std::string command_of(const AnalyseRequest& request) {
     if (!value.empty()) words.insert(words.end(), {option, value});
   };
   const auto add_number = [&](const char* option, double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
+    const std::string text = formatted("%.17g", value);
     if (value != 0.5) add(option, text);
   };
   add("--limit", request.limit), add("--along", request.along);

@@ -6,6 +6,7 @@
 
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/sweep/stored_sweep.h"
@@ -65,11 +66,11 @@ void SweepSummary::add(const SweepResult& block) {
 // outcome is neither 0 nor 1. The text then states the number of runs in the mean.
 std::string SweepSummary::text_of(const Range& range, const std::string& units) const {
   if (range.count == 0) return "no value in any run";
-  char text[160];
-  std::snprintf(text, sizeof text, "mean %-10.6g %.6g .. %.6g %s",
-                range.sum / static_cast<double>(range.count), range.low, range.high, units.c_str());
+  const std::string text =
+      formatted("mean %-10.6g %.6g .. %.6g %s", range.sum / static_cast<double>(range.count), range.low,
+                range.high, units.c_str());
   if (range.count == done_) return text;
-  return text + (", of " + std::to_string(range.count)) + " of " + std::to_string(done_) + " runs";
+  return text + formatted(", of %zu of %zu runs", range.count, done_);
 }
 
 int SweepSummary::print(const std::string& file, const std::string& digest) const {
@@ -110,36 +111,26 @@ int print_summary(const std::string& file, const SweepResult& result) {
   return summary.print(file, digest(result));
 }
 
-namespace {
-
-constexpr std::size_t kMaxFailedCells = 20;  // number that is printed
-
-}  // namespace
-
 std::string measure_text(const MeasureTally& all, const std::string& units) {
   if (all.values == 0) return "no value in any run";
-  char text[200];
-  std::snprintf(text, sizeof text, "mean %-10.6g %.6g .. %.6g %s, median %.3g", all.mean(), all.least,
-                all.greatest, units.c_str(), all.quantile(0.5));
+  const std::string text = formatted("mean %-10.6g %.6g .. %.6g %s, median %.3g", all.mean(), all.least,
+                                     all.greatest, units.c_str(), all.quantile(0.5));
   if (all.unknown + all.infinite == 0) return text;
-  return text + (", of " + std::to_string(all.values)) + " of " +
+  return text + ", of " + std::to_string(all.values) + " of " +
          std::to_string(all.values + all.unknown + all.infinite) + " runs";
 }
 
 namespace {
 
 void print_failures(const SweepTally& tally) {
-  std::size_t printed = 0, cells = 0;
+  std::size_t cells = 0;
   for (const CellTally& cell : tally.tallies) {
-    if (cell.failed == 0) continue;
-    ++cells;
-    if (++printed > kMaxFailedCells) continue;
+    if (cell.failed == 0 || ++cells > kMaxFailures) continue;
     std::printf("  failed: %lld runs of one cell; the first is %s: %s\n", static_cast<long long>(cell.failed),
                 option_of_run(tally, static_cast<std::size_t>(cell.first_failed)).c_str(),
                 cell.first_error.c_str());
   }
-  if (cells > kMaxFailedCells)
-    std::printf("  and %zu more cells, in /tally/errors\n", cells - kMaxFailedCells);
+  if (cells > kMaxFailures) std::printf("  and %zu more cells, in /tally/errors\n", cells - kMaxFailures);
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <thread>
 
+#include "core/parameters/formatted.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/haptic_device.h"
 
@@ -88,9 +88,9 @@ std::string histogram(const std::vector<double>& late_s) {
   for (int i = 0; i < kRows; ++i) {
     const long long count = counts[static_cast<std::size_t>(i)];
     if (count == 0) continue;
-    char row[128];
-    std::snprintf(row, sizeof row, "  %8.0f to %8.0f us %10lld %s\n",
-                  i == 0 ? 0 : std::ldexp(kFirst_us, i - 1), std::ldexp(kFirst_us, i), count,
+    const std::string row =
+        formatted("  %8.0f to %8.0f us %10lld %s\n", i == 0 ? 0 : std::ldexp(kFirst_us, i - 1),
+                  std::ldexp(kFirst_us, i), count,
                   std::string(static_cast<std::size_t>((kBar * count + max - 1) / max), '#').c_str());
     text += row;
   }

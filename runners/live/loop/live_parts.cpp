@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string_view>
 #include <utility>
 
+#include "core/parameters/formatted.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/simulation/run_notes.h"
 
@@ -303,11 +303,9 @@ void LiveParts::report_pending_lines() {
 }
 
 void LiveParts::report_force_scale() const {
-  char line[160];
-  std::snprintf(line, sizeof line,
-                "the maximum stiffness of the device is %.4g N/m: forces and torques are scaled by %.3g",
-                device_->traits().max_stiffness_N_per_m, force_scale_);
-  report_line(line);
+  report_line(
+      formatted("the maximum stiffness of the device is %.4g N/m: forces and torques are scaled by %.3g",
+                device_->traits().max_stiffness_N_per_m, force_scale_));
 }
 
 std::string LiveParts::camera_trouble() const {
@@ -318,9 +316,7 @@ std::string LiveParts::camera_trouble() const {
   const double stale_after_s = LiveLog::stale_after_s(camera_->view().frame_rate_hz);
   if (clock_.now_s() - camera_->newest_s() <= stale_after_s) return {};
   if (!camera_->has_sent()) return std::string("no frame has arrived yet: ") + held;
-  char line[64];
-  std::snprintf(line, sizeof line, "no frame for %.2g s: ", stale_after_s);
-  return std::string(line) + held;
+  return formatted("no frame for %.2g s: ", stale_after_s) + held;
 }
 
 std::string LiveParts::force_trouble() const {

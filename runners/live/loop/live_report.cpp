@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "analysis/measures/no_value.h"
+#include "core/parameters/formatted.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/sensors/sensor_table.h"
@@ -35,11 +35,9 @@ namespace {
 constexpr double kUnusedShare = 0.1;
 
 std::string frames_line(const LiveFacts& facts) {
-  char rate[32];
-  std::snprintf(rate, sizeof rate, "%.4g Hz", facts.view.frame_rate_hz);
   return std::to_string(facts.camera.received) + " frame(s) from " + facts.depth + ", " +
-         layout_text(facts.view) + " at " + rate + "; " + std::to_string(facts.sensed.frames()) +
-         " processed: " + facts.sensed.text();
+         layout_text(facts.view) + formatted(" at %.4g Hz; ", facts.view.frame_rate_hz) +
+         std::to_string(facts.sensed.frames()) + " processed: " + facts.sensed.text();
 }
 
 void add_unused_frames(const CameraCounts& camera, std::vector<Note>& notes) {
@@ -122,12 +120,8 @@ double longest_pause_ms(const CameraCounts& camera) {
 }
 
 // Returns the number, or "none" for NaN, at the right of a column of this width.
-std::string cell(std::size_t width, const char* format, double value) {
-  char number[400];  // a double may have 309 digits before its point
-  std::snprintf(number, sizeof number, format, value);
-  std::string text = std::isnan(value) ? "none" : number;
-  text.insert(0, width - std::min(width, text.size()), ' ');
-  return text;
+std::string cell(int width, const char* format, double value) {
+  return formatted("%*s", width, std::isnan(value) ? "none" : formatted(format, value).c_str());
 }
 
 // Returns at most kSamples + 1 points of a curve: the share of times that were as long or longer, over the
@@ -151,34 +145,38 @@ Table longer_than(const LiveReport::Times& times) {
   return table;
 }
 
-Column texts(std::string name, std::string long_name, std::vector<std::string> values) {
-  return {std::move(name), "1", std::move(long_name), std::move(values), 1, {}};
+// Returns a table with the names of what was measured or counted.
+template <class Row>
+Table table_of(const char* name, const char* title, const char* meaning, const std::vector<Row>& rows) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) names.emplace_back(row.name);
+  Table table{name, title};
+  table.columns.push_back({"what", "1", meaning, std::move(names), 1, {}});
+  return table;
 }
 
 Table times_table(const LiveReport& report) {
-  std::vector<std::string> names;
-  std::vector<double> count;
-  for (const auto& times : report.times)
-    names.emplace_back(times.name), count.push_back(static_cast<double>(times.count));
-  Table table{"times", "Times of the run"};
-  table.columns.push_back(texts("what", "what was measured", std::move(names)));
-  table.add("count", "1", "how many there were", std::move(count));
+  Table table = table_of("times", "Times of the run", "what was measured", report.times);
+  const auto add = [&](const std::string& name, const char* unit, const std::string& meaning,
+                       auto&& value_of) {
+    std::vector<double> values;
+    for (const auto& times : report.times) values.push_back(value_of(times));
+    table.add(name, unit, meaning, std::move(values));
+  };
+  add("count", "1", "how many there were",
+      [](const auto& times) { return static_cast<double>(times.count); });
   const std::pair<const char*, double> fractions[] = {
       {"least", 0}, {"p50", 0.5}, {"p99", 0.99}, {"p99_9", 0.999}, {"largest", 1}};
-  for (const auto& [name, fraction] : fractions) {
-    std::vector<double> values;
-    for (const auto& times : report.times) values.push_back(quantile_of(times, fraction));
-    table.add(name, "s", std::string(name) + " of the times", std::move(values));
-  }
+  for (const auto& [name, fraction] : fractions)
+    add(name, "s", std::string(name) + " of the times",
+        [fraction = fraction](const auto& times) { return quantile_of(times, fraction); });
   return table;
 }
 
 Table counts_table(const LiveReport& report) {
-  std::vector<std::string> names;
+  Table table = table_of("counts", "What was counted", "what was counted", report.counts);
   std::vector<double> values;
-  for (const auto& count : report.counts) names.emplace_back(count.name), values.push_back(count.value);
-  Table table{"counts", "What was counted"};
-  table.columns.push_back(texts("what", "what was counted", std::move(names)));
+  for (const auto& count : report.counts) values.push_back(count.value);
   table.add("value", "1", "how many, or in the unit that is named", std::move(values));
   return table;
 }
@@ -224,20 +222,17 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
 }
 
 std::string text(const LiveReport& report) {
-  char row[160];
   std::string all =
       "  times in us                            count     least       p50       p99     p99.9   largest\n";
   for (const auto& times : report.times) {
-    std::snprintf(row, sizeof row, "  %-34s %9zu", times.name, times.count);
-    all += row;
+    all += formatted("  %-34s %9zu", times.name, times.count);
     for (const double fraction : {0.0, 0.5, 0.99, 0.999, 1.0})
       all += " " + cell(9, "%.1f", 1e6 * quantile_of(times, fraction));
     all += "\n";
   }
   for (const auto& count : report.counts) {
     const bool whole = count.value == std::floor(count.value);
-    std::snprintf(row, sizeof row, "  %-50s ", count.name);
-    all += row + cell(12, whole ? "%.0f" : "%.3g", count.value) + "\n";
+    all += formatted("  %-50s ", count.name) + cell(12, whole ? "%.0f" : "%.3g", count.value) + "\n";
   }
   return all;
 }

@@ -1,13 +1,13 @@
 #include "runners/live/sensors/scenario_camera.h"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <vector>
 
 #include "core/geometry/camera.h"
 #include "core/geometry/colour.h"
 #include "core/geometry/rotation.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {
@@ -23,9 +23,7 @@ constexpr double kSamePose = 1e-9;
 constexpr double kMaxOff_px = 1;
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.5g", value);
-  return text;
+  return formatted("%.5g", value);
 }
 
 std::string columns_text(int columns) {

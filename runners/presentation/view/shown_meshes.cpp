@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 #include <utility>
 
+#include "core/parameters/formatted.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 
@@ -229,8 +229,7 @@ std::string note_on(const std::vector<ShownMesh>& meshes) {
   std::string note;
   for (const ShownMesh& mesh : meshes) {
     if (mesh.mesh.step_m <= kVisibleStep_m) continue;
-    char text[64];
-    std::snprintf(text, sizeof text, "%.2g mm", 1000 * mesh.mesh.step_m);
+    const std::string text = formatted("%.2g mm", 1000 * mesh.mesh.step_m);
     note += (note.empty() ? "" : "; ") +
             ("The mesh of " + mesh.name + " is drawn with vertices on a grid of ") + text +
             ": it has too many triangles for a page";

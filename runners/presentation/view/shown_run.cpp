@@ -1,7 +1,6 @@
 #include "runners/presentation/view/shown_run.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
+#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
@@ -219,8 +219,7 @@ struct ShownRun::State {
     const TrueHeights heights = true_heights(*scenario, shown_box_W, path.time_s);
     if (heights.empty()) return;
     if (heights.error_m > kStatedError_m && note.find(kSheetIsOff) == std::string::npos) {
-      char size[32];
-      std::snprintf(size, sizeof size, "%.2g mm", 1e3 * heights.error_m);
+      const std::string size = formatted("%.2g mm", 1e3 * heights.error_m);
       add_note(kSheetIsOff + std::string(size));
       run["note"] = note;
     }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "analysis/measures/run_events.h"
 #include "core/geometry/rotation.h"
+#include "core/parameters/formatted.h"
 
 namespace remote_touch {
 
@@ -50,12 +50,6 @@ void find_first_slave_contact(const ColumnSource& trace, std::vector<TraceEvent>
                       "The slave touches the true surface for the first time."});
 }
 
-std::string text_with(const char* format, double value) {
-  char text[80];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 void find_hardest_hit(const ColumnSource& trace, std::vector<TraceEvent>& events) {
   const auto force_N = values_or_none<double>(trace, "slave_peak_force");
   double largest_N = 0;
@@ -64,7 +58,7 @@ void find_hardest_hit(const ColumnSource& trace, std::vector<TraceEvent>& events
     if (force_N[i] > largest_N) largest_N = force_N[i], tick = i;  // false for NaN
   if (largest_N > 0)
     events.push_back(
-        {tick, "hardest hit", text_with("The largest force of the scene on the slave, %.3g N.", largest_N)});
+        {tick, "hardest hit", formatted("The largest force of the scene on the slave, %.3g N.", largest_N)});
 }
 
 void find_largest_forces(const ColumnSource& trace, std::vector<TraceEvent>& events) {
@@ -81,10 +75,10 @@ void find_largest_forces(const ColumnSource& trace, std::vector<TraceEvent>& eve
   }
   if (largest_jump_N > 0)
     events.push_back({jump_tick, "force jump",
-                      text_with("The largest change of the force, %.3g N in one tick.", largest_jump_N)});
+                      formatted("The largest change of the force, %.3g N in one tick.", largest_jump_N)});
   const char* const format = trace.has("slave_peak_force") ? "The largest force of the renderer, %.3g N."
                                                            : "The largest force, %.3g N.";
-  if (largest_N > 0) events.push_back({tick, "largest force", text_with(format, largest_N)});
+  if (largest_N > 0) events.push_back({tick, "largest force", formatted(format, largest_N)});
 }
 
 // exhausted: the value of the column that means that the tick did not converge.
@@ -112,10 +106,7 @@ std::string name_of_step(std::int32_t step, const std::vector<std::string>& step
 // Returns an empty text if the step had no goal.
 std::string from_goal(double distance_m, double angle_rad) {
   if (!std::isfinite(distance_m) || !std::isfinite(angle_rad)) return {};
-  char text[80];
-  std::snprintf(text, sizeof text, ", %.2g mm and %.2g deg from its goal", 1000 * distance_m,
-                angle_rad / kRadiansPerDegree);
-  return text;
+  return formatted(", %.2g mm and %.2g deg from its goal", 1000 * distance_m, angle_rad / kRadiansPerDegree);
 }
 
 // Adds the events of the task's steps, with the words that `remote-touch run` prints. If several steps end in
