@@ -1,11 +1,11 @@
 #include "analysis/scorecard/card_summaries.h"
-#include "core/parameters/formatted.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <tuple>
+#include "analysis/trace/formatted.h"
 
 namespace remote_touch {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 

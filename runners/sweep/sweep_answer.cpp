@@ -11,7 +11,7 @@
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/sweep/answer_display.h"

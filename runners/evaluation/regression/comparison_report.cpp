@@ -5,10 +5,12 @@
 #include <charconv>
 #include <cinttypes>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/formatted.h"
 #include "runners/experiment/catalog/catalog.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 
@@ -18,13 +20,16 @@ std::string shortest_text(double number) {
   return {begin, std::to_chars(begin, begin + digits.size(), number, std::chars_format::general).ptr};
 }
 
-std::string json_text(const Json& report) {
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 namespace {
 
 using CaseState = ReportCase::State;
+
+// A report whose JSON is not yet text.
+struct DraftReport {
+  std::string text;
+  Json json;
+  std::vector<ReportCase> cases = {};
+};
 
 template <class Number>
 Json optional_json(const std::optional<Number>& value) {
@@ -119,7 +124,7 @@ Json divergence_json(const Divergence& found) {
           {"candidate", rows_json(found.candidate)}};
 }
 
-void add_columns(const TraceComparison& comparison, ComparisonReport& report) {
+void add_columns(const TraceComparison& comparison, DraftReport& report) {
   report.text += formatted("  %-28s %-6s %9s %12s %12s %9s  %s\n", "column", "units", "rows", "max", "rms",
                            "outside", "tolerance");
   for (const ColumnComparison& column : comparison.columns) {
@@ -227,7 +232,7 @@ Json measure_json(const MeasureComparison& measure, Judgement judgement) {
 }
 
 // Adds the measures of two traces that differ; the text has those that are not equal.
-void add_measures(const ResultComparison& comparison, ComparisonReport& report) {
+void add_measures(const ResultComparison& comparison, DraftReport& report) {
   const std::vector<ValueComparison>& measures = comparison.measures;
   std::size_t equal = 0;
   if (!measures.empty())
@@ -271,7 +276,7 @@ std::string verdict_text(const MeasureComparison& measure, Judgement judgement) 
   return others == 0 ? all : all + ", " + std::to_string(others) + " not judged (another outcome, or NaN)";
 }
 
-void add_measures(const ResultComparison& comparison, Json& json, ComparisonReport& report) {
+void add_measures(const ResultComparison& comparison, Json& json, DraftReport& report) {
   const SweepComparison& sweep = *comparison.sweep;
   const bool is_compared = sweep.problems.empty();
   if (is_compared)
@@ -400,7 +405,7 @@ std::string text_of(const FirstDifference& first) {
          " -o trace.h5, of both, then compare\n";
 }
 
-void add_sweep(const ResultComparison& comparison, ComparisonReport& report) {
+void add_sweep(const ResultComparison& comparison, DraftReport& report) {
   const SweepComparison& sweep = *comparison.sweep;
   for (const auto* const lines : {&sweep.problems, &sweep.notes})
     for (const std::string& line : *lines) report.text += "  " + line + "\n";
@@ -432,15 +437,15 @@ ComparisonReport report_of(const ResultComparison& comparison) {
       CaseState::passed, CaseState::failed, CaseState::error, {}, CaseState::skipped};
   const auto outcome = static_cast<std::size_t>(comparison.outcome);
   // The lines below state the baseline first, too: "seed 1 against 7".
-  ComparisonReport report{comparison.kind + ": baseline " + comparison.baseline + " against candidate " +
-                              comparison.candidate + "\n",
-                          {{"baseline", comparison.baseline},
-                           {"candidate", comparison.candidate},
-                           {"kind", comparison.kind},
-                           {"outcome", name_of(comparison.outcome)},
-                           {"verdict", comparison.verdict},
-                           {"configuration", comparison.configuration},
-                           {"provenance", comparison.provenance}}};
+  DraftReport report{comparison.kind + ": baseline " + comparison.baseline + " against candidate " +
+                         comparison.candidate + "\n",
+                     {{"baseline", comparison.baseline},
+                      {"candidate", comparison.candidate},
+                      {"kind", comparison.kind},
+                      {"outcome", name_of(comparison.outcome)},
+                      {"verdict", comparison.verdict},
+                      {"configuration", comparison.configuration},
+                      {"provenance", comparison.provenance}}};
   for (const std::string& line : comparison.configuration) report.text += "  configuration: " + line + "\n";
   for (const std::string& line : comparison.provenance) report.text += "  provenance: " + line + "\n";
   if (comparison.columns) {
@@ -457,7 +462,7 @@ ComparisonReport report_of(const ResultComparison& comparison) {
                              {"different_at_tick", optional_json(comparison.hashes->different)}};
   report.text += std::string(kWords[outcome]) + ": " + comparison.verdict + "\n";
   report.cases.push_back({comparison.kind, kStates[outcome], comparison.verdict});
-  return report;
+  return {report.text, report.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", report.cases};
 }
 
 }  // namespace remote_touch

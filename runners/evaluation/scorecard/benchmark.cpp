@@ -11,7 +11,7 @@
 #include <typeinfo>
 
 #include "analysis/measures/contact_measures.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/embedded_data.h"

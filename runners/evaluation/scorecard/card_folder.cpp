@@ -11,7 +11,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/column.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/experiment/provenance/provenance.h"

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
@@ -10,6 +11,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
@@ -83,16 +85,16 @@ ReportSuite suite_of(const std::vector<BaselineCheck>& checks) {
 
 // Returns the report of each check. A check without a comparison has one with its verdict and without
 // columns.
-Json json_of(const std::vector<BaselineCheck>& checks) {
+std::string json_of(const std::vector<BaselineCheck>& checks) {
   Json list = Json::array();
   for (const BaselineCheck& check : checks) {
     ResultComparison none{"", "this program", check.state == State::not_run ? "not run" : "none"};
     none.verdict = check.text;
     if (check.state == State::missing) none.outcome = Outcome::changed;
-    list.push_back(report_of(check.comparison.value_or(none)).json);
+    list.push_back(Json::parse(report_of(check.comparison.value_or(none)).json));
     list.back()["baseline"] = check.name;
   }
-  return list;
+  return list.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 int exit_code(const std::vector<BaselineCheck>& checks) {
@@ -127,7 +129,7 @@ int command_baseline_check(const CommandLine& line, const BaselineCheckRequest& 
   if (checks.empty()) throw InputError(request.folder, "holds no baselines: expected a folder with some");
   for (const std::string& note : notes.lines()) std::printf("note: %s\n", note.c_str());
   print_summary(checks);
-  if (!request.json.empty()) write_file_atomically(request.json, json_text(json_of(checks)));
+  if (!request.json.empty()) write_file_atomically(request.json, json_of(checks));
   if (!request.junit.empty()) write_file_atomically(request.junit, junit({suite_of(checks)}));
   return exit_code(checks);
 }

@@ -12,8 +12,8 @@
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
+#include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/junit_report.h"
@@ -106,7 +106,7 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   require_traces_to_draw(request, comparison);
   const ComparisonReport report = report_of(comparison);
   std::fputs(report.text.c_str(), stdout);
-  if (!request.json.empty()) write_file_atomically(request.json, json_text(report.json));
+  if (!request.json.empty()) write_file_atomically(request.json, report.json);
   if (!request.junit.empty()) write_file_atomically(request.junit, junit({{request.baseline, report.cases}}));
   if (!request.plot.empty()) write_plot(line, request, comparison);
   if (!request.view.empty()) write_view(line, view);

@@ -12,7 +12,7 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -13,7 +13,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/column.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -17,7 +17,7 @@
 #include "analysis/figures/result_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/provenance/provenance.h"

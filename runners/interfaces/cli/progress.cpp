@@ -1,7 +1,7 @@
 #include "runners/interfaces/cli/progress.h"
-#include "core/parameters/formatted.h"
 
 #include <unistd.h>
+#include "analysis/trace/formatted.h"
 
 #include <cstdio>
 #include <nlohmann/json.hpp>

@@ -16,7 +16,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/tally/tally_file.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/interfaces/cli/outputs.h"

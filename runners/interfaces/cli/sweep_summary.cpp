@@ -6,7 +6,7 @@
 
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/sweep/stored_sweep.h"

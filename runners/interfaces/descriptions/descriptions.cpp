@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "analysis/trace/formatted.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figures.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/haptic_device.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/simulation/run_notes.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/measures/no_value.h"
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/sensors/sensor_table.h"

@@ -4,10 +4,10 @@
 #include <limits>
 #include <vector>
 
+#include "analysis/trace/formatted.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/colour.h"
 #include "core/geometry/rotation.h"
-#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

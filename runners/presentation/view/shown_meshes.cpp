@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 

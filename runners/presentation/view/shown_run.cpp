@@ -7,8 +7,8 @@
 
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/trace/column.h"
+#include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"

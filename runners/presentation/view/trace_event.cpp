@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "analysis/measures/run_events.h"
+#include "analysis/trace/formatted.h"
 #include "core/geometry/rotation.h"
-#include "core/parameters/formatted.h"
 
 namespace remote_touch {
 

@@ -27,7 +27,7 @@ inline bool any_has(const std::vector<std::string>& texts, const std::string& pa
 }
 
 inline json json_of(const ResultComparison& comparison) {
-  return json::parse(json_text(report_of(comparison).json));
+  return json::parse(report_of(comparison).json);
 }
 inline std::string junit_of(const ResultComparison& comparison) {
   return junit({{"baseline.h5", report_of(comparison).cases}});

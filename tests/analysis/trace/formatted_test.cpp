@@ -1,4 +1,4 @@
-#include "core/parameters/formatted.h"
+#include "analysis/trace/formatted.h"
 
 #include <gtest/gtest.h>
 
