@@ -59,17 +59,17 @@ SharedLibrary::SharedLibrary(const Lookup& lookup) : variable_(lookup.variable) 
                        lookup.package);
 }
 
-void* SharedLibrary::address(const char* name) const {
-  void* found = address_if_there(name);
-  if (found == nullptr)
+SharedLibrary::Function SharedLibrary::operator[](const char* name) const {
+  const Function found = optional(name);
+  if (found.address == nullptr)
     throw InputError(file_, std::string("has no function ") + name +
                                 ": it is too old or another library; set " + variable_ +
                                 " to the file of the right one");
   return found;
 }
 
-void* SharedLibrary::address_if_there(const char* name) const {
-  return dlsym(handle_, name);
+SharedLibrary::Function SharedLibrary::optional(const char* name) const {
+  return {dlsym(handle_, name)};
 }
 
 }  // namespace remote_touch

@@ -1,5 +1,7 @@
 // A library of a vendor, loaded when a device needs it. The program is built and started without any such
-// library.
+// library. Its functions initialise pointers, whose types are those of the functions:
+//   SharedLibrary library{...};
+//   int (*close)(char id) = library["dhdClose"];
 #pragma once
 
 #include <string>
@@ -22,21 +24,20 @@ class SharedLibrary {
   // The file that was loaded.
   const std::string& file() const { return file_; }
 
-  // Finds the function of this name, of the type that the caller gives. Throws InputError if there is none.
-  template <class Function>
-  void find(const char* name, Function*& function) const {
-    function = reinterpret_cast<Function*>(address(name));
-  }
-  // The same for a function that only newer versions have: it is null if there is none.
-  template <class Function>
-  void find_optional(const char* name, Function*& function) const {
-    function = reinterpret_cast<Function*>(address_if_there(name));
-  }
+  // Converts to a pointer of the type that the caller gives.
+  struct Function {
+    void* address;
+    template <class Type>
+    operator Type*() const {
+      return reinterpret_cast<Type*>(address);
+    }
+  };
+  // Throws InputError if there is no such function.
+  Function operator[](const char* name) const;
+  // A function that some versions lack: the pointer is null if there is none.
+  Function optional(const char* name) const;
 
  private:
-  void* address(const char* name) const;
-  void* address_if_there(const char* name) const;
-
   void* handle_ = nullptr;
   std::string file_;
   const char* variable_;

@@ -31,11 +31,7 @@ constexpr NamedCode kCodes[] = {
 
 }  // namespace
 
-OpenClLibrary::OpenClLibrary() : library_(kOpenClLibrary) {
-#define REMOTE_TOUCH_FIND(name) library_.find("cl" #name, name);
-  REMOTE_TOUCH_OPENCL_FUNCTIONS(REMOTE_TOUCH_FIND)
-#undef REMOTE_TOUCH_FIND
-}
+OpenClLibrary::OpenClLibrary() : library(kOpenClLibrary) {}
 
 const OpenClLibrary& opencl_library() {
   // The library is never freed, because drivers leave threads behind, and objects may be released late.

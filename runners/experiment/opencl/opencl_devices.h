@@ -35,8 +35,7 @@ class OpenClTimeout : public OpenClError {
   using OpenClError::OpenClError;
 };
 
-// The functions, as pointers. Each is null until the constructor has found the function. Its name is the name
-// in the library without the prefix cl.
+// The names of the functions in the library, without the prefix cl.
 #define REMOTE_TOUCH_OPENCL_FUNCTIONS(each)                                                                 \
   each(GetPlatformIDs) each(GetPlatformInfo) each(GetDeviceIDs) each(GetDeviceInfo) each(CreateContext)     \
       each(ReleaseContext) each(CreateCommandQueue) each(ReleaseCommandQueue) each(CreateProgramWithSource) \
@@ -45,18 +44,15 @@ class OpenClTimeout : public OpenClError {
                   each(EnqueueWriteBuffer) each(EnqueueWriteBufferRect) each(EnqueueMapBuffer)              \
                       each(EnqueueUnmapMemObject) each(EnqueueNDRangeKernel) each(Finish)
 
-class OpenClLibrary {
- public:
+struct OpenClLibrary {
   // Throws InputError if there is no library, or if it lacks a function.
   OpenClLibrary();
 
+  SharedLibrary library;
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared takes none.
-#define REMOTE_TOUCH_DECLARE(name) decltype(&::cl##name) name = nullptr;
+#define REMOTE_TOUCH_DECLARE(name) decltype(&::cl##name) name = library["cl" #name];
   REMOTE_TOUCH_OPENCL_FUNCTIONS(REMOTE_TOUCH_DECLARE)
 #undef REMOTE_TOUCH_DECLARE
-
- private:
-  SharedLibrary library_;
 };
 
 // Returns the library of this process. Loads it at the first call. Throws as the constructor does; the next

@@ -17,7 +17,7 @@ struct Eapi {
   enum Mode { disabled = 0, force_control = 1 };
   static constexpr int kOk = 1;
 
-  VendorLibrary library{SharedLibrary::Lookup{
+  SharedLibrary library{SharedLibrary::Lookup{
       {"libEntactAPI.so", "libentactapi.so"}, "REMOTE_TOUCH_LIBENTACT", "Entact Robotics' EntactAPI"}};
   int (*open)(Handle handles[],
               int size) = library["openEAPI"];  // returns the number of devices that answered

@@ -15,7 +15,7 @@ namespace {
 // The DHD library, version 3: SI units, x towards the user, y to the right, z up. A result below 0 is an
 // error. A result above 0 is a notice about the timing or about motors at their limit.
 struct Dhd {
-  VendorLibrary library{
+  SharedLibrary library{
       SharedLibrary::Lookup{{"libdhd.so.3", "libdhd.so"}, "REMOTE_TOUCH_LIBDHD", "Force Dimension's SDK"}};
   int (*get_device_count)() = library["dhdGetDeviceCount"];
   int (*open_id)(char id) = library["dhdOpenID"];

@@ -43,7 +43,7 @@ struct HdLibrary {
   static constexpr unsigned short kMaxPriority = 0xFFFF;
 
   // The constructor throws InputError if the library is not found.
-  VendorLibrary library{SharedLibrary::Lookup{
+  SharedLibrary library{SharedLibrary::Lookup{
       {"libHD.so", "libHD.so.3.5", "libHD.so.3.4"}, "REMOTE_TOUCH_LIBHD", "3D Systems' OpenHaptics"}};
   unsigned (*init_device)(const char* name) = library["hdInitDevice"];
   void (*disable_device)(unsigned device) = library["hdDisableDevice"];

@@ -1,6 +1,4 @@
-// A vendor's library whose functions initialise pointers: the type of the pointer is that of the function.
-//   VendorLibrary library{...};
-//   int (*close)(char id) = library["dhdClose"];
+// What the adapters of vendors' libraries share: availability, axes, rotations and the texts of faults.
 #pragma once
 
 #include <span>
@@ -10,29 +8,6 @@
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {
-
-class VendorLibrary : public SharedLibrary {
- public:
-  using SharedLibrary::SharedLibrary;
-
-  struct Function {
-    const SharedLibrary& library;
-    const char* name;
-    bool is_required;
-
-    template <class Type>
-    operator Type*() const {
-      Type* function = nullptr;
-      is_required ? library.find(name, function) : library.find_optional(name, function);
-      return function;
-    }
-  };
-
-  // The conversion throws InputError if there is no such function.
-  Function operator[](const char* name) const { return {*this, name, true}; }
-  // A function that some versions lack: the pointer is null if there is none.
-  Function optional(const char* name) const { return {*this, name, false}; }
-};
 
 // The availability of devices whose library does not report them before one is opened.
 template <class Functions>

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "runners/libraries/shared_library.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/live/devices/vendor_library.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch::k4a {
@@ -68,7 +68,7 @@ struct K4aLibrary {
   // none. The message may come from any thread and device, because the library has one log.
   std::string pop_first_error() const;
 
-  VendorLibrary library;
+  SharedLibrary library;
   std::uint32_t (*device_get_installed_count)() = library["k4a_device_get_installed_count"];
   Result (*device_open)(std::uint32_t index, Device* device) = library["k4a_device_open"];
   void (*device_close)(Device) = library["k4a_device_close"];

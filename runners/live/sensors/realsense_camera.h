@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "runners/libraries/shared_library.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/live/devices/vendor_library.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch::rs2 {
@@ -53,7 +53,7 @@ struct RealSenseLibrary {
   // Returns the text of an error, and frees the error.
   std::string text_of(Error* error) const;
 
-  VendorLibrary library;
+  SharedLibrary library;
   int (*get_api_version)(Error**) = library["rs2_get_api_version"];
   const char* (*get_error_message)(const Error*) = library["rs2_get_error_message"];
   const char* (*get_failed_function)(const Error*) = library["rs2_get_failed_function"];
