@@ -46,7 +46,7 @@ DevicePipeline::DevicePipeline(const OpenClDevice& device, const DepthPipelineSe
       frame_limit_(frame_limit),
       cpu_(settings, kernels),
       frame_(std::make_shared<DeviceFrame>()),
-      thread_(std::make_unique<DeadlineThread>()) {
+      thread_(std::make_unique<LastingThread>()) {
   struct Opened {
     std::shared_ptr<DeviceFrames> frames;
     DeviceFrame first{{8, 8, 10, 10, 4, 4},
@@ -135,7 +135,7 @@ void DevicePipeline::give_up(const std::string& why) {
   };
   const auto last =
       std::make_shared<Last>(Last{std::move(frame_), std::move(frames_), forget_kernels(device_.id)});
-  DeadlineThread().run(
+  LastingThread().run(
       [last] {
         last->frames->drain();
         last->frames.reset(), last->kernels.clear();

@@ -10,6 +10,7 @@
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/opencl/opencl_devices.h"
+#include "runners/libraries/lasting_thread.h"
 
 namespace remote_touch {
 
@@ -51,7 +52,7 @@ class DevicePipeline final : public DepthProcessor {
   DepthPipeline cpu_;
   std::shared_ptr<DeviceFrames> frames_;  // null after the device has failed
   std::shared_ptr<DeviceFrame> frame_;
-  std::unique_ptr<DeadlineThread> thread_;
+  std::unique_ptr<LastingThread> thread_;
 };
 
 // Trial of an OpenCL device with one frame that the CPU processes too. It finds out whether the device works,

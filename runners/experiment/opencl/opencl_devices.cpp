@@ -1,7 +1,10 @@
 #include "runners/experiment/opencl/opencl_devices.h"
 
 #include <atomic>
-#include <thread>
+#include <memory>
+#include <mutex>
+
+#include "runners/libraries/lasting_thread.h"
 
 namespace remote_touch {
 namespace {
@@ -48,47 +51,6 @@ void require(cl_int code, const char* function) {
   for (const NamedCode& each : kCodes)
     if (each.code == code) name = each.name;
   throw OpenClError(std::string(function) + ": " + name + " (" + std::to_string(code) + ")");
-}
-
-DeadlineThread::DeadlineThread() : shared_(std::make_shared<Shared>()) {
-  // The thread is detached, because a thread that hangs can never be joined.
-  std::thread([shared = shared_] { serve(shared); }).detach();
-}
-
-DeadlineThread::~DeadlineThread() {
-  const std::lock_guard lock(shared_->mutex);
-  shared_->is_over = true;
-  shared_->changed.notify_all();
-}
-
-void DeadlineThread::serve(const std::shared_ptr<Shared>& shared) {
-  std::unique_lock lock(shared->mutex);
-  for (;;) {
-    shared->changed.wait(lock, [&] { return shared->work || shared->is_over; });
-    if (!shared->work) return;
-    const std::function<void()> work = shared->work;
-    lock.unlock();
-    std::exception_ptr thrown;
-    try {
-      work();
-    } catch (...) {
-      thrown = std::current_exception();
-    }
-    lock.lock();
-    shared->thrown = thrown;
-    shared->work = nullptr;
-    shared->changed.notify_all();
-  }
-}
-
-bool DeadlineThread::run(std::function<void()> work, std::chrono::milliseconds limit) {
-  std::unique_lock lock(shared_->mutex);
-  shared_->work = std::move(work);
-  shared_->changed.notify_all();
-  if (!shared_->changed.wait_for(lock, limit, [&] { return !shared_->work; })) return false;
-  if (const std::exception_ptr thrown = std::exchange(shared_->thrown, nullptr))
-    std::rethrow_exception(thrown);
-  return true;
 }
 
 namespace {
@@ -191,7 +153,7 @@ std::vector<OpenClDevice> listed_devices(std::chrono::milliseconds limit) {
     if (late && !late->is_over) throw OpenClTimeout(no_answer);
   }
   const auto listing = std::make_shared<Listing>();
-  DeadlineThread thread;
+  LastingThread thread;
   const bool in_time = thread.run(
       [listing] {
         const std::lock_guard alone(one_at_a_time);

@@ -1,5 +1,4 @@
-// The OpenCL devices of this machine, the functions that the depth pipeline calls there, and work with a
-// deadline.
+// The OpenCL devices of this machine, and the functions that the depth pipeline calls there.
 #pragma once
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -7,11 +6,6 @@
 #include <CL/cl.h>
 
 #include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <functional>
-#include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -83,33 +77,6 @@ class OpenClObject {
  private:
   Object object_ = nullptr;
   Release release_ = nullptr;
-};
-
-// Work with a deadline: a driver that hangs blocks only its own thread.
-
-class DeadlineThread {
- public:
-  DeadlineThread();
-  // Does not wait for work that has missed its deadline.
-  ~DeadlineThread();
-  DeadlineThread(const DeadlineThread&) = delete;
-  DeadlineThread& operator=(const DeadlineThread&) = delete;
-
-  // Returns true if the work was done in time; throws what the work throws. Late work continues in its
-  // thread, so it must own all that it uses, and run() must not be called again.
-  bool run(std::function<void()> work, std::chrono::milliseconds limit);
-
- private:
-  struct Shared {
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::function<void()> work;
-    std::exception_ptr thrown;
-    bool is_over = false;
-  };
-  static void serve(const std::shared_ptr<Shared>& shared);
-
-  const std::shared_ptr<Shared> shared_;
 };
 
 // The OpenCL devices of this machine, and whether their arithmetic can give the same bits as the CPU.

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
+#include "runners/libraries/lasting_thread.h"
 #include "runners/live/sensors/driver_frames.h"
-#include "runners/live/sensors/lasting_threads.h"
 #include "runners/live/sensors/openni2_library.h"
 
 namespace remote_touch {

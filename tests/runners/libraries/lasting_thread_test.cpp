@@ -1,4 +1,4 @@
-#include "runners/live/sensors/lasting_threads.h"
+#include "runners/libraries/lasting_thread.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace remote_touch::lasting_threads_test {
+namespace remote_touch::lasting_thread_test {
 namespace {
 
 std::thread::id id_of(LastingThread& thread) {
@@ -44,4 +44,4 @@ TEST(LastingThread, FreeThreadsAreUsedAgain) {
 }
 
 }  // namespace
-}  // namespace remote_touch::lasting_threads_test
+}  // namespace remote_touch::lasting_thread_test
