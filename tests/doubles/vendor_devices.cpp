@@ -74,12 +74,11 @@ void PrintTo(const VendorDevice* vendor, std::ostream* out) {
 
 void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& tick) {
   int done = 0;
-  CallCycle cycle([&] {
+  device.run([&] {
     if (done == ticks) return false;
     tick(done++);
     return true;
   });
-  device.run(cycle);
 }
 
 std::vector<std::array<double, 6>> sent_forces(const DeviceDouble& device) {

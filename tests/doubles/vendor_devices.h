@@ -35,16 +35,6 @@ extern const VendorDevice kForceDimension, kOpenHaptics, kEntact;
 
 using DoubleInstalled = InstalledDouble<DeviceDouble>;
 
-// A cycle whose ticks are calls.
-class CallCycle : public DeviceCycle {
- public:
-  explicit CallCycle(std::function<bool()> call) : call_(std::move(call)) {}
-  bool tick() noexcept override { return call_(); }
-
- private:
-  std::function<bool()> call_;
-};
-
 // Runs the device for that many ticks and one more, which only ends it.
 void run_ticks(HapticDevice& device, int ticks, const std::function<void(int)>& tick);
 

@@ -16,9 +16,9 @@ BrowserDevice::BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState
       wanted_(stopped_),
       now_(start) {}
 
-void BrowserDevice::run(DeviceCycle& cycle) {
+void BrowserDevice::run(const DeviceTick& tick) {
   start_s_ = clock().now_s();
-  HapticDevice::run(cycle);
+  HapticDevice::run(tick);
 }
 
 void BrowserDevice::request(const HandMotion& motion) {

@@ -46,7 +46,7 @@ class BrowserDevice final : public HapticDevice {
   BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState& start, const DevicePlacement& placement,
                 double rate_hz, Clock& clock);
 
-  void run(DeviceCycle& cycle) override;
+  void run(const DeviceTick& tick) override;
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench&) noexcept override { return {}; }
   void release() noexcept override {}

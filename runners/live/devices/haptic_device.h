@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -50,16 +51,12 @@ struct DeviceTraits {
   double tick_rate_hz = 1000;  // rate of the ticks; the device's own loop may have another
 };
 
-// One cycle of the haptic loop: reads the device, renders and writes the force.
-class DeviceCycle {
- public:
-  virtual ~DeviceCycle() = default;
-  // Returns false after the last tick.
-  virtual bool tick() noexcept = 0;
-};
+// One cycle of the haptic loop: reads the device, renders and writes the force. Returns false after the last
+// tick. It must not throw.
+using DeviceTick = std::function<bool()>;
 
-// run() is called once, in a thread of its own. The adapter or its vendor's library then calls tick() of the
-// cycle, which calls read() and then write(), once each. The constructor opens the device. It throws
+// run() is called once, in a thread of its own. The adapter or its vendor's library then calls the
+// tick, which calls read() and then write(), once each. The constructor opens the device. It throws
 // InputError, which says what is missing and what would help. The force is off until the first write().
 class HapticDevice {
  public:
@@ -71,9 +68,9 @@ class HapticDevice {
   // Called at most once, before run(): the run begins at start_ns, a time of the clock. A simulated device
   // counts its time from there; a real one ignores it.
   virtual void start_at([[maybe_unused]] std::int64_t start_ns) {}
-  // Calls tick() at the device's rate until tick() returns false. The default version uses the clock and
+  // Calls the tick at the device's rate until it returns false. The default version uses the clock and
   // traits().tick_rate_hz. A tick that was missed is skipped, not made later.
-  virtual void run(DeviceCycle& cycle);
+  virtual void run(const DeviceTick& tick);
 
   // read() and write() are called within a tick. They must not allocate, lock, or wait beyond the vendor's
   // call.

@@ -86,7 +86,7 @@ class OpenHaptics : public GatedDevice {
   OpenHaptics(const std::string& address, const std::string& subject, Clock& clock);
   ~OpenHaptics() override;
 
-  void run(DeviceCycle& cycle) override;
+  void run(const DeviceTick& tick) override;
 
  private:
   DeviceFault sense(DeviceReading& reading) noexcept override;
@@ -97,7 +97,7 @@ class OpenHaptics : public GatedDevice {
   void learn_traits();
   HdLibrary::Error take_errors() const noexcept;
   DeviceFault newest_error(const char* what) const noexcept;
-  bool frame(DeviceCycle& cycle) noexcept;
+  bool frame() noexcept;
   bool is_scheduler_done() noexcept;
   static unsigned on_schedule(void* self) noexcept;
 
@@ -109,7 +109,7 @@ class OpenHaptics : public GatedDevice {
   bool has_written_ = false;  // true if a force was written in this frame
 
   DeviceFault scheduler_fault_;  // set only while no callback can be in progress
-  DeviceCycle* cycle_ = nullptr;
+  const DeviceTick* tick_ = nullptr;
   std::atomic<long> callbacks_{0};
   std::atomic<bool> in_callback_{false}, has_ended_{false};
 };
@@ -224,11 +224,11 @@ void OpenHaptics::switch_off() noexcept {
 // Makes one tick in one frame. Writes zero force if the tick wrote none, because the device would then keep
 // the force of the frame before. Also writes zero after release(), and in the last frame, because nothing
 // would set the force to zero after it.
-bool OpenHaptics::frame(DeviceCycle& cycle) noexcept {
+bool OpenHaptics::frame() noexcept {
   hd_.begin_frame(device_);
   if (const DeviceFault fault = newest_error("OpenHaptics: the state cannot be read")) frame_fault_ = fault;
   has_written_ = false;
-  const bool continues = cycle.tick();
+  const bool continues = (*tick_)();
   if (!has_written_ || is_released() || !continues) exert({});
   hd_.end_frame(device_);
   frame_fault_ = newest_error("OpenHaptics: the force cannot be set");
@@ -239,7 +239,7 @@ unsigned OpenHaptics::on_schedule(void* self) noexcept {
   OpenHaptics& device = *static_cast<OpenHaptics*>(self);
   device.in_callback_ = true;
   ++device.callbacks_;
-  const bool continues = device.frame(*device.cycle_);
+  const bool continues = device.frame();
   device.in_callback_ = false;
   if (continues) return HdLibrary::callback_continue;
   device.has_ended_ = true;
@@ -261,8 +261,8 @@ bool OpenHaptics::is_scheduler_done() noexcept {
   return true;
 }
 
-void OpenHaptics::run(DeviceCycle& cycle) {
-  cycle_ = &cycle;
+void OpenHaptics::run(const DeviceTick& tick) {
+  tick_ = &tick;
   has_ended_ = false;
   frame_fault_ = {};
   hd_.make_current_device(device_);
@@ -275,7 +275,7 @@ void OpenHaptics::run(DeviceCycle& cycle) {
   if (is_done || has_ended_) return;
   switch_off();
   scheduler_fault_ = fault ? fault : DeviceFault{"OpenHaptics: the scheduler has stopped calling", 0};
-  HapticDevice::run(cycle);
+  HapticDevice::run(tick);
 }
 
 }  // namespace

@@ -13,9 +13,9 @@ SimulatedDevice::SimulatedDevice(std::unique_ptr<const Trajectory> script, const
       hand_(hand),
       placement_(placement) {}
 
-void SimulatedDevice::run(DeviceCycle& cycle) {
+void SimulatedDevice::run(const DeviceTick& tick) {
   if (!start_s_) start_s_ = clock().now_s();
-  HapticDevice::run(cycle);
+  HapticDevice::run(tick);
   if (failure_) std::rethrow_exception(failure_);
 }
 

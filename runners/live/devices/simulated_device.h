@@ -25,7 +25,7 @@ class SimulatedDevice final : public HapticDevice {
   void start_at(std::int64_t start_ns) override { start_s_ = 1e-9 * static_cast<double>(start_ns); }
   // Rethrows the exception of the script after the loop has ended, such as an InputError for an unusable
   // frame.
-  void run(DeviceCycle& cycle) override;
+  void run(const DeviceTick& tick) override;
   // Returns a fault, from then on in every call, if the script throws.
   DeviceFault read(DeviceReading& reading) noexcept override;
   DeviceFault write(const Wrench& wrench) noexcept override;

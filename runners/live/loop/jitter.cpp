@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "analysis/trace/formatted.h"
-#include "runners/live/devices/clock.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {
@@ -23,53 +22,30 @@ class NoDevice final : public HapticDevice {
   void release() noexcept override {}
 };
 
-// Measures lateness against the grid of the loop: it starts when the loop does, and its period is a whole
-// number of nanoseconds, see HapticDevice::run(). On another grid a punctual tick could get the number of the
-// tick before.
-class Watch final : public DeviceCycle {
- public:
-  Watch(Jitter& jitter, double duration_s, double rate_hz, const std::atomic<bool>* stop, const Clock& clock)
-      : jitter_(jitter),
-        period_ns_(std::llround(1e9 / rate_hz)),
-        stop_(stop),
-        clock_(clock),
-        max_(duration_s * rate_hz) {
-    jitter_.late_s.reserve(static_cast<std::size_t>(max_) + 1);
-  }
-
-  // Call it immediately before the loop begins.
-  void start() { start_ns_ = clock_.now_ns(); }
-
-  bool tick() noexcept override {
-    const std::int64_t since_ns = clock_.now_ns() - start_ns_;
-    const long long number = since_ns / period_ns_;
-    if (static_cast<double>(number) >= max_ || (stop_ && *stop_)) return false;
-    jitter_.missed += std::max(0LL, number - number_ - 1);
-    number_ = number;
-    jitter_.late_s.push_back(1e-9 * static_cast<double>(since_ns - number * period_ns_));
-    return true;
-  }
-
- private:
-  Jitter& jitter_;
-  const std::int64_t period_ns_;
-  const std::atomic<bool>* const stop_;
-  const Clock& clock_;
-  const double max_;
-  long long number_ = -1;
-  std::int64_t start_ns_ = 0;
-};
-
 }  // namespace
 
+// Lateness is measured against the grid of the loop: it starts when the loop does, and its period is a whole
+// number of nanoseconds, see HapticDevice::run(). On another grid a punctual tick could get the number of the
+// tick before.
 Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop, Clock& clock) {
   Jitter jitter;
+  const double max = duration_s * rate_hz;
+  jitter.late_s.reserve(static_cast<std::size_t>(max) + 1);
+  const std::int64_t period_ns = std::llround(1e9 / rate_hz);
   NoDevice device(rate_hz, clock);
-  Watch watch(jitter, duration_s, rate_hz, stop, clock);
   std::thread loop([&] {
     jitter.real_time = become_real_time();
-    watch.start();
-    device.run(watch);
+    long long last = -1;
+    const std::int64_t start_ns = clock.now_ns();
+    device.run([&] {
+      const std::int64_t since_ns = clock.now_ns() - start_ns;
+      const long long number = since_ns / period_ns;
+      if (static_cast<double>(number) >= max || (stop && *stop)) return false;
+      jitter.missed += std::max(0LL, number - last - 1);
+      last = number;
+      jitter.late_s.push_back(1e-9 * static_cast<double>(since_ns - number * period_ns));
+      return true;
+    });
   });
   loop.join();
   return jitter;

@@ -194,7 +194,7 @@ void LiveParts::require_rate() const {
 
 void LiveParts::run_loop() noexcept {
   try {
-    device_->run(*servo_);
+    device_->run([this] { return servo_->tick(); });
   } catch (...) {
     loop_failure_ = std::current_exception();
     loop_failed_ = true;

@@ -74,13 +74,13 @@ struct ServoLinks {
 // than the rate, each tick still has its own number. The time of a tick is rounded up to a full period. A
 // tick is moved to a later number if a frame was captured while the device was read, so that no frame is used
 // before it was captured. A slave moves in the ticks that are missing, too, see Teleoperation.
-class Servo final : public DeviceCycle {
+class Servo {
  public:
   // stall_s: longest time without a tick before the heartbeat releases the device.
   Servo(const ServoLinks& links, const DevicePlacement& placement, const SafetyLimits& limits, double rate_hz,
         std::int64_t start_ns, double stall_s);
 
-  bool tick() noexcept override;
+  bool tick() noexcept;  // a DeviceTick
   static constexpr const char* kNoMemory = "out of memory in the haptic loop";
 
   // Other threads may call the following functions.

@@ -54,12 +54,12 @@ TEST_F(DeviceTable, ATrajectoryThatCannotUseAFrameIsAFault) {
   const auto device = open_device("sim:", {press, scenes::kernels(), clock_, nullptr});
   DeviceFault fault;
   int ticks = 0;
-  CallCycle cycle([&] {
+  const DeviceTick tick = [&] {
     DeviceReading reading;
     fault = device->read(reading);
     return ++ticks < 1000 && !fault;
-  });
-  EXPECT_HAS(refusal([&] { device->run(cycle); }), "depth/3.png");
+  };
+  EXPECT_HAS(refusal([&] { device->run(tick); }), "depth/3.png");
   EXPECT_EQ(ticks, 100) << "the first tick is 1 ms, and frame 3 is captured at 0.1 s";
   ASSERT_TRUE(fault);
   EXPECT_HAS(fault.what, "80 x 120 pixels");

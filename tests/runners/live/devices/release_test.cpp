@@ -167,14 +167,15 @@ using ReleaseBesideTicks = Vendors;
 class Pushing {
  public:
   explicit Pushing(HapticDevice& device)
-      : cycle_([this, &device] {
-          DeviceReading reading;
-          device.read(reading);
-          device.write(kPush);
-          ++ticks_;
-          return !stops_;
-        }),
-        thread_([this, &device] { device.run(cycle_); }) {}
+      : thread_([this, &device] {
+          device.run([this, &device] {
+            DeviceReading reading;
+            device.read(reading);
+            device.write(kPush);
+            ++ticks_;
+            return !stops_;
+          });
+        }) {}
   ~Pushing() { stop(); }
   Pushing(const Pushing&) = delete;
   Pushing& operator=(const Pushing&) = delete;
@@ -190,7 +191,6 @@ class Pushing {
  private:
   std::atomic<bool> stops_{false};
   std::atomic<int> ticks_{0};
-  CallCycle cycle_;
   std::thread thread_;
 };
 

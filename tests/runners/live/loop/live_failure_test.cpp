@@ -174,8 +174,8 @@ INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHapt
 class DeviceThatLeaves final : public HapticDevice {
  public:
   using HapticDevice::HapticDevice;
-  void run(DeviceCycle& cycle) override {
-    for (int tick = 0; tick < 50 && cycle.tick(); ++tick) clock().sleep_s(1e-3);
+  void run(const DeviceTick& tick) override {
+    for (int i = 0; i < 50 && tick(); ++i) clock().sleep_s(1e-3);
   }
   DeviceFault read(DeviceReading&) noexcept override { return {}; }
   DeviceFault write(const Wrench&) noexcept override { return {}; }

@@ -32,8 +32,8 @@ class ScriptedDevice final : public HapticDevice {
   std::vector<std::int64_t> released_ms;
   std::vector<double> written_N;
 
-  void run(DeviceCycle& cycle) override {
-    for (int i = 0; i < max_ticks && cycle.tick(); ++i) clock().sleep_s(kTick_s);
+  void run(const DeviceTick& tick) override {
+    for (int i = 0; i < max_ticks && tick(); ++i) clock().sleep_s(kTick_s);
   }
   DeviceFault read(DeviceReading& reading) noexcept override {
     const DeviceFault fault = on_read ? on_read() : DeviceFault{};
@@ -76,7 +76,7 @@ class ServoTest : public testing::Test {
     Heartbeat& heartbeat = servo_->heartbeat();
     const int watch =
         clock_.every(heartbeat.period_s(), clock_.now_s(), [&] { heartbeat.check(clock_.now_ns()); });
-    device_.run(*servo_);
+    device_.run([this] { return servo_->tick(); });
     clock_.sleep_s(0.05);
     clock_.cancel(watch);
   }
