@@ -24,10 +24,6 @@ LiveControls::LiveControls(const Experiment& experiment, const Kernels& kernels,
     shown_ = std::make_shared<ShownScenario>(experiment.build_scenario(kernels));
 }
 
-std::unique_ptr<const Scenario> LiveControls::scenario() const {
-  return shown_ ? std::make_unique<ReplaceableScenario>(shown_) : nullptr;
-}
-
 bool LiveControls::has_changed() const {
   return !std::equal(values_.begin(), values_.end(), parameters_.begin(),
                      [](double value, const LiveParameter& parameter) { return value == parameter.value; });

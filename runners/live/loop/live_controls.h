@@ -83,7 +83,7 @@ class LiveControls {
 
   // The run uses the following functions.
   Ring<ParameterChanges>& requested() { return requested_; }
-  std::unique_ptr<const Scenario> scenario() const;  // null with another camera
+  const std::shared_ptr<ShownScenario>& scenario() const { return shown_; }  // null with another camera
   // Refuses a greater stiffness than at the start from now on. A device with motors needs this limit, because
   // it is not known whether a greater stiffness is stable.
   void limit_stiffness() { has_stiffness_limit_ = true; }

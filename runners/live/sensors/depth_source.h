@@ -17,7 +17,7 @@ class DepthSource {
  public:
   virtual ~DepthSource() = default;
 
-  virtual const SensorView& view() const = 0;
+  const SensorView& view() const { return view_; }
   // Called at most once, before the first next(): the run begins at start_ns, a time of the clock. A
   // simulated camera counts its time from there; a real one ignores it.
   virtual void start_at([[maybe_unused]] std::int64_t start_ns) {}
@@ -26,7 +26,11 @@ class DepthSource {
   // `failed` instead: the last frame remains in use.
   virtual SensorState next(SensorFrame& frame, double timeout_s) = 0;
   // Returns the reason why it failed, in one line.
-  virtual std::string failure() const { return {}; }
+  const std::string& failure() const { return failure_; }
+
+ protected:
+  SensorView view_;  // fixed when the constructor of the sensor ends
+  std::string failure_;
 };
 
 }  // namespace remote_touch

@@ -99,9 +99,7 @@ class FreenectCamera final : public DepthSource {
   FreenectCamera(const std::string& address, const Clock& host);
   ~FreenectCamera() override;
 
-  const SensorView& view() const override { return view_; }
   SensorState next(SensorFrame& frame, double timeout_s) override;
-  std::string failure() const override;
 
  private:
   void open_device(const std::string& address);
@@ -121,7 +119,6 @@ class FreenectCamera final : public DepthSource {
   Context context_;
   std::unique_ptr<freenect_device, Close> device_;
   freenect_frame_mode depth_mode_{}, colour_mode_{};
-  SensorView view_;
   std::array<std::uint16_t, kShifts> depth_of_shift_{};  // used if the sensor sends shifts
   bool gives_shifts_ = false;
 
@@ -132,11 +129,10 @@ class FreenectCamera final : public DepthSource {
   int number_ = 0;
   std::vector<std::uint32_t> colour_;
 
-  mutable std::mutex mutex_;
+  std::mutex mutex_;  // guards the following members, and failure_ until next() has seen it
   std::condition_variable changed_;
   SensorFrame newest_;
   bool is_new_ = false;
-  std::string failure_;
 
   std::jthread thread_;
 };
@@ -273,11 +269,6 @@ SensorState FreenectCamera::next(SensorFrame& frame, double timeout_s) {
     return SensorState::frame;
   }
   return failure_.empty() ? SensorState::waiting : SensorState::failed;
-}
-
-std::string FreenectCamera::failure() const {
-  const std::lock_guard lock(mutex_);
-  return failure_;
 }
 
 }  // namespace

@@ -103,9 +103,7 @@ class K4aCamera final : public DepthSource {
   K4aCamera(const std::string& address, const Clock& host);
   ~K4aCamera() override { k4a_.device_stop_cameras(device_.get()); }
 
-  const SensorView& view() const override { return view_; }
   SensorState next(SensorFrame& frame, double timeout_s) override;
-  std::string failure() const override { return failure_; }
 
  private:
   void open_device(const std::string& camera);
@@ -128,12 +126,10 @@ class K4aCamera final : public DepthSource {
   k4a::OpenDevice device_{nullptr, {&k4a_}};
   k4a::Calibration calibration_{};
   std::optional<Undistortion> undistortion_;
-  SensorView view_;
   SensorClock clock_;
   FrameNumbers numbers_;
   std::optional<double> stamp_s_;  // time stamp of the frame before
   std::vector<std::uint16_t> seen_;
-  std::string failure_;
 };
 
 K4aCamera::K4aCamera(const std::string& address, const Clock& host)

@@ -73,9 +73,7 @@ class Openni2Camera final : public DepthSource {
   Openni2Camera(const std::string& address, const Clock& host);
   ~Openni2Camera() override;
 
-  const SensorView& view() const override { return view_; }
   SensorState next(SensorFrame& frame, double timeout_s) override;
-  std::string failure() const override { return failure_; }
 
  private:
   void open_device(const std::string& address);
@@ -103,12 +101,10 @@ class Openni2Camera final : public DepthSource {
   openni::VideoMode mode_;
   bool depth_is_mirrored_ = false, colour_is_mirrored_ = false;
   int frame_count_ = 0;  // number of frames of a recording; 0: a camera
-  SensorView view_;
   SensorClock clock_;
   int last_number_ = 0;
   double last_sign_s_ = 0;  // time of the newest frame, or of the start
   bool has_ended_ = false;
-  std::string failure_;
 };
 
 Openni2Camera::Openni2Camera(const std::string& address, const Clock& host) : host_(host) {
@@ -285,18 +281,18 @@ class LastingOpenni2Camera final : public DepthSource {
  public:
   LastingOpenni2Camera(const std::string& address, const Clock& host) : thread_(lasting_thread()) {
     thread_->run([&] { camera_ = std::make_unique<Openni2Camera>(address, host); });
+    view_ = camera_->view();
   }
   ~LastingOpenni2Camera() override {
     thread_->run([&] { camera_.reset(); });
   }
 
-  const SensorView& view() const override { return camera_->view(); }
   SensorState next(SensorFrame& frame, double timeout_s) override {
     SensorState state = SensorState::failed;
     thread_->run([&] { state = camera_->next(frame, timeout_s); });
+    failure_ = camera_->failure();
     return state;
   }
-  std::string failure() const override { return camera_->failure(); }
 
  private:
   const std::shared_ptr<LastingThread> thread_;

@@ -161,9 +161,7 @@ class RealSenseCamera final : public DepthSource {
  public:
   RealSenseCamera(const std::string& address, Clock& host);
 
-  const SensorView& view() const override { return view_; }
   SensorState next(SensorFrame& frame, double timeout_s) override;
-  std::string failure() const override { return failure_; }
 
  private:
   void choose(const std::string& serial);
@@ -192,7 +190,6 @@ class RealSenseCamera final : public DepthSource {
   rs2::Held<rs2::Device> device_;
   std::unique_ptr<rs2::Pipeline, StopPipeline> running_{nullptr, {&rs2_}};
 
-  SensorView view_;
   std::optional<Undistortion> undistortion_;  // none: a pinhole camera
   SensorClock clock_;
   FrameNumbers numbers_;
@@ -200,7 +197,6 @@ class RealSenseCamera final : public DepthSource {
   unsigned long long counted_ = 0;  // the camera's number of the frame before
   double connected_s_ = 0;          // when the camera was last known to be connected
   std::vector<std::uint16_t> seen_;
-  std::string failure_;
 };
 
 RealSenseCamera::RealSenseCamera(const std::string& address, Clock& host)

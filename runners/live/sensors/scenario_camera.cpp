@@ -167,21 +167,24 @@ PointCloud first_with_points(const Scenario& scenario) {
 
 }  // namespace
 
-ScenarioCamera::ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock,
+ScenarioCamera::ScenarioCamera(std::shared_ptr<const ShownScenario> scenario, Clock& clock,
                                const FrameEncoder::Settings& settings)
-    : scenario_(std::move(scenario)), encoder_(settings, first_with_points(*scenario_)), clock_(clock) {
-  encoder_.view().frame_rate_hz = scenario_->frame_rate_hz();
+    : scenario_(std::move(scenario)),
+      encoder_(settings, first_with_points(*scenario_->now())),
+      clock_(clock) {
+  view_ = encoder_.view();
+  view_.frame_rate_hz = scenario_->now()->frame_rate_hz();
 }
 
 SensorState ScenarioCamera::next(SensorFrame& frame, double timeout_s) {
   const double moment_s = clock_.now_s();
   if (start_s_ < 0) start_s_ = moment_s;
-  const double rate_hz = scenario_->frame_rate_hz();
   const double now_s = moment_s - start_s_;
-  const int last = scenario_->frame_count() - 1;
+  const auto scenario = scenario_->now();
+  const int last = scenario->frame_count() - 1;
   // The last frame is repeated after the end of the scene.
   const auto due_s = [&](int i) {
-    return scenario_->captured_s(std::min(i, last)) + std::max(0, i - last) / rate_hz;
+    return scenario->captured_s(std::min(i, last)) + std::max(0, i - last) / view_.frame_rate_hz;
   };
   while (due_s(next_ + 1) <= now_s) ++next_;  // if several are due, delivers the newest
   const double captured_s = due_s(next_);

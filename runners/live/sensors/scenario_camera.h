@@ -38,7 +38,6 @@ class FrameEncoder {
   // more than 1 px, or points are behind the camera or deeper than 65535 units.
   FrameEncoder(const Settings& settings, const PointCloud& first);
 
-  SensorView& view() { return view_; }
   const SensorView& view() const { return view_; }
 
   // Sets the depths or points, and the colours, of the frame. With this view, cloud_of(frame) has the same
@@ -72,15 +71,20 @@ class FrameEncoder {
   RigidTransform X_CW_ = RigidTransform::Identity();
 };
 
-// A scenario that can be replaced while a simulated camera shows it, because its noise was changed.
-
-// The scenario that is shown now, shared by the camera's thread and the thread that replaces it.
+// The scenario that a simulated camera shows now, shared by the camera's thread and the thread that replaces
+// it because its noise was changed.
 class ShownScenario {
  public:
   explicit ShownScenario(std::shared_ptr<const Scenario> first) : now_(std::move(first)) {}
   std::shared_ptr<const Scenario> now() const {
     const std::lock_guard lock(mutex_);
     return now_;
+  }
+  // Returns the last frame for a number beyond it, because the camera may have chosen the number before the
+  // scenario was replaced.
+  PointCloud cloud(int frame) const {
+    const auto scenario = now();
+    return scenario->cloud(std::min(frame, scenario->frame_count() - 1));
   }
   // pre: the frame rate is the same. The number of frames may differ: a scenario without noise may have a
   // single frame.
@@ -94,61 +98,24 @@ class ShownScenario {
   std::shared_ptr<const Scenario> now_;
 };
 
-// points() and cloud() return the last frame for a number beyond it, because the camera may have chosen the
-// number before the scenario was replaced.
-class ReplaceableScenario final : public Scenario {
- public:
-  explicit ReplaceableScenario(std::shared_ptr<const ShownScenario> shown) : shown_(std::move(shown)) {}
-
-  double frame_rate_hz() const override { return shown_->now()->frame_rate_hz(); }
-  int frame_count() const override { return shown_->now()->frame_count(); }
-  double captured_s(int frame) const override { return shown_->now()->captured_s(frame); }
-  bool ends() const override { return shown_->now()->ends(); }
-  std::optional<RigidTransform> sensor_pose() const override { return shown_->now()->sensor_pose(); }
-  FrameDelivery delivery(int frame) const override { return shown_->now()->delivery(frame); }
-  std::shared_ptr<const NeighbourSearch> points(int frame) const override {
-    const auto now = shown_->now();
-    return now->points(std::min(frame, now->frame_count() - 1));
-  }
-  PointCloud cloud(int frame) const override {
-    const auto now = shown_->now();
-    return now->cloud(std::min(frame, now->frame_count() - 1));
-  }
-  double signed_distance(const Vec3& p_W, double time_s) const override {
-    return shown_->now()->signed_distance(p_W, time_s);
-  }
-  Vec3 true_normal(const Vec3& p_W, double time_s) const override {
-    return shown_->now()->true_normal(p_W, time_s);
-  }
-  std::optional<Vec3> plane_normal(double time_s) const override {
-    return shown_->now()->plane_normal(time_s);
-  }
-  double truth_time_s(double time_s) const override { return shown_->now()->truth_time_s(time_s); }
-  double surface_height(double x, double z, double time_s) const override {
-    return shown_->now()->surface_height(x, z, time_s);
-  }
-
- private:
-  const std::shared_ptr<const ShownScenario> shown_;
-};
-
-// Delivers the frames of the scenario at its frame rate; time 0 is start_at(), or else
-// the first next(). If several frames are
-// due, only the newest is delivered. Depths are rounded, as a sensor does, see FrameEncoder. The last frame
-// is repeated after the end of the scenario, so the camera never ends.
+// Delivers the frames of the scenario at its frame rate; time 0 is start_at(), or else the first next(). If
+// several frames are due, only the newest is delivered. Depths are rounded, as a sensor does, see
+// FrameEncoder. The last frame is repeated after the end of the scenario, so the camera never ends.
 class ScenarioCamera final : public DepthSource {
  public:
-  ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock,
+  ScenarioCamera(std::shared_ptr<const ShownScenario> scenario, Clock& clock,
                  const FrameEncoder::Settings& settings = {});
+  ScenarioCamera(std::unique_ptr<const Scenario> scenario, Clock& clock,
+                 const FrameEncoder::Settings& settings = {})
+      : ScenarioCamera(std::make_shared<ShownScenario>(std::move(scenario)), clock, settings) {}
 
-  const SensorView& view() const override { return encoder_.view(); }
   void start_at(std::int64_t start_ns) override { start_s_ = 1e-9 * static_cast<double>(start_ns); }
   // Throws InputError, which names the frame, if a frame cannot be read or does not fit the view.
   SensorState next(SensorFrame& frame, double timeout_s) override;
 
  private:
-  std::unique_ptr<const Scenario> scenario_;
-  FrameEncoder encoder_;
+  const std::shared_ptr<const ShownScenario> scenario_;
+  const FrameEncoder encoder_;
   Clock& clock_;
   double start_s_ = -1;  // time of the clock at the start; -1: not started
   int next_ = 0;

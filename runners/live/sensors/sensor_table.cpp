@@ -11,7 +11,6 @@
 #include "runners/live/sensors/k4a_camera.h"
 #include "runners/live/sensors/openni2_camera.h"
 #include "runners/live/sensors/realsense_camera.h"
-#include "runners/live/sensors/scenario_camera.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/text_files/file_order.h"
 
@@ -41,17 +40,19 @@ FrameEncoder::Settings settings_of(const Experiment& experiment) {
   return settings;
 }
 
-std::unique_ptr<DepthSource> open_simulated(const std::string& address, SensorContext context) {
+std::unique_ptr<DepthSource> open_simulated(const std::string& address, const SensorContext& context) {
   if (!address.empty())
     throw InputError("--depth sim:" + address, "expected sim:, for the experiment's scenario");
-  if (!context.scenario) context.scenario = context.experiment.build_scenario(context.kernels);
-  context.experiment.check_needs(*context.scenario);
-  return std::make_unique<ScenarioCamera>(std::move(context.scenario), context.clock,
-                                          settings_of(context.experiment));
+  const Experiment& experiment = context.experiment;
+  const auto shown = context.shown
+                         ? context.shown
+                         : std::make_shared<ShownScenario>(experiment.build_scenario(context.kernels));
+  experiment.check_needs(*shown->now());
+  return std::make_unique<ScenarioCamera>(shown, context.clock, settings_of(experiment));
 }
 
 // Plays the recording at its own times, repeatedly, forwards and backwards.
-std::unique_ptr<DepthSource> open_recording(const std::string& address, SensorContext context) {
+std::unique_ptr<DepthSource> open_recording(const std::string& address, const SensorContext& context) {
   RecordedScene::Settings settings;
   settings.path = address;
   settings.truth = RecordedScene::Truth::measured;
@@ -63,7 +64,7 @@ std::unique_ptr<DepthSource> open_recording(const std::string& address, SensorCo
           .name = address, .max_depth_m = settings.max_depth_m, .require = rules_of(context.experiment)});
 }
 
-std::unique_ptr<DepthSource> open_session(const std::string& address, SensorContext context) {
+std::unique_ptr<DepthSource> open_session(const std::string& address, const SensorContext& context) {
   auto session = std::make_unique<SessionScene>(SessionScene::Settings{address},
                                                 context.experiment.settings().key, context.kernels);
   return std::make_unique<ScenarioCamera>(
@@ -72,7 +73,7 @@ std::unique_ptr<DepthSource> open_session(const std::string& address, SensorCont
 }
 
 template <std::unique_ptr<DepthSource> (*open)(const std::string&, Clock&)>
-std::unique_ptr<DepthSource> open_at(const std::string& address, SensorContext context) {
+std::unique_ptr<DepthSource> open_at(const std::string& address, const SensorContext& context) {
   return open(address, context.clock);
 }
 
@@ -113,9 +114,9 @@ std::vector<InputPart> sensor_inputs(const std::string& text) {
   return {{uri.address}};
 }
 
-std::unique_ptr<DepthSource> open_sensor(const std::string& text, SensorContext context) {
+std::unique_ptr<DepthSource> open_sensor(const std::string& text, const SensorContext& context) {
   const Uri uri = parse_uri("--depth", text);
-  return find_scheme(sensors(), "--depth", uri).open(uri.address, std::move(context));
+  return find_scheme(sensors(), "--depth", uri).open(uri.address, context);
 }
 
 }  // namespace remote_touch

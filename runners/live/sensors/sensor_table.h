@@ -8,23 +8,23 @@
 
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/live/sensors/depth_source.h"
+#include "runners/live/sensors/scenario_camera.h"
 
 namespace remote_touch {
 
-// The objects that a sensor may need. All must outlive it, except scenario, which the sensor takes over.
+// The objects that a sensor may need. All must outlive it, except shown.
 struct SensorContext {
   const Experiment& experiment;
   const Kernels& kernels;
   Clock& clock;
-  std::unique_ptr<const Scenario> scenario = nullptr;  // replaces the experiment's own scenario for sim:
+  std::shared_ptr<const ShownScenario> shown = nullptr;  // replaces the experiment's own scenario for sim:
 };
 
 struct SensorEntry {
   const char* scheme;
   const char* example;
   const char* summary;
-  std::unique_ptr<DepthSource> (*open)(const std::string& address, SensorContext context);
+  std::unique_ptr<DepthSource> (*open)(const std::string& address, const SensorContext& context);
   Availability (*availability)();
   bool reads_recording = false;  // the address is the path of a recording
 };
@@ -37,6 +37,6 @@ std::vector<InputPart> sensor_inputs(const std::string& uri);
 
 // Throws InputError when the sensor cannot be opened; for sim: also when the frames of the scenario lack what
 // the experiment needs, see Experiment::check_needs().
-std::unique_ptr<DepthSource> open_sensor(const std::string& uri, SensorContext context);
+std::unique_ptr<DepthSource> open_sensor(const std::string& uri, const SensorContext& context);
 
 }  // namespace remote_touch

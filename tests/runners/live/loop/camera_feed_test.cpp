@@ -21,8 +21,8 @@ class ListedFrames final : public DepthSource {
       : frames_(std::move(frames)), then_(then) {
     view_.camera = {kWidth, kHeight, 10, 10, 3.5, 1.5};
     view_.has_colour = has_colour;
+    failure_ = "it was pulled out";
   }
-  const SensorView& view() const override { return view_; }
   SensorState next(SensorFrame& frame, double) override {
     if (next_ < frames_.size()) {
       frame = frames_[next_++];
@@ -30,12 +30,10 @@ class ListedFrames final : public DepthSource {
     }
     return then_;
   }
-  std::string failure() const override { return "it was pulled out"; }
 
  private:
   std::vector<SensorFrame> frames_;
   const SensorState then_;
-  SensorView view_;
   std::size_t next_ = 0;
 };
 

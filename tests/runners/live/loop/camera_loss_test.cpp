@@ -14,15 +14,16 @@ namespace {
 class CameraThatStops final : public DepthSource {
  public:
   CameraThatStops(std::unique_ptr<DepthSource> camera, int frames, SensorState then)
-      : camera_(std::move(camera)), left_(frames), then_(then) {}
-  const SensorView& view() const override { return camera_->view(); }
+      : camera_(std::move(camera)), left_(frames), then_(then) {
+    view_ = camera_->view();
+    failure_ = "it was pulled out";
+  }
   SensorState next(SensorFrame& frame, double timeout_s) override {
     if (left_ == 0) return then_;
     const SensorState state = camera_->next(frame, timeout_s);
     left_ -= state == SensorState::frame ? 1 : 0;
     return state;
   }
-  std::string failure() const override { return "it was pulled out"; }
 
  private:
   const std::unique_ptr<DepthSource> camera_;

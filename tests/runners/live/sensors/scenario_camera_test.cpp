@@ -13,7 +13,6 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/sessions/sensor_frame.h"
-#include "scenarios/camera/sensor_faults.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
@@ -257,22 +256,6 @@ TEST(ScenarioCamera, CountsFromTheStartOfTheRun) {
   ASSERT_EQ(camera.next(frame, 1), SensorState::frame);
   EXPECT_EQ(frame.number, 1);
   EXPECT_NEAR(frame.captured_s, 5 + SlowRecording::kFirst_s + SlowRecording::kPeriod_s, 1e-9);
-}
-
-class PosedRecording final : public SlowRecording {
- public:
-  std::optional<RigidTransform> sensor_pose() const override {
-    return RigidTransform(Eigen::Translation3d(0, 0, 2));
-  }
-};
-
-// A sensor with faults still reports its pose.
-TEST(ReplaceableScenario, ReportsThePoseOfASensorWithFaults) {
-  const auto sensor = std::make_shared<const FaultySensor>(std::make_unique<PosedRecording>(), SensorFaults{},
-                                                           NoiseKey{1}, scenes::kernels());
-  const ReplaceableScenario scenario(std::make_shared<const ShownScenario>(sensor));
-  ASSERT_TRUE(scenario.sensor_pose());
-  EXPECT_EQ(scenario.sensor_pose()->translation(), Vec3(0, 0, 2));
 }
 
 // Depths are rounded to 0.1 mm, and lie on the ray of their pixel. The points of clouds are rounded to
