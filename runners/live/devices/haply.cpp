@@ -61,15 +61,15 @@ class ForceCheck {
 };
 
 DeviceFault convert(const HaplyMessage& message, bool has_handle, DeviceReading& reading) {
-  if (!message.device || !message.device->has_position) return kDeviceGone;
+  if (!message.device || !message.device->position_m) return kDeviceGone;
   // The limit of the speed needs it: a velocity of zero would always pass.
-  if (!message.device->has_velocity) return kNoVelocity;
+  if (!message.device->velocity_m_per_s) return kNoVelocity;
   reading = {};
-  reading.position_m = from_service(message.device->position_m);
-  reading.velocity_m_per_s = from_service(message.device->velocity_m_per_s);
+  reading.position_m = from_service(*message.device->position_m);
+  reading.velocity_m_per_s = from_service(*message.device->velocity_m_per_s);
   if (!has_handle) return {};
-  if (!message.handle || !message.handle->has_orientation) return kHandleGone;
-  const Eigen::Vector4d& q = message.handle->orientation;
+  if (!message.handle || !message.handle->orientation) return kHandleGone;
+  const Eigen::Vector4d& q = *message.handle->orientation;
   // The service rounds, so the norm may differ a little from 1. A handle that sleeps sends zeros: a fault.
   if (std::abs(q.norm() - 1) > 0.1) return kNoOrientation;
   const Vec3 axis = from_service(q.head<3>());
@@ -211,8 +211,8 @@ DeviceFault Haply::read_within(DeviceReading& reading, double time_s) noexcept {
   if (!read_haply_message(text, opened_.device_id, opened_.handle_id, message)) return kNoState;
   DeviceReading found;
   if (const DeviceFault fault = convert(message, !opened_.handle_id.empty(), found)) return fault;
-  if (is_checked_ && message.device->has_force)
-    if (const DeviceFault fault = check_(sent_N_, message.device->force_N, key_, clock().now_s()))
+  if (is_checked_ && message.device->force_N)
+    if (const DeviceFault fault = check_(sent_N_, *message.device->force_N, key_, clock().now_s()))
       return fault;
   reading = found;
   return {};

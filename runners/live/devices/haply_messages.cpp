@@ -143,7 +143,8 @@ constexpr std::size_t kMaxId = 256;
 // Reads the members of an object that have these one-letter names and are numbers. Returns false unless every
 // name is present.
 template <class Vector>
-bool components(JsonReader& json, std::string_view names, Vector& value) {
+bool components(JsonReader& json, std::string_view names, std::optional<Vector>& found) {
+  Vector& value = found.emplace(Vector::Zero());
   unsigned seen = 0;
   const bool read = json.object([&](std::string_view key) {
     const std::size_t i = key.size() == 1 ? names.find(key.front()) : std::string_view::npos;
@@ -166,18 +167,9 @@ bool read_buttons(JsonReader& json, std::uint32_t& buttons) {
 
 bool read_device_state(JsonReader& json, HaplyDeviceState& device) {
   return json.object([&](std::string_view key) {
-    if (key == "cursor_position") {
-      device.has_position = true;
-      return components(json, "xyz", device.position_m);
-    }
-    if (key == "cursor_velocity") {
-      device.has_velocity = true;
-      return components(json, "xyz", device.velocity_m_per_s);
-    }
-    if (key == "current_cursor_force") {
-      device.has_force = true;
-      return components(json, "xyz", device.force_N);
-    }
+    if (key == "cursor_position") return components(json, "xyz", device.position_m);
+    if (key == "cursor_velocity") return components(json, "xyz", device.velocity_m_per_s);
+    if (key == "current_cursor_force") return components(json, "xyz", device.force_N);
     return json.skip();
   });
 }
@@ -202,10 +194,7 @@ bool read_device(JsonReader& json, HaplyDeviceState& device) {
 
 bool read_handle_state(JsonReader& json, HaplyHandleState& handle) {
   return json.object([&](std::string_view key) {
-    if (key == "orientation") {
-      handle.has_orientation = true;
-      return components(json, "xyzw", handle.orientation);
-    }
+    if (key == "orientation") return components(json, "xyzw", handle.orientation);
     if (key == "buttons") return read_buttons(json, handle.buttons);
     if (key == "button") {
       bool down = false;

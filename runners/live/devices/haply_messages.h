@@ -16,19 +16,17 @@ namespace remote_touch {
 // State of an Inverse3 from one message. The texts are views into the message.
 struct HaplyDeviceState {
   std::string_view id;
-  std::string_view
-      basis;  // axes of this connection, in the inventory only; "XYZ" if they are the service's own
-  bool has_position = false, has_velocity = false, has_force = false;
-  Vec3 position_m = Vec3::Zero(), velocity_m_per_s = Vec3::Zero();
-  Vec3 force_N = Vec3::Zero();  // force that the service reports as commanded now
+  // Axes of this connection, in the inventory only; "XYZ" if they are the service's own.
+  std::string_view basis;
+  std::optional<Vec3> position_m, velocity_m_per_s;
+  std::optional<Vec3> force_N;  // force that the service reports as commanded now
 };
 
 // State of the handle on the Inverse3, from one message.
 struct HaplyHandleState {
   std::string_view id;
-  bool has_orientation = false;
-  Eigen::Vector4d orientation = Eigen::Vector4d::Zero();  // x, y, z, w as sent
-  std::uint32_t buttons = 0;                              // a, b and c; a wired handle has only a
+  std::optional<Eigen::Vector4d> orientation;  // x, y, z, w as sent
+  std::uint32_t buttons = 0;                   // a, b and c; a wired handle has only a
 };
 
 struct HaplyMessage {
