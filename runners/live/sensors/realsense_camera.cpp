@@ -63,22 +63,16 @@ void Calls::check(const char* what, Error* error) const {
   if (error != nullptr) refuse(std::string(what) + " (the library says: " + rs2_.text_of(error) + ")");
 }
 
-// The lens of a RealSense camera.
-
 // True if the image is distorted; false for a pinhole camera.
-bool has_distortion(const Intrinsics& intrinsics);
-
-// Returns a lens that calls the library's own functions, because the meaning of a model's coefficients has
-// changed between versions. Throws InputError, with this name, for a model that some versions cannot invert,
-// and for versions before 2.46, which lack these functions. The library must outlive the lens.
-Lens lens_of(const std::string& name, const RealSenseLibrary& rs2, const Intrinsics& intrinsics);
-
 bool has_distortion(const Intrinsics& intrinsics) {
   return intrinsics.model != distortion_none &&
          std::any_of(std::begin(intrinsics.coefficients), std::end(intrinsics.coefficients),
                      [](float coefficient) { return coefficient != 0; });
 }
 
+// Returns a lens that calls the library's own functions, because the meaning of a model's coefficients has
+// changed between versions. Throws InputError, with this name, for a model that some versions cannot invert,
+// and for versions before 2.46, which lack these functions. The library must outlive the lens.
 Lens lens_of(const std::string& name, const RealSenseLibrary& rs2, const Intrinsics& intrinsics) {
   if (rs2.project_point_to_pixel == nullptr || rs2.deproject_pixel_to_point == nullptr)
     throw InputError(name,
