@@ -1,8 +1,6 @@
 #include "tests/doubles/vendor_devices.h"
 
-#include "runners/live/devices/entact.h"
-#include "runners/live/devices/force_dimension.h"
-#include "runners/live/devices/open_haptics.h"
+#include "runners/live/devices/adapters.h"
 
 namespace remote_touch {
 

@@ -14,7 +14,6 @@
 #include <cstring>
 #include <ctime>
 #include <memory>
-#include <utility>
 
 namespace remote_touch {
 
@@ -29,15 +28,6 @@ int normalised_error(int error) {
 
 DeadlineSocket::~DeadlineSocket() {
   close();
-}
-
-DeadlineSocket::DeadlineSocket(DeadlineSocket&& other) noexcept
-    : clock_(other.clock_), handle_(std::exchange(other.handle_, -1)) {}
-
-DeadlineSocket& DeadlineSocket::operator=(DeadlineSocket&& other) noexcept {
-  std::swap(clock_, other.clock_);
-  std::swap(handle_, other.handle_);
-  return *this;
 }
 
 void DeadlineSocket::close() noexcept {
@@ -89,7 +79,7 @@ int DeadlineSocket::connect_within(const void* address, unsigned size, double de
     if (errno == EINPROGRESS) break;
     if (errno != EAGAIN) return errno;
     // The queue of a UNIX socket is full. The system does not tell when there is room in it.
-    if (clock_->now_s() >= deadline_s) return ETIMEDOUT;
+    if (clock_.now_s() >= deadline_s) return ETIMEDOUT;
     constexpr timespec kPause{0, 1'000'000};
     ::nanosleep(&kPause, nullptr);
   }
@@ -104,7 +94,7 @@ int DeadlineSocket::connect_within(const void* address, unsigned size, double de
 // that have arrived.
 int DeadlineSocket::wait(short events, double deadline_s) noexcept {
   for (;;) {
-    const double remaining_s = std::max(0.0, deadline_s - clock_->now_s());
+    const double remaining_s = std::max(0.0, deadline_s - clock_.now_s());
     timespec left{};
     left.tv_sec = static_cast<time_t>(remaining_s);
     left.tv_nsec = static_cast<long>(1e9 * (remaining_s - std::floor(remaining_s)));

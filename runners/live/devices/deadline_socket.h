@@ -17,10 +17,10 @@ class DeadlineSocket {
     int error = 0;  // an errno value; ETIMEDOUT at the deadline, ECONNRESET when the peer has closed
   };
 
-  explicit DeadlineSocket(const Clock& clock) : clock_(&clock) {}
+  explicit DeadlineSocket(const Clock& clock) : clock_(clock) {}
   ~DeadlineSocket();
-  DeadlineSocket(DeadlineSocket&& other) noexcept;
-  DeadlineSocket& operator=(DeadlineSocket&& other) noexcept;
+  DeadlineSocket(const DeadlineSocket&) = delete;
+  DeadlineSocket& operator=(const DeadlineSocket&) = delete;
 
   // Returns the reason why it could not connect; an empty text on success. Resolving a name may take longer
   // than the deadline. Small messages to a host are sent at once (TCP_NODELAY).
@@ -43,7 +43,7 @@ class DeadlineSocket {
   int connect_within(const void* address, unsigned size, double deadline_s) noexcept;
   void close() noexcept;
 
-  const Clock* clock_;
+  const Clock& clock_;
   int handle_ = -1;
 };
 

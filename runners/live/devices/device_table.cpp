@@ -3,15 +3,12 @@
 #include <utility>
 
 #include "runners/experiment/sessions/session_scene.h"
+#include "runners/live/devices/adapters.h"
 #include "runners/live/devices/browser_device.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_address.h"
-#include "runners/live/devices/entact.h"
-#include "runners/live/devices/force_dimension.h"
 #include "runners/live/devices/haply.h"
-#include "runners/live/devices/open_haptics.h"
 #include "runners/live/devices/simulated_device.h"
-#include "runners/live/devices/spacenav.h"
 
 namespace remote_touch {
 

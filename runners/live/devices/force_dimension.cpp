@@ -1,11 +1,10 @@
-#include "runners/live/devices/force_dimension.h"
+#include "runners/live/devices/adapters.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 
 #include "core/parameters/input_error.h"
-#include "runners/live/devices/haptic_device.h"
 #include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {

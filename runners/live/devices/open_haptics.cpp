@@ -1,10 +1,9 @@
-#include "runners/live/devices/open_haptics.h"
+#include "runners/live/devices/adapters.h"
 
 #include <array>
 #include <atomic>
 
 #include "core/parameters/input_error.h"
-#include "runners/live/devices/haptic_device.h"
 #include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {

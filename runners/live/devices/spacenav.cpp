@@ -1,4 +1,4 @@
-#include "runners/live/devices/spacenav.h"
+#include "runners/live/devices/adapters.h"
 
 #include <algorithm>
 #include <array>
@@ -35,14 +35,12 @@ std::string socket_of(const DeviceAddress& address) {
   return from_environment != nullptr && *from_environment != '\0' ? from_environment : "/var/run/spnav.sock";
 }
 
-DeadlineSocket connect(const DeviceAddress& address, const Clock& clock) {
-  DeadlineSocket socket(clock);
+void connect(DeadlineSocket& socket, const DeviceAddress& address, const Clock& clock) {
   const std::string path = socket_of(address);
   const std::string problem = socket.connect_to_path(path, clock.now_s() + kConnectWithin_s);
   if (!problem.empty())
     throw address.refusal("no spacenavd at " + path + " (" + problem +
                           "); install and start spacenavd, or name its socket");
-  return socket;
 }
 
 DeviceAddress spacenav_address(const std::string& address) {
@@ -56,8 +54,9 @@ class Spacenav final : public HapticDevice {
         speed_per_count_(address.number("speed", 5e-4, 1e-6, 0.1)),
         turning_per_count_(address.number("turning", 3e-3, 1e-6, 1)),
         box_m_(address.number("box", 0.15, 1e-3, 10)),
-        socket_(connect(address, clock)),
-        moved_s_(clock.now_s()) {
+        socket_(clock) {
+    connect(socket_, address, clock);
+    moved_s_ = clock.now_s();
     traits_.name = "spacenavd " + socket_of(address);
     traits_.sensed_axes = 6;
     traits_.actuated_axes = 0;
@@ -91,7 +90,7 @@ class Spacenav final : public HapticDevice {
   std::array<char, sizeof(Frame)> bytes_{};  // bytes received of a frame that is not yet whole
   std::size_t filled_ = 0;
   std::array<std::int32_t, 6> counts_{};  // the last deflection received
-  double reported_s_ = 0, moved_s_;
+  double reported_s_ = 0, moved_s_ = 0;
   DeviceReading pose_;
 };
 
@@ -152,7 +151,8 @@ std::unique_ptr<HapticDevice> open_spacenav(const std::string& address, Clock& c
 Availability spacenav_availability(const std::string& address, const Clock& clock) {
   return availability_of([&] {
     const DeviceAddress parsed = spacenav_address(address);
-    connect(parsed, clock);
+    DeadlineSocket socket(clock);
+    connect(socket, parsed, clock);
     return Availability{.found = true, .detail = "spacenavd at " + socket_of(parsed)};
   });
 }
