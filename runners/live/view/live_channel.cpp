@@ -167,34 +167,37 @@ std::string frame_message(const PointCloud& cloud, std::int32_t index, const Poi
   return bytes;
 }
 
-void LiveRows::append(const LiveTick& tick, double haptic_rate_hz, const DevicePlacement& placement) {
+std::vector<Column> live_columns(const std::vector<LiveTick>& ticks, double haptic_rate_hz,
+                                 const DevicePlacement& placement) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  trace_.append(static_cast<double>(tick.number) / haptic_rate_hz, tick.device, tick.out,
-                {kUnknown, kUnknown, tick.hash}, {}, tick.slave);
-  const Wrench written_W = placement.in_world(tick.written);
-  force_N_.insert(force_N_.end(), written_W.force_N.begin(), written_W.force_N.end());
-  torque_Nm_.insert(torque_Nm_.end(), written_W.torque_Nm.begin(), written_W.torque_Nm.end());
-  commanded_N_.insert(commanded_N_.end(), tick.command.force_N.begin(), tick.command.force_N.end());
-  interval_s_.push_back(tick.since_last_tick_s);
-  gate_.push_back(static_cast<std::int32_t>(tick.gate));
-}
-
-std::vector<Column> LiveRows::columns() const {
-  std::vector<Column> list = trace_.columns();
-  list.push_back({"device_force", "N", "force that is sent to the device, world frame", force_N_, 3, {}});
-  if (trace_.has_slave())
-    list.push_back({"commanded_force",
-                    "N",
-                    "force that the device is to exert, before the safety gate, world frame",
-                    commanded_N_,
-                    3,
-                    {}});
-  if (trace_.has_tool())
-    list.push_back(
-        {"device_torque", "N m", "torque that is sent to the device, world frame", torque_Nm_, 3, {}});
-  list.push_back({"tick_interval", "s", "time since the start of the tick before", interval_s_, 1, {}});
-  list.push_back(
-      {"gate", "1", "state of the safety gate", gate_, 1, {"waiting", "ramping", "engaged", "latched"}});
+  Trace trace;
+  std::vector<double> force_N, torque_Nm, commanded_N, interval_s;  // world frame, three numbers a tick
+  std::vector<std::int32_t> gate;
+  const auto push = [](std::vector<double>& column, const Vec3& v) {
+    column.insert(column.end(), v.begin(), v.end());
+  };
+  for (const LiveTick& tick : ticks) {
+    trace.append(static_cast<double>(tick.number) / haptic_rate_hz, tick.device, tick.out,
+                 {kUnknown, kUnknown, tick.hash}, {}, tick.slave);
+    const Wrench written_W = placement.in_world(tick.written);
+    push(force_N, written_W.force_N), push(torque_Nm, written_W.torque_Nm);
+    push(commanded_N, tick.command.force_N);
+    interval_s.push_back(tick.since_last_tick_s);
+    gate.push_back(static_cast<std::int32_t>(tick.gate));
+  }
+  std::vector<Column> list = trace.columns();
+  const auto add = [&](const char* name, const char* unit, const char* meaning, Values values, int width,
+                       std::vector<std::string> names = {}) {
+    list.push_back({name, unit, meaning, std::move(values), width, std::move(names)});
+  };
+  add("device_force", "N", "force that is sent to the device, world frame", force_N, 3);
+  if (trace.has_slave())
+    add("commanded_force", "N", "force that the device is to exert, before the safety gate, world frame",
+        commanded_N, 3);
+  if (trace.has_tool())
+    add("device_torque", "N m", "torque that is sent to the device, world frame", torque_Nm, 3);
+  add("tick_interval", "s", "time since the start of the tick before", interval_s, 1);
+  add("gate", "1", "state of the safety gate", gate, 1, {"waiting", "ramping", "engaged", "latched"});
   return list;
 }
 
@@ -214,10 +217,10 @@ void LiveChannel::take(const LiveTick& tick) noexcept {
   const std::lock_guard lock(mutex_);
   hip_W_ = tick.device.position_W, proxy_W_ = tick.out.proxy_W;
   try {
-    if (rows_.length() >= kMaxRows) rows_ = {};
-    rows_.append(tick, rate_hz_, placement_);
+    if (ticks_.size() >= kMaxRows) ticks_ = {};
+    ticks_.push_back(tick);
   } catch (const std::bad_alloc&) {
-    rows_ = {};
+    ticks_ = {};
   }
 }
 
@@ -230,7 +233,7 @@ void LiveChannel::take(const Frame& frame) noexcept {
 
 void LiveChannel::open(PageRole role, const std::string& trouble) {
   const std::lock_guard lock(mutex_);
-  rows_ = {};
+  ticks_ = {};
   frame_is_new_ = points_ != nullptr;
   sent_columns_ = was_frame_ = false;
   sent_ = acknowledged_ = 0;
@@ -319,7 +322,7 @@ bool LiveChannel::next(Message& message) {
   std::int32_t index = 0;
   {
     const std::lock_guard lock(mutex_);
-    if (rows_.length() == 0) return false;
+    if (ticks_.empty()) return false;
     // Ticks and frames alternate. Otherwise a page that is slower than the camera would receive frames only,
     // because a new frame is always ready.
     was_frame_ = sent_columns_ && frame_is_new_ && !was_frame_;
@@ -330,16 +333,16 @@ bool LiveChannel::next(Message& message) {
 }
 
 LiveChannel::Message LiveChannel::tick_message() {
-  LiveRows rows;
+  std::vector<LiveTick> ticks;
   {
     const std::lock_guard lock(mutex_);
     if (!sent_columns_) {
       sent_columns_ = true;
-      return {columns_message(rows_.columns()), true};
+      return {columns_message(live_columns(ticks_, rate_hz_, placement_)), true};
     }
-    std::swap(rows, rows_);
+    std::swap(ticks, ticks_);
   }
-  return {ticks_message(rows.columns(), ++sent_), false};
+  return {ticks_message(live_columns(ticks, rate_hz_, placement_), ++sent_), false};
 }
 
 LiveChannel::Message LiveChannel::frame_message_of(const NeighbourSearch& points, std::int32_t index) {

@@ -110,26 +110,13 @@ std::string ticks_message(const std::vector<Column>& columns, std::uint32_t numb
 std::string frame_message(const PointCloud& cloud, std::int32_t index, const PointLimit& limit,
                           std::uint32_t number);
 
-// The ticks of a live run as a page receives them: the columns of a trace, and the wrench written to the
-// device.
-
-class LiveRows {
- public:
-  std::size_t length() const { return trace_.length(); }
-  void append(const LiveTick& tick, double haptic_rate_hz, const DevicePlacement& placement);
-
-  // Returns the columns of the trace, whose force and torque are those of the renderer. Adds `device_force`
-  // and, for a tool, `device_torque`, which were written to the device after the safety gate. With a slave it
-  // adds `commanded_force`, the force before the gate, which may be the slave's and not the renderer's.
-  // Adds `tick_interval`, by which a page counts missed deadlines, and `gate`, the state of the gate.
-  std::vector<Column> columns() const;
-
- private:
-  Trace trace_;
-  std::vector<double> force_N_, torque_Nm_, commanded_N_;  // world frame, three numbers a row
-  std::vector<double> interval_s_;
-  std::vector<std::int32_t> gate_;
-};
+// Returns the ticks as a page receives them: the columns of the trace, whose force and torque are those of
+// the renderer. Adds `device_force` and, for a tool, `device_torque`, which were written to the device after
+// the safety gate. With a slave it adds `commanded_force`, the force before the gate, which may be the
+// slave's and not the renderer's. Adds `tick_interval`, by which a page counts missed deadlines, and `gate`,
+// the state of the gate.
+std::vector<Column> live_columns(const std::vector<LiveTick>& ticks, double haptic_rate_hz,
+                                 const DevicePlacement& placement);
 
 class LiveChannel {
  public:
@@ -188,7 +175,7 @@ class LiveChannel {
   const double near_m_;
   std::atomic<bool> is_open_ = false;
   std::mutex mutex_;
-  LiveRows rows_;                                       // ticks since the last message
+  std::vector<LiveTick> ticks_;                         // ticks since the last message
   Vec3 hip_W_ = Vec3::Zero(), proxy_W_ = Vec3::Zero();  // at the newest tick
   std::shared_ptr<const NeighbourSearch> points_;       // points of the newest frame
   std::int32_t index_ = 0;

@@ -111,14 +111,12 @@ TEST_F(PageHandTest, ATakeOverStopsAMovingHandWithoutAJump) {
 std::vector<std::string> names_with(const std::optional<SlaveState>& slave) {
   LiveTick tick;
   tick.slave = slave;
-  LiveRows rows;
-  rows.append(tick, 1000, DevicePlacement({}));
   std::vector<std::string> names;
-  for (const Column& column : rows.columns()) names.push_back(column.name);
+  for (const Column& column : live_columns({tick}, 1000, DevicePlacement({}))) names.push_back(column.name);
   return names;
 }
 
-TEST(LiveRows, HaveTheColumnsOfASlaveAndOneForceOfTheDevice) {
+TEST(LiveColumns, HaveTheColumnsOfASlaveAndOneForceOfTheDevice) {
   const auto count = [](const std::vector<std::string>& names, const char* name) {
     return std::count(names.begin(), names.end(), name);
   };
@@ -134,17 +132,15 @@ TEST(LiveRows, HaveTheColumnsOfASlaveAndOneForceOfTheDevice) {
 }
 
 // The hand feels the slave here, and the safety gate has reduced its force.
-TEST(LiveRows, TheCommandedForceIsThatBeforeTheGate) {
+TEST(LiveColumns, TheCommandedForceIsThatBeforeTheGate) {
   LiveTick tick;
   tick.slave = SlaveState{};
   tick.out.force_N = Vec3(0, 20, 0);
   tick.command.force_N = Vec3(0, 0.5, 0);
   tick.written.force_N = Vec3(0, 0.25, 0);
-  LiveRows rows;
-  rows.append(tick, 1000, DevicePlacement({}));
   const std::pair<const char*, double> expected[] = {
       {"force", 20}, {"commanded_force", 0.5}, {"device_force", 0.25}};
-  const std::vector<Column> columns = rows.columns();
+  const std::vector<Column> columns = live_columns({tick}, 1000, DevicePlacement({}));
   for (const auto& [name, value_N] : expected) {
     const auto found = std::find_if(columns.begin(), columns.end(),
                                     [name = name](const Column& column) { return column.name == name; });
