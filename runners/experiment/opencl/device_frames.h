@@ -12,13 +12,10 @@
 namespace remote_touch {
 
 // depth_kernels.cl, compiled into the program.
-
 extern const char* const kDepthKernelSource;
 
-// The kernels of the depth pipeline, built once in a process for each device, however many runs use them.
-// Only for use inside this folder.
-
-// Kernels built for the window sizes of the settings. Any thread may use them.
+// The kernels of the depth pipeline for the window sizes of the settings, built once in a process for each
+// device, however many runs use them. Any thread may use them.
 class BuiltKernels {
  public:
   using Kernel = OpenClObject<cl_kernel>;

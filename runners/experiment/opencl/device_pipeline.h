@@ -55,10 +55,8 @@ class DevicePipeline final : public DepthProcessor {
   std::unique_ptr<LastingThread> thread_;
 };
 
-// Trial of an OpenCL device with one frame that the CPU processes too. It finds out whether the device works,
-// gives the same bits, and is faster.
-
-// A frame of 320 x 240 pixels with holes, processed on the device and on the CPU.
+// Trial of an OpenCL device with a frame of 320 x 240 pixels with holes, which the CPU processes too. It
+// finds out whether the device works, gives the same bits, and is faster.
 struct DepthTrial {
   std::string failure;  // failure of the device; empty: it works
   bool same_bits = false;

@@ -80,7 +80,6 @@ class OpenClObject {
 };
 
 // The OpenCL devices of this machine, and whether their arithmetic can give the same bits as the CPU.
-
 struct OpenClDevice {
   int platform = 0, number = 0;  // the numbers in opencl:PLATFORM:DEVICE
   cl_device_id id = nullptr;

@@ -41,8 +41,6 @@ struct SensorFrame {
       {};  // x y z [nx ny nz] for each point of a cloud, camera frame, metres; NaN: not measured
 };
 
-// A sensor's frame as an organised cloud.
-
 // True if the frame has as many points or pixels as the view promises, and colours if the view promises them.
 bool is_complete(const SensorFrame& frame, const SensorView& view);
 
@@ -51,7 +49,6 @@ bool is_complete(const SensorFrame& frame, const SensorView& view);
 PointCloud cloud_of(const SensorFrame& frame, const SensorView& view, const RigidTransform& X_WC);
 
 // Statistics of the points in a sensor's frames, for the line that reports what a session has read.
-
 class SensedPoints {
  public:
   // Adds the points of a frame. Allocates nothing.

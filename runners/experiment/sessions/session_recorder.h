@@ -62,10 +62,8 @@ class SessionRecorder {
   bool finished_ = false;
 };
 
-// The journal of a session that was not finished: reads its content, and makes a session file of it.
-
-// The content up to the last whole block. A block of ticks is whole only if the frames that these ticks took
-// come before it.
+// The content of the journal of a session that was not finished, up to the last whole block. A block of ticks
+// is whole only if the frames that these ticks took come before it.
 struct UnfinishedSession {
   TextAttributes attributes;  // attributes of the session, without those known only at its end
   std::uint64_t ticks = 0, frames = 0, changes = 0;

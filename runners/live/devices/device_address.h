@@ -12,7 +12,6 @@
 namespace remote_touch {
 
 // Names of sensors and devices: "scheme:address".
-
 struct Uri {
   std::string scheme, address;  // the address may be empty
 };

@@ -10,7 +10,6 @@ namespace {
 // Reads JSON text once, front to back, without a copy or an allocation: for messages in a haptic tick. Every
 // function returns true if the text matched. The reader must not be used any more after it has returned
 // false. Strings and keys are returned as in the text, with their escapes.
-
 class JsonReader {
  public:
   explicit JsonReader(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}

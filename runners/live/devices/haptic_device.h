@@ -95,7 +95,6 @@ class HapticDevice {
 };
 
 // The availability of a device, as `remote-touch devices` prints it.
-
 struct Availability {
   bool compiled_in = true;
   bool found = false;  // a device that can be opened is present now
@@ -118,9 +117,8 @@ Availability availability_of(Look look) {
 }
 
 // Common part of the adapters of vendors' libraries: the force is off until the first write() and after
-// release(), and no value that is not finite passes in either direction.
-
-// An adapter's destructor calls release() before it closes.
+// release(), and no value that is not finite passes in either direction. An adapter's destructor calls
+// release() before it closes.
 class GatedDevice : public HapticDevice {
  public:
   using HapticDevice::HapticDevice;

@@ -11,7 +11,6 @@ namespace {
 
 // The functions of OpenHaptics' HD library that its adapter calls. Units: mm, mm/s, rad/s, N, mN m and N/mm.
 // Matrices are stored column by column. Axes: x to the right, y up, z towards the user.
-
 struct HdLibrary {
   struct Error {
     unsigned code = 0;

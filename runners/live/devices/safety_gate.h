@@ -66,7 +66,6 @@ class SafetyGate {
 };
 
 // A watchdog: a loop that hangs cannot release its device, so a separate thread does.
-
 class Heartbeat {
  public:
   Heartbeat(HapticDevice& device, double max_s);

@@ -19,11 +19,8 @@ Availability availability_of_library() {
   });
 }
 
-// Converts the axes of vendors: x towards the user, y to the right, z up, as Force Dimension and Entact use
-// them. Also converts and checks rotation matrices.
-
-// The first function converts from x towards the user, y right, z up to our axes: x right, y up, z towards
-// the user. The second one converts back.
+// Converts from the axes of Force Dimension and Entact, x towards the user, y to the right, z up, to ours: x
+// right, y up, z towards the user. The second function converts back.
 inline Vec3 from_user_right_up(const Vec3& v) {
   return {v.y(), v.z(), v.x()};
 }
@@ -48,7 +45,6 @@ inline bool is_rotation(const Eigen::Matrix3d& m) {
 
 // Texts for vendors' error codes. They are valid for the whole run of the program; the vendors' own texts may
 // not be.
-
 struct KnownFault {
   int code;
   const char* what;

@@ -17,9 +17,8 @@
 
 namespace remote_touch {
 
-// A lock-free queue of fixed length from one thread to another.
-
-// One producer, one consumer. Allocates on construction only.
+// A lock-free queue of fixed length from one thread to another. One producer, one consumer. Allocates on
+// construction only.
 template <class T>
 class Ring {
  public:
@@ -48,14 +47,13 @@ class Ring {
   alignas(64) std::atomic<std::size_t> start_ = 0;
 };
 
-// Live parameters that change together, on their way to the haptic loop.
-
-// parameter: its number in LiveControls::parameters().
+// A change of a live parameter. parameter: its number in LiveControls::parameters().
 struct ParameterChange {
   std::int32_t parameter = 0;
   double value = 0;
 };
 
+// Live parameters that change together, on their way to the haptic loop.
 struct ParameterChanges {
   static constexpr std::size_t kMax = 4;
   std::array<ParameterChange, kMax> list;

@@ -21,10 +21,9 @@
 
 namespace remote_touch {
 
-// Times of a run of any length, in bounded memory.
-
-// Keeps all samples while there are at most kMax. When there are more, it keeps every second one, then every
-// fourth, and so on, evenly over the run. size(), least() and greatest() are those of all samples.
+// Times of a run of any length, in bounded memory. Keeps all samples while there are at most kMax. When
+// there are more, it keeps every second one, then every fourth, and so on, evenly over the run. size(),
+// least() and greatest() are those of all samples.
 class Samples {
  public:
   static constexpr std::size_t kMax = 1 << 20;  // 8 MB; 17 minutes at 1 kHz until the first is left out
@@ -109,7 +108,6 @@ struct LiveCounts {
 
 // Collects the rows of the servo in the log. If a session is recorded, it also writes the rows and the frames
 // of the camera to disk.
-
 class LiveLogger {
  public:
   // recorder: null if nothing is recorded. on_tick: receives every row; must not throw; may be empty.

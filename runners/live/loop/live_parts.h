@@ -22,7 +22,6 @@
 namespace remote_touch {
 
 // Watches the first contact of a live session, for a note on points that are too far apart.
-
 class LiveContact {
  public:
   // Watches nothing if the renderer is not a ball that single points hold (RenderedContact), or if the
@@ -53,11 +52,10 @@ class LiveContact {
   ContactWatch watch_;
 };
 
-// The slave of a live session: what it touches, why it may touch nothing, and which frames it sends.
-
-// The slave is simulated, also behind a real hand. It touches the true surface of a simulated scene
-// (Experiment::build_simulated_scene()). It has a scene of its own, because the haptic loop must not wait for
-// the thread of the camera. With any other camera it moves but touches nothing.
+// The slave of a live session: what it touches, why it may touch nothing, and which frames it sends. The
+// slave is simulated, also behind a real hand. It touches the true surface of a simulated scene
+// (Experiment::build_simulated_scene()). It has a scene of its own, because the haptic loop must not wait
+// for the thread of the camera. With any other camera it moves but touches nothing.
 //
 // The mass of the hand is not known, whatever the section operator says, because a replay of the session has
 // no operator. Passivity control then uses the published rule.

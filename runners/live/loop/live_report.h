@@ -11,9 +11,8 @@
 
 namespace remote_touch {
 
-// The recordings that a live run reads, for the hashes in its results.
-
-// Returns the recordings, sessions and meshes that run_live() opens with this device and this sensor:
+// Returns the recordings, sessions and meshes that run_live() opens with this device and this sensor, for the
+// hashes in its results:
 // - the files of --depth and of --device replay:;
 // - the recording of the scenario, if the scenario is the sensor (sim:), or if a hand is simulated (sim:,
 //   browser:, replay:), because its motion is planned in the scenario. has_view: the page of --view shows
@@ -23,8 +22,6 @@ namespace remote_touch {
 // Throws InputError for an address without a known scheme.
 std::vector<InputPart> live_inputs(const Experiment& experiment, const std::string& device,
                                    const std::string& depth, bool has_view);
-
-// The report of a live session: its inputs, and notes on what the user may not have intended.
 
 // Returns the phases of a live session: those of Experiment::phases(); those of the scene if the sensor is
 // simulated (depth "sim:..."); and those of the hand and the operator if the device is simulated (device
@@ -47,7 +44,6 @@ struct LiveFacts {
 RunReport report_of(const LiveFacts& facts);
 
 // Timing of a live run: a text table and a figure.
-
 struct LiveReport {
   struct Times {
     const char* name;

@@ -11,7 +11,6 @@
 namespace remote_touch {
 
 // Numbers frames by the camera's own count, which may restart, or by its time stamps.
-
 class FrameNumbers {
  public:
   // Returns the number of a frame that is `steps` after the one before. Steps that are not between 1 and
@@ -27,12 +26,11 @@ class FrameNumbers {
   int number_ = 0;
 };
 
-// Conversion of times from the clock of a sensor to that of the host.
-
-// Arrivals jitter by milliseconds with the bus and the scheduler; the sensor's stamps are regular, but have
-// their own origin. The difference arrival - stamp is the wanted offset plus a delay that is never negative,
-// so the smallest difference is nearest to the offset. It still contains the delay common to all frames:
-// exposure and transfer cannot be measured on the host.
+// Conversion of times from the clock of a sensor to that of the host. Arrivals jitter by milliseconds with
+// the bus and the scheduler; the sensor's stamps are regular, but have their own origin. The difference
+// arrival - stamp is the wanted offset plus a delay that is never negative, so the smallest difference is
+// nearest to the offset. It still contains the delay common to all frames: exposure and transfer cannot be
+// measured on the host.
 class SensorClock {
  public:
   // Returns the time at which the frame with this stamp was captured, on the clock of the arrival: later than
@@ -47,7 +45,6 @@ class SensorClock {
 };
 
 // Images as drivers deliver them: rows of pixels with gaps between them, sometimes mirrored.
-
 struct PixelRows {
   const void* first = nullptr;
   std::size_t bytes = 0;  // number of bytes that may be read

@@ -15,10 +15,8 @@
 
 namespace remote_touch {
 
-// Encodes the frames of a scenario as the frames of one sensor.
-
-// A live run has one view: one camera at one pose, or clouds of one layout (see CloudLayout). Encoded frames
-// are decoded by cloud_of().
+// Encodes the frames of a scenario as the frames of one sensor. A live run has one view: one camera at one
+// pose, or clouds of one layout (see CloudLayout). Encoded frames are decoded by cloud_of().
 class FrameEncoder {
  public:
   struct Settings {

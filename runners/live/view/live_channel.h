@@ -26,10 +26,9 @@
 namespace remote_touch {
 
 // Passes the hand of the pages to the device browser:. One page has the hand at a time, and the hand must not
-// jump when another page receives it: a jump of the hand is a jump of the force.
-
-// Poses are in the world frame, lengths in metres. The safety gate and the speed limit of BrowserDevice apply
-// as well. Only the server's thread calls the functions.
+// jump when another page receives it: a jump of the hand is a jump of the force. Poses are in the world
+// frame, lengths in metres. The safety gate and the speed limit of BrowserDevice apply as well. Only the
+// server's thread calls the functions.
 class PageHand {
  public:
   explicit PageHand(std::shared_ptr<HandPoses> poses) : poses_(std::move(poses)) {}

@@ -17,7 +17,6 @@ namespace remote_touch {
 //
 // The browser receives this file as its argument and not the address, because the arguments of all processes
 // can be read, and whoever has the address can move the hand.
-
 class RedirectPage {
  public:
   RedirectPage() = default;
