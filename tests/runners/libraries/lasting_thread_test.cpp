@@ -4,6 +4,7 @@
 
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace remote_touch::lasting_thread_test {
