@@ -50,106 +50,94 @@ constexpr std::array<KnownFault, 5> kDhdFaults{{
 
 class ForceDimension : public GatedDevice {
  public:
-  ForceDimension(int number, const std::string& subject, Clock& clock);
-  ~ForceDimension() override;
+  ForceDimension(int number, const std::string& subject, Clock& clock) : GatedDevice(clock) {
+    const int count = dhd_.get_device_count();
+    if (count <= 0)
+      throw InputError(
+          subject,
+          "no device is connected: expected one that is powered, and whose USB port this user may open");
+    if (number >= count)
+      throw InputError(subject, "no such device: expected 0 to " + std::to_string(count - 1));
+    const int id = dhd_.open_id(static_cast<char>(number));
+    if (id < 0)
+      throw InputError(subject, std::string("cannot be opened (") + dhd_.error_get_last_str() +
+                                    "): expected a device that no other program has");
+    id_ = static_cast<char>(id);
+    learn_traits();
+  }
+
+  ~ForceDimension() override {
+    release();
+    dhd_.close(id_);
+  }
 
  private:
-  DeviceFault sense(DeviceReading& reading) noexcept override;
-  DeviceFault switch_on() noexcept override;
-  DeviceFault exert(const Wrench& wrench) noexcept override;
-  void switch_off() noexcept override;
+  // The orientation and the angular velocity of a device without a wrist are not used.
+  DeviceFault sense(DeviceReading& reading) noexcept override {
+    Vec3 p, v, w = Vec3::Zero();
+    double frame[3][3];
+    if (dhd_.get_position_and_orientation_frame(&p.x(), &p.y(), &p.z(), frame, id_) < 0)
+      return last_fault("Force Dimension: the pose cannot be read");
+    if (dhd_.get_linear_velocity(&v.x(), &v.y(), &v.z(), id_) < 0)
+      return last_fault("Force Dimension: the velocity cannot be read");
+    reading.position_m = from_user_right_up(p);
+    reading.velocity_m_per_s = from_user_right_up(v);
+    reading.buttons = dhd_.get_button_mask(id_);
+    if (traits_.sensed_axes < 6) return {};
+    if (dhd_.get_angular_velocity_rad(&w.x(), &w.y(), &w.z(), id_) < 0)
+      return last_fault("Force Dimension: the angular velocity cannot be read");
+    reading.angular_velocity_rad_per_s = from_user_right_up(w);
+    const Eigen::Matrix3d rotation =
+        Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&frame[0][0]);
+    if (!is_rotation(rotation)) return kNoRotation;
+    reading.orientation = Eigen::Quaterniond(rotation_from_user_right_up(rotation));
+    return {};
+  }
 
-  void learn_traits();
-  int write_wrench(const Vec3& force_N, const Vec3& torque_Nm) noexcept;
-  DeviceFault last_fault(const char* what) const noexcept;
+  // Zero force is written before the motors are switched on, because they first exert the last written force.
+  DeviceFault switch_on() noexcept override {
+    if (write_wrench(Vec3::Zero(), Vec3::Zero()) < 0 || dhd_.enable_force(1, id_) < 0)
+      return last_fault("Force Dimension: the motors cannot be switched on");
+    return {};
+  }
+
+  DeviceFault exert(const Wrench& wrench) noexcept override {
+    const Vec3 torque_Nm = traits_.actuated_axes == 6 ? wrench.torque_Nm : Vec3::Zero();
+    if (write_wrench(wrench.force_N, torque_Nm) < 0)
+      return last_fault("Force Dimension: the force cannot be set");
+    return {};
+  }
+
+  // Errors are ignored: there is no caller left to report them to.
+  void switch_off() noexcept override {
+    write_wrench(Vec3::Zero(), Vec3::Zero());
+    dhd_.enable_force(0, id_);
+    if (dhd_.stop != nullptr) dhd_.stop(id_);
+  }
+
+  // The library reports a limit below 0 if none is set. Such a limit is stored as 0 (unknown).
+  void learn_traits() {
+    if (dhd_.get_system_name != nullptr)
+      if (const char* name = dhd_.get_system_name(id_); name != nullptr) traits_.name = name;
+    traits_.sensed_axes = dhd_.has_wrist(id_) ? 6 : 3;
+    traits_.actuated_axes = dhd_.has_active_wrist != nullptr && dhd_.has_active_wrist(id_) ? 6 : 3;
+    if (dhd_.get_max_force != nullptr) traits_.max_force_N = std::max(0.0, dhd_.get_max_force(id_));
+    if (dhd_.get_max_torque != nullptr && traits_.actuated_axes == 6)
+      traits_.max_torque_Nm = std::max(0.0, dhd_.get_max_torque(id_));
+  }
+
+  int write_wrench(const Vec3& force_N, const Vec3& torque_Nm) noexcept {
+    const Vec3 f = to_user_right_up(force_N), t = to_user_right_up(torque_Nm);
+    return dhd_.set_force_and_torque_and_gripper_force(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0, id_);
+  }
+
+  DeviceFault last_fault(const char* what) const noexcept {
+    return fault_of(kDhdFaults, dhd_.error_get_last != nullptr ? dhd_.error_get_last() : -1, what);
+  }
 
   Dhd dhd_;
   char id_ = -1;
 };
-
-ForceDimension::ForceDimension(int number, const std::string& subject, Clock& clock) : GatedDevice(clock) {
-  const int count = dhd_.get_device_count();
-  if (count <= 0)
-    throw InputError(
-        subject,
-        "no device is connected: expected one that is powered, and whose USB port this user may open");
-  if (number >= count)
-    throw InputError(subject, "no such device: expected 0 to " + std::to_string(count - 1));
-  const int id = dhd_.open_id(static_cast<char>(number));
-  if (id < 0)
-    throw InputError(subject, std::string("cannot be opened (") + dhd_.error_get_last_str() +
-                                  "): expected a device that no other program has");
-  id_ = static_cast<char>(id);
-  learn_traits();
-}
-
-ForceDimension::~ForceDimension() {
-  release();
-  dhd_.close(id_);
-}
-
-// The library reports a limit below 0 if none is set. Such a limit is stored as 0 (unknown).
-void ForceDimension::learn_traits() {
-  if (dhd_.get_system_name != nullptr)
-    if (const char* name = dhd_.get_system_name(id_); name != nullptr) traits_.name = name;
-  traits_.sensed_axes = dhd_.has_wrist(id_) ? 6 : 3;
-  traits_.actuated_axes = dhd_.has_active_wrist != nullptr && dhd_.has_active_wrist(id_) ? 6 : 3;
-  if (dhd_.get_max_force != nullptr) traits_.max_force_N = std::max(0.0, dhd_.get_max_force(id_));
-  if (dhd_.get_max_torque != nullptr && traits_.actuated_axes == 6)
-    traits_.max_torque_Nm = std::max(0.0, dhd_.get_max_torque(id_));
-}
-
-DeviceFault ForceDimension::last_fault(const char* what) const noexcept {
-  return fault_of(kDhdFaults, dhd_.error_get_last != nullptr ? dhd_.error_get_last() : -1, what);
-}
-
-// The orientation and the angular velocity of a device without a wrist are not used.
-DeviceFault ForceDimension::sense(DeviceReading& reading) noexcept {
-  Vec3 p, v, w = Vec3::Zero();
-  double frame[3][3];
-  if (dhd_.get_position_and_orientation_frame(&p.x(), &p.y(), &p.z(), frame, id_) < 0)
-    return last_fault("Force Dimension: the pose cannot be read");
-  if (dhd_.get_linear_velocity(&v.x(), &v.y(), &v.z(), id_) < 0)
-    return last_fault("Force Dimension: the velocity cannot be read");
-  reading.position_m = from_user_right_up(p);
-  reading.velocity_m_per_s = from_user_right_up(v);
-  reading.buttons = dhd_.get_button_mask(id_);
-  if (traits_.sensed_axes < 6) return {};
-  if (dhd_.get_angular_velocity_rad(&w.x(), &w.y(), &w.z(), id_) < 0)
-    return last_fault("Force Dimension: the angular velocity cannot be read");
-  reading.angular_velocity_rad_per_s = from_user_right_up(w);
-  const Eigen::Matrix3d rotation =
-      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&frame[0][0]);
-  if (!is_rotation(rotation)) return kNoRotation;
-  reading.orientation = Eigen::Quaterniond(rotation_from_user_right_up(rotation));
-  return {};
-}
-
-int ForceDimension::write_wrench(const Vec3& force_N, const Vec3& torque_Nm) noexcept {
-  const Vec3 f = to_user_right_up(force_N), t = to_user_right_up(torque_Nm);
-  return dhd_.set_force_and_torque_and_gripper_force(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0, id_);
-}
-
-// Zero force is written before the motors are switched on, because they first exert the last written force.
-DeviceFault ForceDimension::switch_on() noexcept {
-  if (write_wrench(Vec3::Zero(), Vec3::Zero()) < 0 || dhd_.enable_force(1, id_) < 0)
-    return last_fault("Force Dimension: the motors cannot be switched on");
-  return {};
-}
-
-DeviceFault ForceDimension::exert(const Wrench& wrench) noexcept {
-  const Vec3 torque_Nm = traits_.actuated_axes == 6 ? wrench.torque_Nm : Vec3::Zero();
-  if (write_wrench(wrench.force_N, torque_Nm) < 0)
-    return last_fault("Force Dimension: the force cannot be set");
-  return {};
-}
-
-// Errors are ignored: there is no caller left to report them to.
-void ForceDimension::switch_off() noexcept {
-  write_wrench(Vec3::Zero(), Vec3::Zero());
-  dhd_.enable_force(0, id_);
-  if (dhd_.stop != nullptr) dhd_.stop(id_);
-}
 
 int device_number(const std::string& address, const std::string& subject) {
   int number = 0;

@@ -139,9 +139,41 @@ class Haply final : public HapticDevice {
   }
   ~Haply() override { release(); }
 
-  DeviceFault read(DeviceReading& reading) noexcept override;
-  DeviceFault write(const Wrench& wrench) noexcept override;
-  void release() noexcept override;
+  DeviceFault read(DeviceReading& reading) noexcept override {
+    const LinkLock lock(taken_);
+    return lock ? read_within(reading, kReadWithin_s) : kReleased;
+  }
+
+  // The motors of an Inverse3 give no torque.
+  DeviceFault write(const Wrench& wrench) noexcept override {
+    const LinkLock lock(taken_);
+    if (!lock) return kReleased;
+    const bool is_force = wrench.force_N.allFinite();
+    const double deadline_s = clock().now_s() + kWriteWithin_s;
+    // The answer that is due is read first: with two commands in progress the answers would stay one behind.
+    // If it is missing, no command is sent, and the device idles.
+    std::string_view late;
+    if (const DeviceFault fault = receive_due_answer(late, deadline_s)) return fault;
+    const DeviceFault fault = send(is_force ? to_service(wrench.force_N) : Vec3::Zero(), deadline_s);
+    return is_force ? fault : kNoForce;
+  }
+
+  void release() noexcept override {
+    if (is_released_.exchange(true)) return;
+    const std::int64_t until_ns = clock().now_ns() + kTickEndsWithin_ns;
+    bool is_mine = false;
+    while (!(is_mine = !taken_.exchange(true)) && clock().now_ns() < until_ns)
+      clock().sleep_until_ns(clock().now_ns() + kLinkPollPeriod_ns);
+    if (is_mine) {
+      const bool is_older_due = is_answer_due_;
+      const double deadline_s = clock().now_s() + kLastAnswerWithin_s;
+      // Waits for the answers: a connection that is closed with unread bytes can lose the command.
+      std::string_view text;
+      if (!send(Vec3::Zero(), deadline_s) && !receive_due_answer(text, deadline_s) && is_older_due)
+        opened_.link->receive(text, deadline_s);
+    }
+    opened_.link->cut();
+  }
 
  private:
   // Exclusive use of the link during one call. Only release() competes for the link, and keeps it when it has
@@ -159,10 +191,48 @@ class Haply final : public HapticDevice {
     const bool is_mine_;
   };
 
-  DeviceFault send(const Vec3& force_N, double deadline_s) noexcept;
-  DeviceFault receive_due_answer(std::string_view& text, double deadline_s) noexcept;
-  DeviceFault newest(std::string_view& text, double deadline_s) noexcept;
-  DeviceFault read_within(DeviceReading& reading, double time_s) noexcept;
+  DeviceFault send(const Vec3& force_N, double deadline_s) noexcept {
+    const DeviceFault fault = opened_.link->send(command_.text(force_N), deadline_s);
+    if (fault) return fault;
+    sent_N_ = force_N;
+    sent_s_ = clock().now_s();
+    is_answer_due_ = true;
+    return {};
+  }
+
+  // Receives the answer to the last command, if it has not been received yet.
+  DeviceFault receive_due_answer(std::string_view& text, double deadline_s) noexcept {
+    if (!is_answer_due_) return {};
+    const DeviceFault fault = opened_.link->receive(text, deadline_s);
+    if (!fault) is_answer_due_ = false;
+    return fault;
+  }
+
+  // Stores the answer to the last command in `text`. If that command is older than kStateLasts_s, or no
+  // answer is due, it sends a command with zero force and stores the answer to that one.
+  DeviceFault newest(std::string_view& text, double deadline_s) noexcept {
+    const bool is_old = !is_answer_due_ || clock().now_s() - sent_s_ > kStateLasts_s;
+    if (const DeviceFault fault = receive_due_answer(text, deadline_s)) return fault;
+    if (!is_old) return {};
+    if (clock().now_s() > deadline_s)
+      return kLate;  // the rest of a message may take 1 ms more, but only once
+    if (const DeviceFault fault = send(Vec3::Zero(), deadline_s)) return fault;
+    return receive_due_answer(text, deadline_s);
+  }
+
+  DeviceFault read_within(DeviceReading& reading, double time_s) noexcept {
+    std::string_view text;
+    if (const DeviceFault fault = newest(text, clock().now_s() + time_s)) return fault;
+    HaplyMessage message;
+    if (!read_haply_message(text, opened_.device_id, opened_.handle_id, message)) return kNoState;
+    DeviceReading found;
+    if (const DeviceFault fault = convert(message, !opened_.handle_id.empty(), found)) return fault;
+    if (is_checked_ && message.device->force_N)
+      if (const DeviceFault fault = check_(sent_N_, *message.device->force_N, key_, clock().now_s()))
+        return fault;
+    reading = found;
+    return {};
+  }
 
   Opened opened_;
   HaplyForceCommand command_;
@@ -175,84 +245,6 @@ class Haply final : public HapticDevice {
   double sent_s_ = 0;
   bool is_answer_due_ = false;
 };
-
-DeviceFault Haply::send(const Vec3& force_N, double deadline_s) noexcept {
-  const DeviceFault fault = opened_.link->send(command_.text(force_N), deadline_s);
-  if (fault) return fault;
-  sent_N_ = force_N;
-  sent_s_ = clock().now_s();
-  is_answer_due_ = true;
-  return {};
-}
-
-// Receives the answer to the last command, if it has not been received yet.
-DeviceFault Haply::receive_due_answer(std::string_view& text, double deadline_s) noexcept {
-  if (!is_answer_due_) return {};
-  const DeviceFault fault = opened_.link->receive(text, deadline_s);
-  if (!fault) is_answer_due_ = false;
-  return fault;
-}
-
-// Stores the answer to the last command in `text`. If that command is older than kStateLasts_s, or no answer
-// is due, it sends a command with zero force and stores the answer to that one.
-DeviceFault Haply::newest(std::string_view& text, double deadline_s) noexcept {
-  const bool is_old = !is_answer_due_ || clock().now_s() - sent_s_ > kStateLasts_s;
-  if (const DeviceFault fault = receive_due_answer(text, deadline_s)) return fault;
-  if (!is_old) return {};
-  if (clock().now_s() > deadline_s) return kLate;  // the rest of a message may take 1 ms more, but only once
-  if (const DeviceFault fault = send(Vec3::Zero(), deadline_s)) return fault;
-  return receive_due_answer(text, deadline_s);
-}
-
-DeviceFault Haply::read_within(DeviceReading& reading, double time_s) noexcept {
-  std::string_view text;
-  if (const DeviceFault fault = newest(text, clock().now_s() + time_s)) return fault;
-  HaplyMessage message;
-  if (!read_haply_message(text, opened_.device_id, opened_.handle_id, message)) return kNoState;
-  DeviceReading found;
-  if (const DeviceFault fault = convert(message, !opened_.handle_id.empty(), found)) return fault;
-  if (is_checked_ && message.device->force_N)
-    if (const DeviceFault fault = check_(sent_N_, *message.device->force_N, key_, clock().now_s()))
-      return fault;
-  reading = found;
-  return {};
-}
-
-DeviceFault Haply::read(DeviceReading& reading) noexcept {
-  const LinkLock lock(taken_);
-  return lock ? read_within(reading, kReadWithin_s) : kReleased;
-}
-
-// The motors of an Inverse3 give no torque.
-DeviceFault Haply::write(const Wrench& wrench) noexcept {
-  const LinkLock lock(taken_);
-  if (!lock) return kReleased;
-  const bool is_force = wrench.force_N.allFinite();
-  const double deadline_s = clock().now_s() + kWriteWithin_s;
-  // The answer that is due is read first: with two commands in progress the answers would stay one behind. If
-  // it is missing, no command is sent, and the device idles.
-  std::string_view late;
-  if (const DeviceFault fault = receive_due_answer(late, deadline_s)) return fault;
-  const DeviceFault fault = send(is_force ? to_service(wrench.force_N) : Vec3::Zero(), deadline_s);
-  return is_force ? fault : kNoForce;
-}
-
-void Haply::release() noexcept {
-  if (is_released_.exchange(true)) return;
-  const std::int64_t until_ns = clock().now_ns() + kTickEndsWithin_ns;
-  bool is_mine = false;
-  while (!(is_mine = !taken_.exchange(true)) && clock().now_ns() < until_ns)
-    clock().sleep_until_ns(clock().now_ns() + kLinkPollPeriod_ns);
-  if (is_mine) {
-    const bool is_older_due = is_answer_due_;
-    const double deadline_s = clock().now_s() + kLastAnswerWithin_s;
-    // Waits for the answers: a connection that is closed with unread bytes can lose the command.
-    std::string_view text;
-    if (!send(Vec3::Zero(), deadline_s) && !receive_due_answer(text, deadline_s) && is_older_due)
-      opened_.link->receive(text, deadline_s);
-  }
-  opened_.link->cut();
-}
 
 }  // namespace
 

@@ -7,6 +7,12 @@
 namespace remote_touch {
 namespace {
 
+constexpr int kDeepest = 64;  // greatest nesting that is read; more would only fill the stack
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
 // Reads JSON text once, front to back, without a copy or an allocation: for messages in a haptic tick. Every
 // function returns true if the text matched. The reader must not be used any more after it has returned
 // false. Strings and keys are returned as in the text, with their escapes.
@@ -29,11 +35,39 @@ class JsonReader {
   }
 
   // Reads a finite number. Returns false if there is none, for instance for NaN, which is not JSON.
-  bool number(double& value);
-  bool boolean(bool& value);
-  bool string(std::string_view& value);
+  bool number(double& value) {
+    const char first = next();
+    // The first character is checked, because from_chars also reads "nan" and "inf" as numbers.
+    const char* digits = first == '-' ? at_ + 1 : at_;
+    if (digits >= end_ || !is_digit(*digits)) return false;
+    const auto [end, error] = std::from_chars(at_, end_, value);
+    if (error != std::errc() || !std::isfinite(value)) return false;
+    at_ = end;
+    return true;
+  }
+
+  bool boolean(bool& value) {
+    value = next() == 't';
+    return word(value ? "true" : "false");
+  }
+
+  bool string(std::string_view& value) {
+    if (!take('"')) return false;
+    const char* begin = at_;
+    for (; at_ < end_; ++at_) {
+      if (*at_ == '"') {
+        value = std::string_view(begin, static_cast<std::size_t>(at_++ - begin));
+        return true;
+      }
+      if (*at_ == '\\' && ++at_ == end_) return false;
+      if (static_cast<unsigned char>(*at_) < ' ') return false;
+    }
+    return false;
+  }
+
   bool skip() { return skip(0); }
-  bool at_end();
+
+  bool at_end() { return next() == '\0' && at_ == end_; }
 
  private:
   template <class Item>
@@ -46,96 +80,54 @@ class JsonReader {
       if (!take(',')) return false;
     }
   }
-  bool skip(int depth);
-  bool word(std::string_view text);
-  char next();        // first character after white space; 0 at the end
-  bool take(char c);  // skips c if it is the next character; else false
+
+  bool skip(int depth) {
+    if (depth > kDeepest) return false;
+    std::string_view text;
+    bool flag = false;
+    double value = 0;
+    const auto inner = [&] { return skip(depth + 1); };
+    switch (next()) {
+      case '{':
+        return object([&](std::string_view) { return inner(); });
+      case '[':
+        return array(inner);
+      case '"':
+        return string(text);
+      case 't':
+      case 'f':
+        return boolean(flag);
+      case 'n':
+        return word("null");
+      default:
+        return number(value);
+    }
+  }
+
+  bool word(std::string_view text) {
+    next();
+    if (std::string_view(at_, static_cast<std::size_t>(end_ - at_)).substr(0, text.size()) != text)
+      return false;
+    at_ += text.size();
+    return true;
+  }
+
+  // Returns the first character after white space; 0 at the end.
+  char next() {
+    while (at_ < end_ && (*at_ == ' ' || *at_ == '\t' || *at_ == '\n' || *at_ == '\r')) ++at_;
+    return at_ < end_ ? *at_ : '\0';
+  }
+
+  // Skips c if it is the next character; else returns false.
+  bool take(char c) {
+    if (next() != c) return false;
+    ++at_;
+    return true;
+  }
 
   const char* at_;
   const char* end_;
 };
-
-constexpr int kDeepest = 64;  // greatest nesting that is read; more would only fill the stack
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-char JsonReader::next() {
-  while (at_ < end_ && (*at_ == ' ' || *at_ == '\t' || *at_ == '\n' || *at_ == '\r')) ++at_;
-  return at_ < end_ ? *at_ : '\0';
-}
-
-bool JsonReader::take(char c) {
-  if (next() != c) return false;
-  ++at_;
-  return true;
-}
-
-bool JsonReader::at_end() {
-  return next() == '\0' && at_ == end_;
-}
-
-bool JsonReader::word(std::string_view text) {
-  next();
-  if (std::string_view(at_, static_cast<std::size_t>(end_ - at_)).substr(0, text.size()) != text)
-    return false;
-  at_ += text.size();
-  return true;
-}
-
-bool JsonReader::number(double& value) {
-  const char first = next();
-  // The first character is checked, because from_chars also reads "nan" and "inf" as numbers.
-  const char* digits = first == '-' ? at_ + 1 : at_;
-  if (digits >= end_ || !is_digit(*digits)) return false;
-  const auto [end, error] = std::from_chars(at_, end_, value);
-  if (error != std::errc() || !std::isfinite(value)) return false;
-  at_ = end;
-  return true;
-}
-
-bool JsonReader::boolean(bool& value) {
-  value = next() == 't';
-  return word(value ? "true" : "false");
-}
-
-bool JsonReader::string(std::string_view& value) {
-  if (!take('"')) return false;
-  const char* begin = at_;
-  for (; at_ < end_; ++at_) {
-    if (*at_ == '"') {
-      value = std::string_view(begin, static_cast<std::size_t>(at_++ - begin));
-      return true;
-    }
-    if (*at_ == '\\' && ++at_ == end_) return false;
-    if (static_cast<unsigned char>(*at_) < ' ') return false;
-  }
-  return false;
-}
-
-bool JsonReader::skip(int depth) {
-  if (depth > kDeepest) return false;
-  std::string_view text;
-  bool flag = false;
-  double value = 0;
-  const auto inner = [&] { return skip(depth + 1); };
-  switch (next()) {
-    case '{':
-      return object([&](std::string_view) { return inner(); });
-    case '[':
-      return array(inner);
-    case '"':
-      return string(text);
-    case 't':
-    case 'f':
-      return boolean(flag);
-    case 'n':
-      return word("null");
-    default:
-      return number(value);
-  }
-}
 
 constexpr std::size_t kMaxId = 256;
 

@@ -78,9 +78,53 @@ class Spacenav final : public HapticDevice {
   bool rearm() noexcept override { return true; }
 
  private:
-  DeviceFault take_frames(double now_s) noexcept;
-  DeviceFault take(const Frame& frame, double now_s) noexcept;
-  void move(double step_s) noexcept;
+  DeviceFault take_frames(double now_s) noexcept {
+    for (int frames = 0; frames < kMaxFrames;) {
+      const auto got = socket_.read_ready(bytes_.data() + filled_, bytes_.size() - filled_);
+      if (got.error == EAGAIN) return {};
+      if (got.error != 0) return {kGone.what, got.error};
+      filled_ += got.bytes;
+      if (filled_ < bytes_.size()) continue;
+      filled_ = 0;
+      Frame frame;
+      std::memcpy(frame.data(), bytes_.data(), bytes_.size());
+      if (const DeviceFault fault = take(frame, now_s)) return fault;
+      ++frames;
+    }
+    return {};
+  }
+
+  DeviceFault take(const Frame& frame, double now_s) noexcept {
+    if (frame[0] < 0 || frame[0] > kLastEvent) return kNoFrame;
+    if (frame[0] == kMotion) {
+      std::copy_n(frame.begin() + 1, counts_.size(), counts_.begin());
+      reported_s_ = now_s;
+    } else if (frame[0] <= kRelease && frame[1] >= 0 && frame[1] < 32) {
+      const std::uint32_t button = 1u << frame[1];
+      if (frame[0] == kPress)
+        pose_.buttons |= button;
+      else
+        pose_.buttons &= ~button;
+    }
+    return {};
+  }
+
+  void move(double step_s) noexcept {
+    const Vec3 flip(1, 1, -1);
+    const Vec3 along = speed_per_count_ * flip.cwiseProduct(Vec3(counts_[0], counts_[1], counts_[2]));
+    const Vec3 about = turning_per_count_ * flip.cwiseProduct(Vec3(counts_[3], counts_[4], counts_[5]));
+    const Vec3 to = (pose_.position_m + step_s * along).cwiseMax(-box_m_).cwiseMin(box_m_);
+    // The velocity is that of the clamped position: its component towards a face of the box is zero there,
+    // although the mouse is pushed.
+    pose_.velocity_m_per_s = step_s > 0 ? Vec3((to - pose_.position_m) / step_s) : along;
+    pose_.position_m = to;
+    pose_.angular_velocity_rad_per_s = about;
+    const double angle = step_s * about.norm();
+    if (angle > 0) {
+      const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angle, about.normalized()));
+      pose_.orientation = (rotation * pose_.orientation).normalized();
+    }
+  }
 
   const double speed_per_count_, turning_per_count_;  // m/s and rad/s
   const double box_m_;
@@ -93,54 +137,6 @@ class Spacenav final : public HapticDevice {
   double reported_s_ = 0, moved_s_ = 0;
   DeviceReading pose_;
 };
-
-DeviceFault Spacenav::take_frames(double now_s) noexcept {
-  for (int frames = 0; frames < kMaxFrames;) {
-    const auto got = socket_.read_ready(bytes_.data() + filled_, bytes_.size() - filled_);
-    if (got.error == EAGAIN) return {};
-    if (got.error != 0) return {kGone.what, got.error};
-    filled_ += got.bytes;
-    if (filled_ < bytes_.size()) continue;
-    filled_ = 0;
-    Frame frame;
-    std::memcpy(frame.data(), bytes_.data(), bytes_.size());
-    if (const DeviceFault fault = take(frame, now_s)) return fault;
-    ++frames;
-  }
-  return {};
-}
-
-DeviceFault Spacenav::take(const Frame& frame, double now_s) noexcept {
-  if (frame[0] < 0 || frame[0] > kLastEvent) return kNoFrame;
-  if (frame[0] == kMotion) {
-    std::copy_n(frame.begin() + 1, counts_.size(), counts_.begin());
-    reported_s_ = now_s;
-  } else if (frame[0] <= kRelease && frame[1] >= 0 && frame[1] < 32) {
-    const std::uint32_t button = 1u << frame[1];
-    if (frame[0] == kPress)
-      pose_.buttons |= button;
-    else
-      pose_.buttons &= ~button;
-  }
-  return {};
-}
-
-void Spacenav::move(double step_s) noexcept {
-  const Vec3 flip(1, 1, -1);
-  const Vec3 along = speed_per_count_ * flip.cwiseProduct(Vec3(counts_[0], counts_[1], counts_[2]));
-  const Vec3 about = turning_per_count_ * flip.cwiseProduct(Vec3(counts_[3], counts_[4], counts_[5]));
-  const Vec3 to = (pose_.position_m + step_s * along).cwiseMax(-box_m_).cwiseMin(box_m_);
-  // The velocity is that of the clamped position: its component towards a face of the box is zero there,
-  // although the mouse is pushed.
-  pose_.velocity_m_per_s = step_s > 0 ? Vec3((to - pose_.position_m) / step_s) : along;
-  pose_.position_m = to;
-  pose_.angular_velocity_rad_per_s = about;
-  const double angle = step_s * about.norm();
-  if (angle > 0) {
-    const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angle, about.normalized()));
-    pose_.orientation = (rotation * pose_.orientation).normalized();
-  }
-}
 
 }  // namespace
 

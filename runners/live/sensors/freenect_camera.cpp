@@ -96,23 +96,146 @@ std::array<std::uint16_t, kShifts> depth_of_shifts() {
 
 class FreenectCamera final : public DepthSource {
  public:
-  FreenectCamera(const std::string& address, const Clock& host);
-  ~FreenectCamera() override;
+  FreenectCamera(const std::string& address, const Clock& host) : host_(host) {
+    open_device(address);
+    choose_modes();
+    start();
+  }
 
-  SensorState next(SensorFrame& frame, double timeout_s) override;
+  ~FreenectCamera() override {
+    thread_.request_stop();
+    thread_.join();
+    if (view_.has_colour) freenect_stop_video(device_.get());
+    freenect_stop_depth(device_.get());
+  }
+
+  SensorState next(SensorFrame& frame, double timeout_s) override {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::duration<double>(timeout_s),
+                      [this] { return is_new_ || !failure_.empty(); });
+    if (is_new_) {
+      std::swap(frame, newest_);
+      is_new_ = false;
+      return SensorState::frame;
+    }
+    return failure_.empty() ? SensorState::waiting : SensorState::failed;
+  }
 
  private:
-  void open_device(const std::string& address);
-  void choose_modes();
-  void start();
-  void process_events(const std::stop_token& stop);
+  void open_device(const std::string& address) {
+    const int number = number_of(address);
+    name_ = "freenect:" + std::to_string(number);
+    context_ = start_library();
+    const int count = freenect_num_devices(context_.get());
+    if (number >= count)
+      throw InputError(name_,
+                       (count <= 0 ? std::string("no Kinect is plugged in")
+                                   : std::to_string(count) + " Kinects are plugged in, numbered from 0") +
+                           ": expected one that this user may open (lsusb, udev rules)");
+    freenect_device* device = nullptr;
+    const int code = freenect_open_device(context_.get(), &device, number);
+    if (code < 0)
+      throw InputError(name_, "cannot be opened (libusb says " + std::to_string(code) +
+                                  "); another program or the kernel's module gspca_kinect may hold it");
+    device_.reset(device);
+  }
+
+  void choose_modes() {
+    const std::optional<freenect_frame_mode> registered = depth_mode(FREENECT_DEPTH_REGISTERED);
+    const std::optional<freenect_frame_mode> colour = colour_mode();
+    std::optional<freenect_frame_mode> depth = registered;
+    if (!depth) depth = depth_mode(FREENECT_DEPTH_MM);
+    if (!depth) {
+      depth = depth_mode(FREENECT_DEPTH_11BIT);
+      gives_shifts_ = true;
+      depth_of_shift_ = depth_of_shifts();
+    }
+    if (!depth || depth->bytes != 2 * depth->width * depth->height)
+      throw InputError(name_, "the library has no depth mode of 640 x 480 pixels in 16 bits");
+    if (freenect_set_depth_mode(device_.get(), *depth) < 0)
+      throw InputError(name_, "the camera refuses its depth mode");
+    depth_mode_ = *depth;
+    view_.has_colour = registered && colour && colour->bytes == 3 * depth->width * depth->height &&
+                       freenect_set_video_mode(device_.get(), *colour) >= 0;
+    if (view_.has_colour) colour_mode_ = *colour;
+    const double focal_length = registered ? kColourFocalLength : kInfraredFocalLength;
+    view_.camera = {depth->width,
+                    depth->height,
+                    focal_length,
+                    focal_length,
+                    0.5 * (depth->width - 1),
+                    0.5 * (depth->height - 1)};
+    view_.frame_rate_hz = depth->framerate;
+  }
+
+  void start() {
+    freenect_set_user(device_.get(), this);
+    freenect_set_depth_callback(device_.get(),
+                                [](freenect_device* device, void* pixels, std::uint32_t ticks) {
+                                  of(device).depth_came(pixels, ticks);
+                                });
+    freenect_set_video_callback(device_.get(), [](freenect_device* device, void* pixels, std::uint32_t) {
+      of(device).colour_came(pixels);
+    });
+    if (freenect_start_depth(device_.get()) < 0) throw InputError(name_, "depth does not start");
+    if (view_.has_colour && freenect_start_video(device_.get()) < 0) view_.has_colour = false;
+    // Signals are blocked in the new thread: the program's other threads handle them.
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    thread_ = std::jthread([this](const std::stop_token& stop) { process_events(stop); });
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+
+  void process_events(const std::stop_token& stop) {
+    int code = 0;
+    while (!stop.stop_requested() && code >= 0) {
+      timeval wait{0, 100'000};
+      code = freenect_process_events_timeout(context_.get(), &wait);
+    }
+    if (code >= 0) return;
+    const std::lock_guard lock(mutex_);
+    failure_ = name_ + ": no more frames (error " + std::to_string(code) +
+               " of the library): the camera was disconnected, or a recording of fakenect has ended";
+    changed_.notify_one();
+  }
 
   static FreenectCamera& of(freenect_device* device) {
     return *static_cast<FreenectCamera*>(freenect_get_user(device));
   }
-  void depth_came(const void* pixels, std::uint32_t ticks);
-  void colour_came(const void* pixels);
-  double stamp_s(std::uint32_t ticks, double arrived_s);
+
+  void depth_came(const void* pixels, std::uint32_t ticks) {
+    const double arrived_s = host_.now_s();
+    const double captured_s = clock_.captured_s(stamp_s(ticks, arrived_s), arrived_s);
+    const auto width = static_cast<std::size_t>(view_.camera.width);
+    const auto bytes = static_cast<std::size_t>(depth_mode_.bytes);
+    const std::lock_guard lock(mutex_);
+    copy_depth({pixels, bytes, depth_mode_.width, depth_mode_.height, 2 * width}, view_.camera,
+               newest_.depth);
+    if (gives_shifts_)
+      for (std::uint16_t& value : newest_.depth) value = value < kShifts ? depth_of_shift_[value] : 0;
+    newest_.colour = colour_;
+    newest_.number = ++number_;
+    newest_.captured_s = captured_s;
+    is_new_ = true;
+    changed_.notify_one();
+  }
+
+  void colour_came(const void* pixels) {
+    const auto width = static_cast<std::size_t>(view_.camera.width);
+    const auto bytes = static_cast<std::size_t>(colour_mode_.bytes);
+    copy_rgb({pixels, bytes, colour_mode_.width, colour_mode_.height, 3 * width}, view_.camera, colour_);
+  }
+
+  // The time stamps wrap every 72 s. The number of wraps between two frames follows from the host's clock.
+  double stamp_s(std::uint32_t ticks, double arrived_s) {
+    const double passed_s = static_cast<double>(ticks - ticks_) / kTicksPerSecond;
+    const double turn_s = kTicksPerTurn / kTicksPerSecond;
+    const double turns = number_ == 0 ? 0 : std::round((arrived_s - arrived_s_ - passed_s) / turn_s);
+    stamp_s_ += passed_s + std::max(turns, 0.0) * turn_s;
+    ticks_ = ticks, arrived_s_ = arrived_s;
+    return stamp_s_;
+  }
 
   const Clock& host_;
   std::string name_;
@@ -136,140 +259,6 @@ class FreenectCamera final : public DepthSource {
 
   std::jthread thread_;
 };
-
-FreenectCamera::FreenectCamera(const std::string& address, const Clock& host) : host_(host) {
-  open_device(address);
-  choose_modes();
-  start();
-}
-
-void FreenectCamera::open_device(const std::string& address) {
-  const int number = number_of(address);
-  name_ = "freenect:" + std::to_string(number);
-  context_ = start_library();
-  const int count = freenect_num_devices(context_.get());
-  if (number >= count)
-    throw InputError(name_,
-                     (count <= 0 ? std::string("no Kinect is plugged in")
-                                 : std::to_string(count) + " Kinects are plugged in, numbered from 0") +
-                         ": expected one that this user may open (lsusb, udev rules)");
-  freenect_device* device = nullptr;
-  const int code = freenect_open_device(context_.get(), &device, number);
-  if (code < 0)
-    throw InputError(name_, "cannot be opened (libusb says " + std::to_string(code) +
-                                "); another program or the kernel's module gspca_kinect may hold it");
-  device_.reset(device);
-}
-
-void FreenectCamera::choose_modes() {
-  const std::optional<freenect_frame_mode> registered = depth_mode(FREENECT_DEPTH_REGISTERED);
-  const std::optional<freenect_frame_mode> colour = colour_mode();
-  std::optional<freenect_frame_mode> depth = registered;
-  if (!depth) depth = depth_mode(FREENECT_DEPTH_MM);
-  if (!depth) {
-    depth = depth_mode(FREENECT_DEPTH_11BIT);
-    gives_shifts_ = true;
-    depth_of_shift_ = depth_of_shifts();
-  }
-  if (!depth || depth->bytes != 2 * depth->width * depth->height)
-    throw InputError(name_, "the library has no depth mode of 640 x 480 pixels in 16 bits");
-  if (freenect_set_depth_mode(device_.get(), *depth) < 0)
-    throw InputError(name_, "the camera refuses its depth mode");
-  depth_mode_ = *depth;
-  view_.has_colour = registered && colour && colour->bytes == 3 * depth->width * depth->height &&
-                     freenect_set_video_mode(device_.get(), *colour) >= 0;
-  if (view_.has_colour) colour_mode_ = *colour;
-  const double focal_length = registered ? kColourFocalLength : kInfraredFocalLength;
-  view_.camera = {depth->width,
-                  depth->height,
-                  focal_length,
-                  focal_length,
-                  0.5 * (depth->width - 1),
-                  0.5 * (depth->height - 1)};
-  view_.frame_rate_hz = depth->framerate;
-}
-
-void FreenectCamera::start() {
-  freenect_set_user(device_.get(), this);
-  freenect_set_depth_callback(device_.get(), [](freenect_device* device, void* pixels, std::uint32_t ticks) {
-    of(device).depth_came(pixels, ticks);
-  });
-  freenect_set_video_callback(device_.get(), [](freenect_device* device, void* pixels, std::uint32_t) {
-    of(device).colour_came(pixels);
-  });
-  if (freenect_start_depth(device_.get()) < 0) throw InputError(name_, "depth does not start");
-  if (view_.has_colour && freenect_start_video(device_.get()) < 0) view_.has_colour = false;
-  // Signals are blocked in the new thread: the program's other threads handle them.
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  thread_ = std::jthread([this](const std::stop_token& stop) { process_events(stop); });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-}
-
-FreenectCamera::~FreenectCamera() {
-  thread_.request_stop();
-  thread_.join();
-  if (view_.has_colour) freenect_stop_video(device_.get());
-  freenect_stop_depth(device_.get());
-}
-
-void FreenectCamera::process_events(const std::stop_token& stop) {
-  int code = 0;
-  while (!stop.stop_requested() && code >= 0) {
-    timeval wait{0, 100'000};
-    code = freenect_process_events_timeout(context_.get(), &wait);
-  }
-  if (code >= 0) return;
-  const std::lock_guard lock(mutex_);
-  failure_ = name_ + ": no more frames (error " + std::to_string(code) +
-             " of the library): the camera was disconnected, or a recording of fakenect has ended";
-  changed_.notify_one();
-}
-
-void FreenectCamera::colour_came(const void* pixels) {
-  const auto width = static_cast<std::size_t>(view_.camera.width);
-  const auto bytes = static_cast<std::size_t>(colour_mode_.bytes);
-  copy_rgb({pixels, bytes, colour_mode_.width, colour_mode_.height, 3 * width}, view_.camera, colour_);
-}
-
-void FreenectCamera::depth_came(const void* pixels, std::uint32_t ticks) {
-  const double arrived_s = host_.now_s();
-  const double captured_s = clock_.captured_s(stamp_s(ticks, arrived_s), arrived_s);
-  const auto width = static_cast<std::size_t>(view_.camera.width);
-  const auto bytes = static_cast<std::size_t>(depth_mode_.bytes);
-  const std::lock_guard lock(mutex_);
-  copy_depth({pixels, bytes, depth_mode_.width, depth_mode_.height, 2 * width}, view_.camera, newest_.depth);
-  if (gives_shifts_)
-    for (std::uint16_t& value : newest_.depth) value = value < kShifts ? depth_of_shift_[value] : 0;
-  newest_.colour = colour_;
-  newest_.number = ++number_;
-  newest_.captured_s = captured_s;
-  is_new_ = true;
-  changed_.notify_one();
-}
-
-// The time stamps wrap every 72 s. The number of wraps between two frames follows from the host's clock.
-double FreenectCamera::stamp_s(std::uint32_t ticks, double arrived_s) {
-  const double passed_s = static_cast<double>(ticks - ticks_) / kTicksPerSecond;
-  const double turn_s = kTicksPerTurn / kTicksPerSecond;
-  const double turns = number_ == 0 ? 0 : std::round((arrived_s - arrived_s_ - passed_s) / turn_s);
-  stamp_s_ += passed_s + std::max(turns, 0.0) * turn_s;
-  ticks_ = ticks, arrived_s_ = arrived_s;
-  return stamp_s_;
-}
-
-SensorState FreenectCamera::next(SensorFrame& frame, double timeout_s) {
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, std::chrono::duration<double>(timeout_s),
-                    [this] { return is_new_ || !failure_.empty(); });
-  if (is_new_) {
-    std::swap(frame, newest_);
-    is_new_ = false;
-    return SensorState::frame;
-  }
-  return failure_.empty() ? SensorState::waiting : SensorState::failed;
-}
 
 }  // namespace
 

@@ -117,29 +117,26 @@ struct RealSense {
 
   // Returns the serial numbers; "unknown" for a camera that does not report it, for instance in recovery
   // mode.
-  std::vector<std::string> serials() const;
-  std::string info(const rs2::Device* device, rs2::CameraInfo what) const;
+  std::vector<std::string> serials() const {
+    const auto list = call.held("cameras cannot be listed", rs2.query_devices, context.get());
+    const int count = call("cameras cannot be counted", rs2.get_device_count, list.get());
+    std::vector<std::string> found;
+    for (int i = 0; i < std::min(count, kMaxList); ++i)
+      found.push_back(info(call.held("a camera cannot be queried", rs2.create_device, list.get(), i).get(),
+                           rs2::info_serial_number));
+    return found;
+  }
+
+  std::string info(const rs2::Device* device, rs2::CameraInfo what) const {
+    if (call("does not report its properties", rs2.supports_device_info, device, what) == 0) return "unknown";
+    const char* text = call("does not report its properties", rs2.get_device_info, device, what);
+    return text != nullptr ? text : "unknown";
+  }
 
   const rs2::RealSenseLibrary rs2;
   const rs2::Calls call;
   const rs2::Held<rs2::Context> context;
 };
-
-std::vector<std::string> RealSense::serials() const {
-  const auto list = call.held("cameras cannot be listed", rs2.query_devices, context.get());
-  const int count = call("cameras cannot be counted", rs2.get_device_count, list.get());
-  std::vector<std::string> found;
-  for (int i = 0; i < std::min(count, kMaxList); ++i)
-    found.push_back(info(call.held("a camera cannot be queried", rs2.create_device, list.get(), i).get(),
-                         rs2::info_serial_number));
-  return found;
-}
-
-std::string RealSense::info(const rs2::Device* device, rs2::CameraInfo what) const {
-  if (call("does not report its properties", rs2.supports_device_info, device, what) == 0) return "unknown";
-  const char* text = call("does not report its properties", rs2.get_device_info, device, what);
-  return text != nullptr ? text : "unknown";
-}
 
 // Stops a pipeline that has been started.
 struct StopPipeline {
@@ -153,23 +150,188 @@ struct StopPipeline {
 
 class RealSenseCamera final : public DepthSource {
  public:
-  RealSenseCamera(const std::string& address, Clock& host);
+  RealSenseCamera(const std::string& address, Clock& host)
+      : host_(host), name_(address.empty() ? "realsense" : "realsense:" + address), real_sense_(name_) {
+    config_ = call_.held("depth cannot be requested", rs2_.create_config);
+    choose(address);
+    start();
+    describe(depth_intrinsics());
+    connected_s_ = host_.now_s();
+  }
 
-  SensorState next(SensorFrame& frame, double timeout_s) override;
+  SensorState next(SensorFrame& frame, double timeout_s) override try {
+    if (!failure_.empty()) return SensorState::failed;
+    const double deadline_s = host_.now_s() + timeout_s;
+    while (true) {
+      double arrived_s = 0;
+      const rs2::Held<rs2::Frame> depth = newest_depth(arrived_s);
+      if (depth && take(depth.get(), arrived_s, frame)) return SensorState::frame;
+      check_connection();
+      const double remaining_s = deadline_s - host_.now_s();
+      if (remaining_s <= 0) return SensorState::waiting;
+      host_.sleep_s(std::clamp(remaining_s, 0.1 * kPoll_s, kPoll_s));
+    }
+  } catch (const InputError& error) {
+    failure_ = error.what();
+    return SensorState::failed;
+  }
 
  private:
-  void choose(const std::string& serial);
-  void start();
-  rs2::Intrinsics depth_intrinsics() const;
-  double depth_scale() const;
-  void describe(const rs2::Intrinsics& intrinsics);
+  void choose(const std::string& serial) {
+    const std::vector<std::string> known = real_sense_.serials();
+    if (known.empty())
+      call_.refuse(
+          "no camera is plugged in: expected one at USB that this user may open (lsusb, udev rules)");
+    if (serial.empty()) return;
+    if (std::find(known.begin(), known.end(), serial) == known.end())
+      call_.refuse("no camera has this serial number: expected " + list_of(known));
+    call_("cannot be chosen", rs2_.config_enable_device, config_.get(), serial.c_str());
+  }
 
-  bool is_depth(const rs2::Stream* stream) const;
-  rs2::Held<rs2::Frame> newest_depth(double& arrived_s) const;
-  rs2::Held<rs2::Frame> depth_of(rs2::Held<rs2::Frame> frames) const;
-  bool take(const rs2::Frame* depth, double arrived_s, SensorFrame& frame);
-  PixelRows rows_of(const rs2::Frame* depth) const;
-  void check_connection();
+  void start() {
+    call_("depth cannot be requested", rs2_.config_enable_stream, config_.get(), rs2::stream_depth, kAnyIndex,
+          kRealSenseWidth, kRealSenseHeight, rs2::format_z16, kRealSenseRate_hz);
+    hub_ = call_.held("disconnection cannot be detected", rs2_.create_device_hub, real_sense_.context.get());
+    pipeline_ = call_.held("depth does not start", rs2_.create_pipeline, real_sense_.context.get());
+    profile_ = call_.held(
+        "depth of 640 x 480 pixels at 30 Hz does not start; another program may be using the camera",
+        rs2_.pipeline_start_with_config, pipeline_.get(), config_.get());
+    running_.reset(pipeline_.get());
+    device_ = call_.held("does not report its properties", rs2_.pipeline_profile_get_device, profile_.get());
+  }
+
+  rs2::Intrinsics depth_intrinsics() const {
+    const auto streams =
+        call_.held("does not list its streams", rs2_.pipeline_profile_get_streams, profile_.get());
+    const int count = call_("does not list its streams", rs2_.get_stream_profiles_count, streams.get());
+    for (int i = 0; i < std::min(count, kMaxList); ++i) {
+      const rs2::Stream* stream =
+          call_("does not list its streams", rs2_.get_stream_profile, streams.get(), i);
+      if (stream == nullptr || !is_depth(stream)) continue;
+      rs2::Intrinsics intrinsics{};
+      call_("does not report its intrinsics", rs2_.get_video_stream_intrinsics, stream, &intrinsics);
+      return intrinsics;
+    }
+    call_.refuse("sends no depth in 16 bits");
+  }
+
+  double depth_scale() const {
+    const auto sensors = call_.held("does not list its sensors", rs2_.query_sensors, device_.get());
+    const int count = call_("does not list its sensors", rs2_.get_sensors_count, sensors.get());
+    for (int i = 0; i < std::min(count, kMaxList); ++i) {
+      const auto sensor = call_.held("does not list its sensors", rs2_.create_sensor, sensors.get(), i);
+      if (call_("does not list its sensors", rs2_.is_sensor_extendable_to, sensor.get(),
+                rs2::is_depth_sensor) == 0)
+        continue;
+      return static_cast<double>(call_("does not report its depth unit", rs2_.get_depth_scale, sensor.get()));
+    }
+    call_.refuse("has no depth sensor");
+  }
+
+  void describe(const rs2::Intrinsics& intrinsics) {
+    view_.metres_per_unit = depth_scale();
+    view_.frame_rate_hz = kRealSenseRate_hz;
+    if (!(view_.metres_per_unit > 0 && view_.metres_per_unit <= 1))
+      call_.refuse("reports depth in units of " + std::to_string(view_.metres_per_unit) +
+                   " m: expected more than 0, 1 at most");
+    const bool is_camera = intrinsics.width > 0 && intrinsics.height > 0 && intrinsics.fx > 0 &&
+                           intrinsics.fy > 0 && std::isfinite(intrinsics.fx) &&
+                           std::isfinite(intrinsics.fy) && std::isfinite(intrinsics.ppx) &&
+                           std::isfinite(intrinsics.ppy);
+    if (!is_camera)
+      call_.refuse("reports no usable intrinsics: expected finite numbers and a focal length above 0");
+    view_.camera = {intrinsics.width, intrinsics.height, intrinsics.fx,
+                    intrinsics.fy,    intrinsics.ppx,    intrinsics.ppy};
+    if (!rs2::has_distortion(intrinsics)) return;
+    undistortion_.emplace(name_, intrinsics.width, intrinsics.height, rs2::lens_of(name_, rs2_, intrinsics));
+    view_.camera = undistortion_->camera();
+  }
+
+  bool is_depth(const rs2::Stream* stream) const {
+    rs2::StreamKind kind{};
+    rs2::Format format{};
+    int index = 0, id = 0, rate_hz = 0;
+    call_("a stream does not report its format", rs2_.get_stream_profile_data, stream, &kind, &format, &index,
+          &id, &rate_hz);
+    return kind == rs2::stream_depth && format == rs2::format_z16;
+  }
+
+  rs2::Held<rs2::Frame> newest_depth(double& arrived_s) const {
+    rs2::Held<rs2::Frame> newest(nullptr, {&rs2_});
+    for (int i = 0; i < kMaxList; ++i) {
+      rs2::Frame* next = nullptr;
+      if (call_("sends no more frames", rs2_.pipeline_poll_for_frames, pipeline_.get(), &next) == 0 ||
+          next == nullptr)
+        break;
+      newest.reset(next);
+      arrived_s = host_.now_s();
+    }
+    return newest ? depth_of(std::move(newest)) : std::move(newest);
+  }
+
+  // Returns the depth frame; the library may deliver frames of several streams as one composite frame.
+  rs2::Held<rs2::Frame> depth_of(rs2::Held<rs2::Frame> frames) const {
+    const char* problem = "a frame cannot be read";
+    if (call_(problem, rs2_.is_frame_extendable_to, frames.get(), rs2::is_composite_frame) == 0) {
+      if (!is_depth(call_(problem, rs2_.get_frame_stream_profile, frames.get()))) frames.reset();
+      return frames;
+    }
+    const int count = call_(problem, rs2_.embedded_frames_count, frames.get());
+    for (int i = 0; i < std::min(count, kMaxList); ++i) {
+      rs2::Held<rs2::Frame> frame = call_.held(problem, rs2_.extract_frame, frames.get(), i);
+      if (is_depth(call_(problem, rs2_.get_frame_stream_profile, frame.get()))) return frame;
+    }
+    frames.reset();
+    return frames;
+  }
+
+  // Copies the depth into the frame. Returns false if it is the same frame as before.
+  bool take(const rs2::Frame* depth, double arrived_s, SensorFrame& frame) {
+    const char* problem = "a frame cannot be read";
+    const double stamp_s = 1e-3 * call_(problem, rs2_.get_frame_timestamp, depth);
+    const unsigned long long counted = call_(problem, rs2_.get_frame_number, depth);
+    if (!std::isfinite(stamp_s)) call_.refuse("a frame has no time stamp");
+    connected_s_ = arrived_s;
+    if (stamp_s_ && stamp_s == *stamp_s_ && counted == counted_) return false;
+    const PixelRows rows = rows_of(depth);
+    if (!copy_depth(rows, view_.camera, seen_))
+      call_.refuse("a frame is " + std::to_string(rows.width) + " x " + std::to_string(rows.height) +
+                   " pixels in " + std::to_string(rows.bytes) +
+                   " bytes: expected those of the camera's mode");
+    if (undistortion_)
+      undistortion_->apply(seen_, frame.depth);
+    else
+      std::swap(seen_, frame.depth);
+    frame.colour.clear();
+    const bool is_count_continued = stamp_s_ && counted > counted_;
+    frame.number = numbers_.next(is_count_continued ? static_cast<double>(counted - counted_) : 1);
+    frame.captured_s = clock_.captured_s(stamp_s, arrived_s);
+    stamp_s_ = stamp_s, counted_ = counted;
+    return true;
+  }
+
+  PixelRows rows_of(const rs2::Frame* depth) const {
+    const char* problem = "a frame cannot be read";
+    PixelRows rows;
+    rows.first = call_(problem, rs2_.get_frame_data, depth);
+    rows.width = call_(problem, rs2_.get_frame_width, depth);
+    rows.height = call_(problem, rs2_.get_frame_height, depth);
+    rows.stride =
+        static_cast<std::size_t>(std::max(call_(problem, rs2_.get_frame_stride_in_bytes, depth), 0));
+    rows.bytes = rs2_.get_frame_data_size != nullptr
+                     ? static_cast<std::size_t>(std::max(call_(problem, rs2_.get_frame_data_size, depth), 0))
+                     : rows.stride * static_cast<std::size_t>(std::max(rows.height, 0));
+    return rows;
+  }
+
+  // Checks every kCheckAfter_s that the camera is still connected, as long as no frame comes.
+  void check_connection() {
+    if (host_.now_s() - connected_s_ < kCheckAfter_s) return;
+    connected_s_ = host_.now_s();
+    if (call_("cannot be checked for disconnection", rs2_.device_hub_is_device_connected, hub_.get(),
+              device_.get()) == 0)
+      call_.refuse("was disconnected");
+  }
 
   Clock& host_;
   const std::string name_;
@@ -192,183 +354,6 @@ class RealSenseCamera final : public DepthSource {
   double connected_s_ = 0;          // when the camera was last known to be connected
   std::vector<std::uint16_t> seen_;
 };
-
-RealSenseCamera::RealSenseCamera(const std::string& address, Clock& host)
-    : host_(host), name_(address.empty() ? "realsense" : "realsense:" + address), real_sense_(name_) {
-  config_ = call_.held("depth cannot be requested", rs2_.create_config);
-  choose(address);
-  start();
-  describe(depth_intrinsics());
-  connected_s_ = host_.now_s();
-}
-
-void RealSenseCamera::choose(const std::string& serial) {
-  const std::vector<std::string> known = real_sense_.serials();
-  if (known.empty())
-    call_.refuse("no camera is plugged in: expected one at USB that this user may open (lsusb, udev rules)");
-  if (serial.empty()) return;
-  if (std::find(known.begin(), known.end(), serial) == known.end())
-    call_.refuse("no camera has this serial number: expected " + list_of(known));
-  call_("cannot be chosen", rs2_.config_enable_device, config_.get(), serial.c_str());
-}
-
-void RealSenseCamera::start() {
-  call_("depth cannot be requested", rs2_.config_enable_stream, config_.get(), rs2::stream_depth, kAnyIndex,
-        kRealSenseWidth, kRealSenseHeight, rs2::format_z16, kRealSenseRate_hz);
-  hub_ = call_.held("disconnection cannot be detected", rs2_.create_device_hub, real_sense_.context.get());
-  pipeline_ = call_.held("depth does not start", rs2_.create_pipeline, real_sense_.context.get());
-  profile_ =
-      call_.held("depth of 640 x 480 pixels at 30 Hz does not start; another program may be using the camera",
-                 rs2_.pipeline_start_with_config, pipeline_.get(), config_.get());
-  running_.reset(pipeline_.get());
-  device_ = call_.held("does not report its properties", rs2_.pipeline_profile_get_device, profile_.get());
-}
-
-bool RealSenseCamera::is_depth(const rs2::Stream* stream) const {
-  rs2::StreamKind kind{};
-  rs2::Format format{};
-  int index = 0, id = 0, rate_hz = 0;
-  call_("a stream does not report its format", rs2_.get_stream_profile_data, stream, &kind, &format, &index,
-        &id, &rate_hz);
-  return kind == rs2::stream_depth && format == rs2::format_z16;
-}
-
-rs2::Intrinsics RealSenseCamera::depth_intrinsics() const {
-  const auto streams =
-      call_.held("does not list its streams", rs2_.pipeline_profile_get_streams, profile_.get());
-  const int count = call_("does not list its streams", rs2_.get_stream_profiles_count, streams.get());
-  for (int i = 0; i < std::min(count, kMaxList); ++i) {
-    const rs2::Stream* stream = call_("does not list its streams", rs2_.get_stream_profile, streams.get(), i);
-    if (stream == nullptr || !is_depth(stream)) continue;
-    rs2::Intrinsics intrinsics{};
-    call_("does not report its intrinsics", rs2_.get_video_stream_intrinsics, stream, &intrinsics);
-    return intrinsics;
-  }
-  call_.refuse("sends no depth in 16 bits");
-}
-
-double RealSenseCamera::depth_scale() const {
-  const auto sensors = call_.held("does not list its sensors", rs2_.query_sensors, device_.get());
-  const int count = call_("does not list its sensors", rs2_.get_sensors_count, sensors.get());
-  for (int i = 0; i < std::min(count, kMaxList); ++i) {
-    const auto sensor = call_.held("does not list its sensors", rs2_.create_sensor, sensors.get(), i);
-    if (call_("does not list its sensors", rs2_.is_sensor_extendable_to, sensor.get(),
-              rs2::is_depth_sensor) == 0)
-      continue;
-    return static_cast<double>(call_("does not report its depth unit", rs2_.get_depth_scale, sensor.get()));
-  }
-  call_.refuse("has no depth sensor");
-}
-
-void RealSenseCamera::describe(const rs2::Intrinsics& intrinsics) {
-  view_.metres_per_unit = depth_scale();
-  view_.frame_rate_hz = kRealSenseRate_hz;
-  if (!(view_.metres_per_unit > 0 && view_.metres_per_unit <= 1))
-    call_.refuse("reports depth in units of " + std::to_string(view_.metres_per_unit) +
-                 " m: expected more than 0, 1 at most");
-  const bool is_camera = intrinsics.width > 0 && intrinsics.height > 0 && intrinsics.fx > 0 &&
-                         intrinsics.fy > 0 && std::isfinite(intrinsics.fx) && std::isfinite(intrinsics.fy) &&
-                         std::isfinite(intrinsics.ppx) && std::isfinite(intrinsics.ppy);
-  if (!is_camera)
-    call_.refuse("reports no usable intrinsics: expected finite numbers and a focal length above 0");
-  view_.camera = {intrinsics.width, intrinsics.height, intrinsics.fx,
-                  intrinsics.fy,    intrinsics.ppx,    intrinsics.ppy};
-  if (!rs2::has_distortion(intrinsics)) return;
-  undistortion_.emplace(name_, intrinsics.width, intrinsics.height, rs2::lens_of(name_, rs2_, intrinsics));
-  view_.camera = undistortion_->camera();
-}
-
-SensorState RealSenseCamera::next(SensorFrame& frame, double timeout_s) try {
-  if (!failure_.empty()) return SensorState::failed;
-  const double deadline_s = host_.now_s() + timeout_s;
-  while (true) {
-    double arrived_s = 0;
-    const rs2::Held<rs2::Frame> depth = newest_depth(arrived_s);
-    if (depth && take(depth.get(), arrived_s, frame)) return SensorState::frame;
-    check_connection();
-    const double remaining_s = deadline_s - host_.now_s();
-    if (remaining_s <= 0) return SensorState::waiting;
-    host_.sleep_s(std::clamp(remaining_s, 0.1 * kPoll_s, kPoll_s));
-  }
-} catch (const InputError& error) {
-  failure_ = error.what();
-  return SensorState::failed;
-}
-
-// Checks every kCheckAfter_s that the camera is still connected, as long as no frame comes.
-void RealSenseCamera::check_connection() {
-  if (host_.now_s() - connected_s_ < kCheckAfter_s) return;
-  connected_s_ = host_.now_s();
-  if (call_("cannot be checked for disconnection", rs2_.device_hub_is_device_connected, hub_.get(),
-            device_.get()) == 0)
-    call_.refuse("was disconnected");
-}
-
-rs2::Held<rs2::Frame> RealSenseCamera::newest_depth(double& arrived_s) const {
-  rs2::Held<rs2::Frame> newest(nullptr, {&rs2_});
-  for (int i = 0; i < kMaxList; ++i) {
-    rs2::Frame* next = nullptr;
-    if (call_("sends no more frames", rs2_.pipeline_poll_for_frames, pipeline_.get(), &next) == 0 ||
-        next == nullptr)
-      break;
-    newest.reset(next);
-    arrived_s = host_.now_s();
-  }
-  return newest ? depth_of(std::move(newest)) : std::move(newest);
-}
-
-// Returns the depth frame; the library may deliver frames of several streams as one composite frame.
-rs2::Held<rs2::Frame> RealSenseCamera::depth_of(rs2::Held<rs2::Frame> frames) const {
-  const char* problem = "a frame cannot be read";
-  if (call_(problem, rs2_.is_frame_extendable_to, frames.get(), rs2::is_composite_frame) == 0) {
-    if (!is_depth(call_(problem, rs2_.get_frame_stream_profile, frames.get()))) frames.reset();
-    return frames;
-  }
-  const int count = call_(problem, rs2_.embedded_frames_count, frames.get());
-  for (int i = 0; i < std::min(count, kMaxList); ++i) {
-    rs2::Held<rs2::Frame> frame = call_.held(problem, rs2_.extract_frame, frames.get(), i);
-    if (is_depth(call_(problem, rs2_.get_frame_stream_profile, frame.get()))) return frame;
-  }
-  frames.reset();
-  return frames;
-}
-
-PixelRows RealSenseCamera::rows_of(const rs2::Frame* depth) const {
-  const char* problem = "a frame cannot be read";
-  PixelRows rows;
-  rows.first = call_(problem, rs2_.get_frame_data, depth);
-  rows.width = call_(problem, rs2_.get_frame_width, depth);
-  rows.height = call_(problem, rs2_.get_frame_height, depth);
-  rows.stride = static_cast<std::size_t>(std::max(call_(problem, rs2_.get_frame_stride_in_bytes, depth), 0));
-  rows.bytes = rs2_.get_frame_data_size != nullptr
-                   ? static_cast<std::size_t>(std::max(call_(problem, rs2_.get_frame_data_size, depth), 0))
-                   : rows.stride * static_cast<std::size_t>(std::max(rows.height, 0));
-  return rows;
-}
-
-// Copies the depth into the frame. Returns false if it is the same frame as before.
-bool RealSenseCamera::take(const rs2::Frame* depth, double arrived_s, SensorFrame& frame) {
-  const char* problem = "a frame cannot be read";
-  const double stamp_s = 1e-3 * call_(problem, rs2_.get_frame_timestamp, depth);
-  const unsigned long long counted = call_(problem, rs2_.get_frame_number, depth);
-  if (!std::isfinite(stamp_s)) call_.refuse("a frame has no time stamp");
-  connected_s_ = arrived_s;
-  if (stamp_s_ && stamp_s == *stamp_s_ && counted == counted_) return false;
-  const PixelRows rows = rows_of(depth);
-  if (!copy_depth(rows, view_.camera, seen_))
-    call_.refuse("a frame is " + std::to_string(rows.width) + " x " + std::to_string(rows.height) +
-                 " pixels in " + std::to_string(rows.bytes) + " bytes: expected those of the camera's mode");
-  if (undistortion_)
-    undistortion_->apply(seen_, frame.depth);
-  else
-    std::swap(seen_, frame.depth);
-  frame.colour.clear();
-  const bool is_count_continued = stamp_s_ && counted > counted_;
-  frame.number = numbers_.next(is_count_continued ? static_cast<double>(counted - counted_) : 1);
-  frame.captured_s = clock_.captured_s(stamp_s, arrived_s);
-  stamp_s_ = stamp_s, counted_ = counted;
-  return true;
-}
 
 }  // namespace
 
