@@ -11,7 +11,7 @@ namespace {
 void read(std::string_view bytes) {
   const auto message = remote_touch::page_message(bytes);
   if (!message) return;
-  const auto* const hand = std::get_if<HandPose>(&*message);
+  const auto* const hand = std::get_if<DeviceState>(&*message);
   if (!hand) return;
   require(hand->position_W.cwiseAbs().maxCoeff() <= kMaxHandDistance_m, "a hand is near");
   require(std::abs(hand->orientation_W.norm() - 1) < 1e-9, "an orientation is a unit quaternion");

@@ -27,7 +27,7 @@ void BrowserDevice::request(const HandMotion& motion) {
     velocity_m_per_s_.setZero();
   }
   stops_ = motion.stops;
-  const HandPose &from = motion.from, &to = motion.to;
+  const DeviceState &from = motion.from, &to = motion.to;
   wanted_.position_W = (stopped_.position_W + to.position_W - from.position_W)
                            .cwiseMax(-kMaxHandDistance_m)
                            .cwiseMin(kMaxHandDistance_m);

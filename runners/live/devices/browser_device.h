@@ -16,19 +16,13 @@
 
 namespace remote_touch {
 
-// A pose of the hand that a page requests, in the world frame.
-struct HandPose {
-  Vec3 position_W = Vec3::Zero();
-  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
-  std::uint32_t buttons = 0;
-};
 inline constexpr double kMaxHandDistance_m = 10;  // limit from the origin, along each axis
 
 // The motion that a page requests: by `to` relative to `from`, from where the hand was stopped. The buttons
 // are those of `to`. When `stops` has changed, the tick that reads it stops the hand where it is then,
 // because only the loop knows the present place.
 struct HandMotion {
-  HandPose from, to;
+  DeviceState from, to;
   std::uint32_t stops = 0;
 };
 
@@ -62,7 +56,7 @@ class BrowserDevice final : public HapticDevice {
 
   const std::shared_ptr<HandPoses> poses_;
   const DevicePlacement placement_;
-  HandPose stopped_, wanted_;
+  DeviceState stopped_, wanted_;
   std::uint32_t stops_ = 0;
   DeviceState now_;
   Vec3 velocity_m_per_s_ = Vec3::Zero();

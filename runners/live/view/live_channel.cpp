@@ -23,7 +23,7 @@ void PageHand::pass_on() {
   publish();
 }
 
-void PageHand::move(const HandPose& of_page) {
+void PageHand::move(const DeviceState& of_page) {
   if (!page_start_) page_start_ = of_page;
   motion_.from = *page_start_;
   motion_.to = of_page;
@@ -295,7 +295,7 @@ bool LiveChannel::receive(std::string_view bytes) {
     acknowledged_ = acknowledged->number;
   } else if (const auto* changes = std::get_if<ParameterChanges>(&*message)) {
     tell_parameters(controls_->change(*changes));
-  } else if (const auto* pose = std::get_if<HandPose>(&*message)) {
+  } else if (const auto* pose = std::get_if<DeviceState>(&*message)) {
     hand_->move(*pose);
   } else {
     return false;  // LivePages handles requests for the hand

@@ -39,7 +39,7 @@ class PageHand {
   // A pose from the page that has the hand. The first pose after pass_on() is the reference and does not move
   // the hand. Each later pose displaces the hand, from where it was stopped, by the motion of the page since
   // the reference. So no page can make the hand jump by a wrong idea of where it is.
-  void move(const HandPose& of_page);
+  void move(const DeviceState& of_page);
   // Releases the buttons, because the user can no longer do so.
   void release_buttons();
 
@@ -47,8 +47,8 @@ class PageHand {
   void publish();
 
   const std::shared_ptr<HandPoses> poses_;
-  std::optional<HandPose> page_start_;  // the first pose of the page that has the hand
-  HandMotion motion_;                   // the newest motion published
+  std::optional<DeviceState> page_start_;  // the first pose of the page that has the hand
+  HandMotion motion_;                      // the newest motion published
 };
 
 // The messages of a live run to its page. Numbers are little endian, and begin at multiples of eight bytes.

@@ -63,8 +63,8 @@ T number_at(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-std::optional<HandPose> hand(std::string_view bytes) {
-  HandPose pose;
+std::optional<DeviceState> hand(std::string_view bytes) {
+  DeviceState pose;
   pose.buttons = number_at<std::uint32_t>(bytes, 4);
   for (int k = 0; k < 3; ++k) {
     pose.position_W[k] = number_at<double>(bytes, 8 + 8 * static_cast<std::size_t>(k));

@@ -40,7 +40,7 @@ struct PageAcknowledgement {
 // The user of the page asks for the hand and the sliders of another page.
 struct HandRequest {};
 
-using PageMessage = std::variant<HandPose, PageAcknowledgement, ParameterChanges, HandRequest>;
+using PageMessage = std::variant<DeviceState, PageAcknowledgement, ParameterChanges, HandRequest>;
 
 inline constexpr std::size_t kMaxPageMessage = 8 + 16 * ParameterChanges::kMax;  // bytes
 

@@ -24,7 +24,7 @@ class BrowserDeviceTest : public testing::Test {
     }
     return reading;
   }
-  void want(const HandPose& pose) { request({{start_.position_W, start_.orientation_W, 0}, pose}); }
+  void want(const DeviceState& pose) { request({{start_.position_W, start_.orientation_W, 0}, pose}); }
   void request(const HandMotion& motion) {
     poses_->back() = motion;
     poses_->publish();
@@ -56,7 +56,7 @@ TEST_F(BrowserDeviceTest, FollowsAsACriticallyDampedSpringWould) {
 
 TEST_F(BrowserDeviceTest, IsNeverFasterThanItsLimits) {
   after(1);
-  HandPose far{start_.position_W + Vec3(1, 0, 0)};
+  DeviceState far{start_.position_W + Vec3(1, 0, 0)};
   far.orientation_W = Eigen::AngleAxisd(3, Vec3::UnitZ());
   want(far);
   DeviceReading before = after(1);
@@ -74,7 +74,7 @@ TEST_F(BrowserDeviceTest, IsNeverFasterThanItsLimits) {
 }
 
 TEST_F(BrowserDeviceTest, TurnsToThePoseAndReportsTheButtons) {
-  HandPose turned{start_.position_W};
+  DeviceState turned{start_.position_W};
   turned.orientation_W = Eigen::AngleAxisd(0.5, Vec3(1, 2, 2) / 3);
   turned.buttons = 3;
   want(turned);

@@ -51,7 +51,7 @@ TEST(RequestCheck, EveryRefusalSaysWhatToDo) {
 TEST(PageMessage, AHandIsReadWithItsButtons) {
   const auto message = page_message(hand_bytes({0.1, -0.2, 3}, 5, {0.6, 0, 0.8, 0}));
   ASSERT_TRUE(message);
-  const HandPose pose = std::get<HandPose>(*message);
+  const DeviceState pose = std::get<DeviceState>(*message);
   EXPECT_EQ(pose.position_W, Vec3(0.1, -0.2, 3));
   EXPECT_NEAR(pose.orientation_W.angularDistance(Eigen::Quaterniond(0.6, 0, 0.8, 0)), 0, 1e-12);
   EXPECT_EQ(pose.buttons, 5u);
@@ -60,7 +60,7 @@ TEST(PageMessage, AHandIsReadWithItsButtons) {
 TEST(PageMessage, AQuaternionThatIsNearlyUnitIsMadeSo) {
   const auto message = page_message(hand_bytes(Vec3::Zero(), 0, {1.005, 0, 0, 0}));
   ASSERT_TRUE(message);
-  EXPECT_DOUBLE_EQ(std::get<HandPose>(*message).orientation_W.norm(), 1);
+  EXPECT_DOUBLE_EQ(std::get<DeviceState>(*message).orientation_W.norm(), 1);
 }
 
 TEST(PageMessage, AnAcknowledgementIsRead) {
@@ -142,7 +142,7 @@ TEST(PageMessage, RandomBytesDoNoHarm) {
     if (bytes.size() > 3 && i % 2 == 0) bytes.replace(0, 4, std::string("\1\0\0\0", 4));
     const auto message = page_message(bytes);
     if (!message) continue;
-    if (const auto* pose = std::get_if<HandPose>(&*message)) {
+    if (const auto* pose = std::get_if<DeviceState>(&*message)) {
       EXPECT_LE(pose->position_W.lpNorm<Eigen::Infinity>(), kMaxHandDistance_m);
       EXPECT_NEAR(pose->orientation_W.norm(), 1, 1e-12);
     }
