@@ -4,7 +4,6 @@
 
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/live/devices/adapters.h"
-#include "runners/live/devices/browser_device.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/devices/haply.h"
@@ -14,28 +13,19 @@ namespace remote_touch {
 
 namespace {
 
-// The trajectory of an experiment. It owns the scenario, because it may read the scenario's frames at any
-// time.
-class Script final : public Trajectory {
- public:
-  explicit Script(const DeviceContext& context)
-      : scenario_(context.experiment.build_scenario(context.kernels)),
-        trajectory_(context.experiment.build_trajectory(*scenario_)) {}
-  DeviceState at(double time_s) const override { return trajectory_->at(time_s); }
-  double duration_s() const override { return trajectory_->duration_s(); }
-  bool is_missed(double time_s) const override { return trajectory_->is_missed(time_s); }
-
- private:
-  const std::shared_ptr<const Scenario> scenario_;
-  const std::unique_ptr<const Trajectory> trajectory_;
-};
+// Returns the trajectory of an experiment. It keeps the scenario, whose frames it may read at any time.
+std::shared_ptr<const Trajectory> script_of(const DeviceContext& context) {
+  const std::shared_ptr<const Scenario> scenario = context.experiment.build_scenario(context.kernels);
+  const std::shared_ptr<const Trajectory> trajectory = context.experiment.build_trajectory(*scenario);
+  return {trajectory.get(), [scenario, trajectory](const Trajectory*) {}};
+}
 
 // The hand starts at the first pose of the experiment's trajectory.
 std::unique_ptr<HapticDevice> open_browser(const std::string& address, const DeviceContext& context) {
   if (!address.empty()) throw InputError("--device browser:" + address, "expected browser:");
   if (!context.poses) throw InputError("--device browser:", "needs a page: expected the option --view too");
   const Experiment& experiment = context.experiment;
-  return std::make_unique<BrowserDevice>(context.poses, Script(context).at(0),
+  return std::make_unique<BrowserDevice>(context.poses, script_of(context)->at(0),
                                          DevicePlacement(experiment.live()),
                                          experiment.settings().haptic_rate_hz, context.clock);
 }
@@ -45,13 +35,9 @@ std::unique_ptr<HapticDevice> open_simulated(const std::string& address, const D
   if (!address.empty())
     throw InputError("--device sim:" + address,
                      "expected sim:, for the experiment's trajectory and operator");
-  return std::make_unique<SimulatedDevice>(std::make_unique<Script>(context), experiment.build_hand(),
+  return std::make_unique<SimulatedDevice>(script_of(context), experiment.build_hand(),
                                            DevicePlacement(experiment.live()),
                                            experiment.settings().haptic_rate_hz, context.clock);
-}
-
-std::unique_ptr<HapticDevice> open_haply_service(const std::string& address, Clock& clock) {
-  return open_haply(address, clock);
 }
 
 // Opens the hand of a recorded session. It moves in real time and does not respond to forces.
@@ -80,7 +66,10 @@ constexpr DeviceEntry kDevices[] = {
      open_haptics_availability},
     {"entact", "entact:IP", "Entact W5D and W7D", open_at<open_entact>, entact_availability},
     {"haply", "haply:ws://127.0.0.1:10001", "Haply Inverse3, by the WebSocket of its service",
-     open_at<open_haply_service>, [] { return haply_availability(steady_clock()); }},
+     [](const std::string& address, const DeviceContext& context) {
+       return open_haply(address, context.clock);
+     },
+     [] { return haply_availability(steady_clock()); }},
     {"spnav", "spnav:PATH", "3Dconnexion SpaceMouse, by spacenavd; input only", open_at<open_spacenav>,
      [] { return spacenav_availability("", steady_clock()); }},
     {"replay", "replay:FILE", "the hand of a recorded live session; no hardware", open_session,

@@ -5,7 +5,7 @@
 
 namespace remote_touch {
 
-SimulatedDevice::SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
+SimulatedDevice::SimulatedDevice(std::shared_ptr<const Trajectory> script, const SimulatedHand& hand,
                                  const DevicePlacement& placement, double rate_hz, Clock& clock)
     : HapticDevice(
           clock, {.name = "simulated device", .sensed_axes = 6, .actuated_axes = 6, .tick_rate_hz = rate_hz}),

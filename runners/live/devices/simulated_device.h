@@ -19,7 +19,7 @@ namespace remote_touch {
 class SimulatedDevice final : public HapticDevice {
  public:
   // placement: that of the loop. It is used here in the inverse direction.
-  SimulatedDevice(std::unique_ptr<const Trajectory> script, const SimulatedHand& hand,
+  SimulatedDevice(std::shared_ptr<const Trajectory> script, const SimulatedHand& hand,
                   const DevicePlacement& placement, double rate_hz, Clock& clock);
 
   void start_at(std::int64_t start_ns) override { start_s_ = 1e-9 * static_cast<double>(start_ns); }
@@ -42,7 +42,7 @@ class SimulatedDevice final : public HapticDevice {
   // pause is covered by one longer step before them.
   static constexpr int kMaxTicksAtOnce = 200;
 
-  const std::unique_ptr<const Trajectory> script_;
+  const std::shared_ptr<const Trajectory> script_;
   SimulatedHand hand_;
   const DevicePlacement placement_;
   std::optional<double> start_s_;  // time of the clock at the start
