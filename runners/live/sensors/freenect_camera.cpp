@@ -60,23 +60,24 @@ int number_of(const std::string& address) {
 }
 
 // Enumerates the modes, because the library's own search by format ends the program under fakenect.
-std::optional<freenect_frame_mode> depth_mode(freenect_depth_format format) {
-  for (int i = 0; i < freenect_get_depth_mode_count(); ++i) {
-    const freenect_frame_mode mode = freenect_get_depth_mode(i);
-    if (mode.is_valid && mode.resolution == FREENECT_RESOLUTION_MEDIUM && mode.depth_format == format)
+template <class IsWanted>
+std::optional<freenect_frame_mode> mode_of(int count, freenect_frame_mode (*mode_at)(int),
+                                           IsWanted is_wanted) {
+  for (int i = 0; i < count; ++i)
+    if (const freenect_frame_mode mode = mode_at(i);
+        mode.is_valid && mode.resolution == FREENECT_RESOLUTION_MEDIUM && is_wanted(mode))
       return mode;
-  }
   return {};
 }
 
+std::optional<freenect_frame_mode> depth_mode(freenect_depth_format format) {
+  return mode_of(freenect_get_depth_mode_count(), freenect_get_depth_mode,
+                 [&](const freenect_frame_mode& mode) { return mode.depth_format == format; });
+}
+
 std::optional<freenect_frame_mode> colour_mode() {
-  for (int i = 0; i < freenect_get_video_mode_count(); ++i) {
-    const freenect_frame_mode mode = freenect_get_video_mode(i);
-    if (mode.is_valid && mode.resolution == FREENECT_RESOLUTION_MEDIUM &&
-        mode.video_format == FREENECT_VIDEO_RGB)
-      return mode;
-  }
-  return {};
+  return mode_of(freenect_get_video_mode_count(), freenect_get_video_mode,
+                 [](const freenect_frame_mode& mode) { return mode.video_format == FREENECT_VIDEO_RGB; });
 }
 
 // The sensor measures the shift of a light pattern from its position on a plane at 1.2 m. The projector is
