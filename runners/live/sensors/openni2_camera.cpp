@@ -1,23 +1,123 @@
 #include "runners/live/sensors/openni2_camera.h"
 
+#include <OpenNI.h>
+#include <dlfcn.h>
+
 #include <algorithm>
+#include <atomic>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <mutex>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "core/parameters/input_error.h"
 #include "runners/libraries/lasting_thread.h"
 #include "runners/live/sensors/driver_frames.h"
-#include "runners/live/sensors/openni2_library.h"
 
 namespace remote_touch {
 
 namespace {
 
-using openni2::driver_folder, openni2::is_file, openni2::error_text;
-using openni2::read_from, openni2::wait_for;
+namespace fs = std::filesystem;
+
+// The library counts its users, but not safely between threads.
+std::mutex& count_mutex() {
+  static std::mutex one;
+  return one;
+}
+
+// Returns the library's own text for its last error, in one line.
+std::string error_text() {
+  std::string text = openni::OpenNI::getExtendedError();
+  for (char& c : text)
+    if (std::iscntrl(static_cast<unsigned char>(c))) c = ' ';
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text.empty() ? "no reason given" : text;
+}
+
+// Returns the folder in which the library searches for drivers. It is beside the library's file.
+std::string driver_folder() {
+  Dl_info info{};
+  void* symbol = dlsym(RTLD_DEFAULT, "oniInitialize");
+  if (symbol == nullptr || dladdr(symbol, &info) == 0) return "OpenNI2/Drivers";
+  return (fs::path(info.dli_fname).parent_path() / "OpenNI2/Drivers").string();
+}
+
+bool is_file(const std::string& address) {
+  std::error_code ignored;
+  return fs::is_regular_file(address, ignored);
+}
+
+// Keeps the library initialised while an object of this class exists. Any thread may make an object.
+class Library {
+ public:
+  // Throws InputError if it cannot be initialised.
+  Library() {
+    const std::lock_guard lock(count_mutex());
+    if (openni::OpenNI::initialize() == openni::STATUS_OK) return;
+    const std::string reason = error_text();
+    openni::OpenNI::shutdown();
+    throw InputError("openni2",
+                     "does not start (" + reason + "): expected drivers (lib*.so.0) in " + driver_folder());
+  }
+  ~Library() {
+    const std::lock_guard lock(count_mutex());
+    openni::OpenNI::shutdown();
+  }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+
+  // Returns the cameras, without open recordings, which the library also lists as devices.
+  std::vector<openni::DeviceInfo> cameras() const {
+    openni::Array<openni::DeviceInfo> devices;
+    openni::OpenNI::enumerateDevices(&devices);
+    std::vector<openni::DeviceInfo> found;
+    for (int i = 0; i < devices.getSize(); ++i)
+      if (!is_file(devices[i].getUri())) found.push_back(devices[i]);
+    return found;
+  }
+};
+
+// A thread of the driver notifies this object when the camera with this URI was unplugged.
+class LossListener : public openni::OpenNI::DeviceDisconnectedListener {
+ public:
+  explicit LossListener(std::string uri) : uri_(std::move(uri)) {
+    openni::OpenNI::addDeviceDisconnectedListener(this);
+  }
+  ~LossListener() override { openni::OpenNI::removeDeviceDisconnectedListener(this); }
+
+  bool is_lost() const { return is_lost_; }
+  void onDeviceDisconnected(const openni::DeviceInfo* device) override {
+    if (uri_ == device->getUri()) is_lost_ = true;
+  }
+
+ private:
+  const std::string uri_;
+  std::atomic<bool> is_lost_ = false;
+};
+
+// Waits at most timeout_ms for a frame. Returns STATUS_OK if one is available.
+openni::Status wait_for(openni::VideoStream& stream, int timeout_ms) {
+  openni::VideoStream* streams[] = {&stream};
+  int which = 0;
+  return openni::OpenNI::waitForAnyStream(streams, 1, &which, timeout_ms);
+}
+
+// Returns the newest frame, which must be available; an invalid one on failure. VideoStream::readFrame()
+// would use an uninitialised pointer when it fails.
+openni::VideoFrameRef read_from(const openni::VideoStream& stream) {
+  openni::VideoFrameRef frame;
+  OniFrame* raw = nullptr;
+  if (oniStreamReadFrame(stream._getHandle(), &raw) != ONI_STATUS_OK || raw == nullptr) return frame;
+  frame._setFrame(raw);  // counts one more user
+  oniFrameRelease(raw);
+  return frame;
+}
 
 // A longer pause means that a recording is damaged, because its player shortens pauses to 2 s.
 constexpr double kMaxPause_s = 5;
@@ -246,10 +346,10 @@ class Openni2Camera final : public DepthSource {
 
   const Clock& host_;
   // The following members are closed from the last to the first.
-  openni2::Library library_;
+  Library library_;
   std::string name_;
   openni::Device device_;
-  std::optional<openni2::LossListener> loss_;
+  std::optional<LossListener> loss_;
   openni::VideoStream depth_, colour_;
   openni::VideoFrameRef colour_frame_;  // the newest colour frame
 
@@ -287,7 +387,7 @@ class LastingOpenni2Camera final : public DepthSource {
 };
 
 Availability found_cameras() {
-  const openni2::Library library;
+  const Library library;
   const std::vector<openni::DeviceInfo> cameras = library.cameras();
   if (cameras.empty()) return {.detail = "no camera that a driver in " + driver_folder() + " knows"};
   std::string names;
@@ -309,3 +409,11 @@ Availability openni2_availability() {
 }
 
 }  // namespace remote_touch
+
+#ifdef __SANITIZE_THREAD__
+// The thread sanitizer does not understand the library's locks, so it must ignore them from the moment at
+// which the library is loaded.
+extern "C" const char* __tsan_default_suppressions() {
+  return "mutex:libOpenNI2.so\nmutex:libOniFile.so\ndeadlock:libOpenNI2.so\ndeadlock:libOniFile.so\n";
+}
+#endif
