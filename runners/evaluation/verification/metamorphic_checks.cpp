@@ -1,13 +1,14 @@
 #include "runners/evaluation/verification/metamorphic_checks.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <variant>
 
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/verification/metamorphic_relation.h"
-#include "runners/evaluation/verification/verification_scenes.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 
@@ -16,6 +17,107 @@ namespace remote_touch {
 namespace {
 
 using Outputs = std::vector<RenderOutput>;
+
+double difference(double a, double b) {
+  if (a == b || (std::isnan(a) && std::isnan(b))) return 0;  // two infinities too
+  const double d = std::abs(a - b);
+  return std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
+}
+
+double difference(const Vec3& a, const Vec3& b) {
+  // The squares of the smallest numbers would underflow.
+  return std::hypot(difference(a.x(), b.x()), difference(a.y(), b.y()), difference(a.z(), b.z()));
+}
+
+// Returns the rotation between the two tools, in radians for small angles; 0 without a tool. Infinite if an
+// orientation is not finite, or if only one output has a tool.
+double rotation_between(const RenderOutput& a, const RenderOutput& b) {
+  if (!a.tool && !b.tool) return 0;
+  if (!a.tool || !b.tool) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector4d &p = a.tool->orientation_W.coeffs(), &q = b.tool->orientation_W.coeffs();
+  if (!p.allFinite() || !q.allFinite()) return std::numeric_limits<double>::infinity();
+  return 2 * std::min((p - q).norm(), (p + q).norm());  // q and -q are one rotation
+}
+
+double penetration_difference(const RenderOutput& a, const RenderOutput& b) {
+  return a.tool && b.tool ? difference(a.tool->tool_penetration_m, b.tool->tool_penetration_m) : 0;
+}
+
+double torque_difference(const RenderOutput& a, const RenderOutput& b) {
+  return a.tool && b.tool ? difference(a.tool->torque_Nm, b.tool->torque_Nm) : 0;
+}
+
+bool tools_agree(const RenderOutput& a, const RenderOutput& b, bool rounded) {
+  if (!a.tool || !b.tool) return a.tool.has_value() == b.tool.has_value();
+  return rounded ||
+         (a.tool->active_constraints == b.tool->active_constraints &&
+          a.tool->contact_clusters == b.tool->contact_clusters && a.tool->detections == b.tool->detections &&
+          a.tool->budget_exhausted == b.tool->budget_exhausted &&
+          a.tool->disabled_points == b.tool->disabled_points);
+}
+
+bool others_agree(const RenderOutput& a, const RenderOutput& b, bool rounded) {
+  if (!tools_agree(a, b, rounded)) return false;
+  return a.state == b.state && a.converged == b.converged && a.contact_count == b.contact_count &&
+         a.frame_index == b.frame_index && a.status == b.status && (rounded || a.steps == b.steps);
+}
+
+constexpr std::size_t kQuantities = 8;
+
+std::array<double, kQuantities> differences(const RenderOutput& a, const RenderOutput& b,
+                                            const OutputTolerance& tolerance) {
+  const bool rounded = tolerance.rounded;
+  // Far from the points the weights of a normal are as small as their own rounding.
+  const bool normal_counts =
+      !tolerance.without_contact_details && (!rounded || a.state != ContactState::free);
+  const double nearest =
+      tolerance.without_contact_details ? 0 : difference(a.nearest_distance_m, b.nearest_distance_m);
+  return {std::max({difference(a.proxy_W, b.proxy_W), difference(a.frame_correction_m, b.frame_correction_m),
+                    difference(a.slave_W, b.slave_W)}),
+          std::max(nearest, penetration_difference(a, b)),
+          difference(a.force_N, b.force_N),
+          difference(a.surface_velocity_m_per_s, b.surface_velocity_m_per_s),
+          normal_counts ? difference(a.normal_W, b.normal_W) : 0,
+          rotation_between(a, b),
+          torque_difference(a, b),
+          tolerance.without_contact_details || others_agree(a, b, rounded) ? 0.0 : 1.0};
+}
+
+std::vector<Deviation> none_yet(const Outputs& expected, const OutputTolerance& tolerance) {
+  double max_force_N = 0, max_torque_Nm = 0;
+  for (const RenderOutput& out : expected) {
+    max_force_N = std::max(max_force_N, out.force_N.norm());
+    if (out.tool) max_torque_Nm = std::max(max_torque_Nm, out.tool->torque_Nm.norm());
+  }
+  return {{"position", "m", tolerance.position_m},
+          {"nearest", "m", tolerance.position_m},
+          {"force", "N", tolerance.force_fraction * max_force_N},
+          {"velocity", "m/s", tolerance.velocity_m_per_s},
+          {"normal", "1", tolerance.normal},
+          {"rotation", "rad", tolerance.rotation_rad},
+          {"torque", "Nm", tolerance.torque_fraction * max_torque_Nm},
+          {"other", "1", 0}};
+}
+
+// pre: as many outputs as expected. until_velocity: ends as soon as either run has estimated a surface
+// velocity.
+Comparison compare(const Outputs& expected, const Outputs& outputs, const OutputTolerance& tolerance,
+                   bool until_velocity) {
+  Comparison result{.deviations = none_yet(expected, tolerance)};
+  for (std::size_t tick = 0; tick < outputs.size(); ++tick) {
+    const RenderOutput &a = expected[tick], &b = outputs[tick];
+    if (until_velocity && (a.surface_velocity_m_per_s != 0 || b.surface_velocity_m_per_s != 0)) break;
+    result.ticks = static_cast<int>(tick) + 1;
+    const auto now = differences(a, b, tolerance);
+    for (std::size_t i = 0; i < kQuantities; ++i) {
+      Deviation& deviation = result.deviations[i];
+      deviation.max = std::max(deviation.max, now[i]);
+      if (now[i] > deviation.tolerance && result.first_violation < 0)
+        result.first_violation = static_cast<int>(tick);
+    }
+  }
+  return result;
+}
 
 constexpr CheckName kTouch{
     "touch", "the renderer pushes back in most ticks, or in some if its contact model loses contact"};
@@ -39,10 +141,6 @@ class Subject {
     if (!problem.empty()) throw InputError(problem);
     return factory;
   }
-  Outputs play(const MetamorphicScene& scene) const {
-    const auto renderer = factory()->build(scene.haptic_rate_hz, kernels_);
-    return remote_touch::play(scene, *renderer);
-  }
   Outputs play(const Variation& run) const {
     const auto changed = factory();
     change_units(changed->settings(), run.units);
@@ -61,14 +159,15 @@ class Subject {
   bool is_tool() const { return degrees_of_freedom() == DegreesOfFreedom::six; }
   // Returns the smallest fraction of the ticks that must have a force.
   double min_touch_fraction() const { return model_.may_lose_contact ? 0.02 : 0.5; }
-  Variation unvaried(const MetamorphicScene& scene, const Outputs& outputs) const {
+  Variation unvaried(const MetamorphicScene& scene) const {
     const auto settings_of = factory();
     const Parameters parameters = settings_of->settings();
-    Variation run{scene, outputs, &kernels_};
+    Variation run{scene, {}, &kernels_};
     run.reach_m = max_length_m(parameters);
     run.contact_model = model_;
     run.can_be_mirrored = !is_tool() || (!run.contact_model.renders_only_regions && !names_a_tool());
     if (const double* value = stiffness(parameters)) run.stiffness_N_per_m = *value;
+    run.expected = play(run);
     return run;
   }
 
@@ -132,33 +231,28 @@ CheckResult finite(const MetamorphicScene& scene, const Outputs& outputs) {
 // Returns a remark if a HIP that is moved by 1e-13 m along each axis violates the tolerance no later than the
 // failed check does. Differences as small as rounding then grow, so a tolerance for rounding cannot decide
 // the check. The check counts as failed all the same. Returns an empty text otherwise.
-std::string remark_on(const CheckResult& failed, const Subject& subject, const MetamorphicScene& scene,
-                      const Outputs& outputs, const OutputTolerance& tolerance) {
+std::string remark_on(const CheckResult& failed, const Subject& subject, const Variation& unvaried,
+                      const OutputTolerance& tolerance) {
   constexpr double kSmall_m = 1e-13;  // below every tolerance
-  MetamorphicScene moved = scene;
-  for (Vec3& hip : moved.hip_W) hip.array() += kSmall_m;
-  const int tick = compare(outputs, subject.play(moved), tolerance, false).first_violation;
+  Variation moved = unvaried;
+  for (Vec3& hip : moved.scene.hip_W) hip.array() += kSmall_m;
+  const int tick = compare(unvaried.expected, subject.play(moved), tolerance, false).first_violation;
   if (tick < 0 || tick > failed.comparison.first_violation) return {};
   return "undecided: moving the HIP by 1e-13 m changes the answers as much, from tick " +
          std::to_string(tick) + " on";
 }
 
-std::span<const MetamorphicRelation> relations_of(DegreesOfFreedom degrees_of_freedom) {
-  return degrees_of_freedom == DegreesOfFreedom::six ? tool_relations() : metamorphic_relations();
-}
-
 std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicScene& scene) {
-  const Outputs outputs = subject.play(scene);
-  const Variation unvaried = subject.unvaried(scene, outputs);
-  std::vector<CheckResult> results{touch(scene, outputs, subject.min_touch_fraction()),
-                                   finite(scene, outputs)};
+  const Variation unvaried = subject.unvaried(scene);
+  std::vector<CheckResult> results{touch(scene, unvaried.expected, subject.min_touch_fraction()),
+                                   finite(scene, unvaried.expected)};
   for (const MetamorphicRelation& relation : relations_of(subject.degrees_of_freedom())) {
     Variation run = unvaried;
     if (!relation.vary(run)) continue;
     CheckResult result{relation.name, relation.meaning, scene.name, relation.reason, {}, {}};
     result.comparison = compare(run.expected, subject.play(run), relation.tolerance, run.until_velocity);
     if (!result.passed() && relation.tolerance.rounded)
-      result.remark = remark_on(result, subject, scene, outputs, relation.tolerance);
+      result.remark = remark_on(result, subject, unvaried, relation.tolerance);
     results.push_back(std::move(result));
   }
   return results;

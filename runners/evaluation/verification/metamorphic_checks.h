@@ -8,11 +8,27 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "runners/evaluation/verification/metamorphic_relation.h"
 #include "runners/evaluation/verification/verification_scenes.h"
 #include "runners/experiment/catalog/factory.h"
 
 namespace remote_touch {
+
+// The largest difference of one kind.
+struct Deviation {
+  // "position" (proxy, slave, frame correction), "nearest" (nearest distance, and penetration of a tool),
+  // "force", "velocity", "normal", "rotation" and "torque" of a tool, or "other": 1 if state, convergence,
+  // steps, counts, frame or status differ.
+  const char* quantity;
+  const char* unit;
+  double tolerance = 0;
+  double max = 0;  // infinite if only one of the two is a finite number
+};
+
+struct Comparison {
+  std::vector<Deviation> deviations;
+  int first_violation = -1;  // the tick; -1: none
+  int ticks = 0;             // number of ticks that were compared
+};
 
 // One check in one scene.
 struct CheckResult {
