@@ -14,43 +14,31 @@
 namespace remote_touch {
 namespace {
 
-const std::string kTrace = "/trace/";
-
-void require_length(const Hdf5Reader& trace, const std::string& column, std::size_t found,
-                    std::size_t ticks) {
-  if (found != ticks) trace.damaged(kTrace + column + " is not as long as /trace/time");
-}
-
-std::vector<Vec3> vectors(const Hdf5Reader& trace, const std::string& column, std::size_t ticks) {
-  if (!trace.has(kTrace + column)) trace.damaged("it has no " + kTrace + column);
-  const auto flat = trace.values<double>(kTrace + column, 3);
-  require_length(trace, column, flat.size() / 3, ticks);
-  std::vector<Vec3> list;
-  for (std::size_t i = 0; i + 2 < flat.size(); i += 3) list.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+template <class Number>
+std::vector<Number> numbers(const Hdf5Reader& trace, const std::string& column, std::size_t ticks,
+                            int width = 1) {
+  auto list = trace.values<Number>("/trace/" + column, width);
+  if (list.size() != ticks * static_cast<std::size_t>(width))
+    trace.damaged("/trace/" + column + " is not as long as /trace/time");
   return list;
 }
 
-// Returns zeros if the trace does not have the column, as without a tool.
-std::vector<Vec3> vectors_or_zeros(const Hdf5Reader& trace, const std::string& column, std::size_t ticks) {
-  return trace.has(kTrace + column) ? vectors(trace, column, ticks) : std::vector<Vec3>(ticks, Vec3::Zero());
+std::vector<Vec3> vectors(const Hdf5Reader& trace, const std::string& column, std::size_t ticks) {
+  if (!trace.has("/trace/" + column)) trace.damaged("it has no /trace/" + column);
+  const auto flat = numbers<double>(trace, column, ticks, 3);
+  std::vector<Vec3> list;
+  for (std::size_t i = 0; i < flat.size(); i += 3) list.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
+  return list;
 }
 
 std::vector<Eigen::Quaterniond> orientations(const Hdf5Reader& trace, const std::string& column,
                                              std::size_t ticks) {
-  if (!trace.has(kTrace + column))
+  if (!trace.has("/trace/" + column))
     return std::vector<Eigen::Quaterniond>(ticks, Eigen::Quaterniond::Identity());
-  const auto flat = trace.values<double>(kTrace + column, 4);
-  require_length(trace, column, flat.size() / 4, ticks);
+  const auto flat = numbers<double>(trace, column, ticks, 4);
   std::vector<Eigen::Quaterniond> list;
-  for (std::size_t i = 0; i + 3 < flat.size(); i += 4)
+  for (std::size_t i = 0; i < flat.size(); i += 4)
     list.emplace_back(flat[i], flat[i + 1], flat[i + 2], flat[i + 3]);
-  return list;
-}
-
-template <class T>
-std::vector<T> numbers(const Hdf5Reader& trace, const std::string& column, std::size_t ticks) {
-  auto list = trace.values<T>(kTrace + column);
-  require_length(trace, column, list.size(), ticks);
   return list;
 }
 
@@ -89,7 +77,8 @@ ExportedRun exported_run(const ExportJob& job) {
   const std::size_t ticks = run.ticks();
   run.hip_W = vectors(trace, "hip_position", ticks), run.proxy_W = vectors(trace, "proxy_position", ticks);
   run.force_N = vectors(trace, "force", ticks);
-  run.torque_Nm = vectors_or_zeros(trace, "torque", ticks);
+  run.torque_Nm =
+      trace.has("/trace/torque") ? vectors(trace, "torque", ticks) : std::vector<Vec3>(ticks, Vec3::Zero());
   run.hip_orientation_W = orientations(trace, "hip_orientation", ticks);
   run.tool_orientation_W = orientations(trace, "tool_orientation", ticks);
   run.frame = numbers<std::int32_t>(trace, "frame_index", ticks);

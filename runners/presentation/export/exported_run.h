@@ -4,7 +4,6 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -23,7 +22,6 @@
 namespace remote_touch {
 
 // The input of every format of an export: the result, the output and the files to write.
-
 struct ExportJob {
   const Hdf5Reader& result;
   std::filesystem::path output;
@@ -42,14 +40,11 @@ struct ExportJob {
   void go_on() const;
 };
 
-// Writes numbers one after another, as files store them: little-endian, without gaps.
-
-static_assert(std::endian::native == std::endian::little);
-
-template <class Number>
-void put(std::string& bytes, Number number) {
-  static_assert(std::is_arithmetic_v<Number>);
-  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+// Appends the numbers one after another, as files store them: little-endian, without gaps.
+template <class... Numbers>
+void put(std::string& bytes, Numbers... numbers) {
+  static_assert(std::endian::native == std::endian::little && (std::is_arithmetic_v<Numbers> && ...));
+  (bytes.append(reinterpret_cast<const char*>(&numbers), sizeof numbers), ...);
 }
 
 // A row for each tick.

@@ -38,36 +38,32 @@ std::uint32_t crc_after(std::uint32_t before, const std::string& bytes) {
       crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
+// Returns numbers, and texts after their lengths, as the content of a record.
+template <class... Values>
+std::string content(const Values&... values) {
+  std::string bytes;
+  const auto add = [&bytes]<class Value>(const Value& value) {
+    if constexpr (std::is_arithmetic_v<Value>)
+      put(bytes, value);
+    else
+      put(bytes, static_cast<std::uint32_t>(value.size())), bytes += value;
+  };
+  (add(values), ...);
+  return bytes;
+}
+
 std::string record(Record kind, const std::string& content) {
   std::string bytes;
-  put(bytes, static_cast<std::uint8_t>(kind));
-  put(bytes, std::uint64_t{content.size()});
+  put(bytes, static_cast<std::uint8_t>(kind), std::uint64_t{content.size()});
   return bytes + content;
 }
 
-// Appends the length of the text, then the text.
-void put_text(std::string& bytes, const std::string& text) {
-  put(bytes, static_cast<std::uint32_t>(text.size()));
-  bytes += text;
-}
-
-std::string text_map(const McapWriter::Texts& texts) {
-  std::string entries, map;
-  for (const auto& [name, value] : texts) put_text(entries, name), put_text(entries, value);
-  put_text(map, entries);
-  return map;
-}
-
-void put_number_map(std::string& bytes, const std::map<std::uint16_t, std::uint64_t>& numbers) {
-  std::string entries;
-  for (const auto& [channel, number] : numbers) put(entries, channel), put(entries, number);
-  put_text(bytes, entries);
-}
-
-std::string header_record(const std::string& profile, const std::string& library) {
-  std::string content;
-  put_text(content, profile), put_text(content, library);
-  return record(Record::header, content);
+// Returns the entries of a map, whose content is that of a text.
+template <class Map>
+std::string entries(const Map& map) {
+  std::string all;
+  for (const auto& [key, value] : map) all += content(key, value);
+  return all;
 }
 
 }  // namespace
@@ -78,14 +74,12 @@ void McapWriter::Times::add(std::uint64_t time_ns) {
   is_empty = false;
 }
 
-std::string McapWriter::opening(const std::string& profile, const std::string& library) {
-  return kMagic + header_record(profile, library);
+std::string McapWriter::opening() {
+  return kMagic + record(Record::header, content(std::string("ros2"), std::string("remote-touch export")));
 }
 
-McapWriter::McapWriter(const std::string& profile, const std::string& library,
-                       std::function<void(const std::string&)> write)
-    : write_(std::move(write)) {
-  emit(opening(profile, library));
+McapWriter::McapWriter(std::function<void(const std::string&)> write) : write_(std::move(write)) {
+  emit(opening());
 }
 
 void McapWriter::emit(const std::string& bytes) {
@@ -94,48 +88,35 @@ void McapWriter::emit(const std::string& bytes) {
   size_ += bytes.size();
 }
 
-std::uint16_t McapWriter::add_topic(const McapTopic& topic) {
+std::uint16_t McapWriter::add_topic(const std::string& name, const RosSchema& schema) {
   const auto [known, is_new] =
-      schemas_.try_emplace(topic.schema, static_cast<std::uint16_t>(schemas_.size() + 1));  // 0: no schema
+      schemas_.try_emplace(schema.name, static_cast<std::uint16_t>(schemas_.size() + 1));  // 0: no schema
   if (is_new) {
-    std::string content;
-    put(content, known->second);
-    put_text(content, topic.schema), put_text(content, topic.schema_encoding);
-    put_text(content, topic.schema_text);
-    schema_records_ += record(Record::schema, content);
-    chunk_.records += record(Record::schema, content);
+    const std::string definition =
+        record(Record::schema,
+               content(known->second, known->first, std::string("ros2msg"), std::string(schema.definition)));
+    schema_records_ += definition, chunk_.records += definition;
   }
-  const auto channel = static_cast<std::uint16_t>(messages_.size());
-  std::string content;
-  put(content, channel), put(content, known->second);
-  put_text(content, topic.name), put_text(content, topic.message_encoding);
-  content += text_map({});
-  channel_records_ += record(Record::channel, content);
-  chunk_.records += record(Record::channel, content);
-  messages_[channel] = 0;
-  return channel;
+  const auto number = static_cast<std::uint16_t>(messages_.size());
+  const std::string channel =
+      record(Record::channel, content(number, known->second, name, std::string("cdr"), std::string()));
+  channel_records_ += channel, chunk_.records += channel;
+  messages_[number] = 0;
+  return number;
 }
 
-void McapWriter::add_metadata(const std::string& name, const Texts& texts) {
-  std::string content, index;
-  put_text(content, name);
-  content += text_map(texts);
-  const std::string whole = record(Record::metadata, content);
-  put(index, size_), put(index, std::uint64_t{whole.size()});
-  put_text(index, name);
-  metadata_indexes_ += record(Record::metadata_index, index);
+void McapWriter::add_metadata(const std::string& name, const TextAttributes& texts) {
+  const std::string whole = record(Record::metadata, content(name, entries(texts)));
+  metadata_indexes_ += record(Record::metadata_index, content(size_, std::uint64_t{whole.size()}, name));
   ++metadata_;
   emit(whole);
 }
 
 void McapWriter::message(std::uint16_t channel, std::uint64_t log_ns, std::uint64_t publish_ns,
                          const std::string& data) {
-  std::string& index = chunk_.index[channel];
-  put(index, log_ns), put(index, std::uint64_t{chunk_.records.size()});
-  std::string content;
-  put(content, channel), put(content, static_cast<std::uint32_t>(messages_[channel]++));
-  put(content, log_ns), put(content, publish_ns);
-  chunk_.records += record(Record::message, content + data);
+  put(chunk_.index[channel], log_ns, std::uint64_t{chunk_.records.size()});
+  const auto number = static_cast<std::uint32_t>(messages_[channel]++);
+  chunk_.records += record(Record::message, content(channel, number, log_ns, publish_ns) + data);
   chunk_.times.add(log_ns);
   times_.add(log_ns);
   if (chunk_.records.size() >= kChunkSize) close_chunk();
@@ -143,58 +124,46 @@ void McapWriter::message(std::uint16_t channel, std::uint64_t log_ns, std::uint6
 
 void McapWriter::close_chunk() {
   if (chunk_.records.empty()) return;
+  const std::string uncompressed;
   const std::uint64_t start = size_, records = chunk_.records.size();
-  std::string content, indexes, index;
-  put(content, chunk_.times.first), put(content, chunk_.times.last);
-  put(content, records), put(content, crc_after(0, chunk_.records));
-  put_text(content, "");  // not compressed
-  put(content, records);
-  emit(record(Record::chunk, content + chunk_.records));
+  const std::uint64_t first = chunk_.times.first, last = chunk_.times.last;
+  emit(record(
+      Record::chunk,
+      content(first, last, records, crc_after(0, chunk_.records), uncompressed, records) + chunk_.records));
   const std::uint64_t length = size_ - start;
+  std::string indexes;
   std::map<std::uint16_t, std::uint64_t> places;
-  for (const auto& [channel, entries] : chunk_.index) {
+  for (const auto& [channel, of_channel] : chunk_.index) {
     places[channel] = size_ + indexes.size();
-    std::string of_channel;
-    put(of_channel, channel), put_text(of_channel, entries);
-    indexes += record(Record::message_index, of_channel);
+    indexes += record(Record::message_index, content(channel, of_channel));
   }
   emit(indexes);
-  put(index, chunk_.times.first), put(index, chunk_.times.last);
-  put(index, start), put(index, length);
-  put_number_map(index, places);
-  put(index, std::uint64_t{indexes.size()});
-  put_text(index, "");
-  put(index, records), put(index, records);
-  chunk_indexes_ += record(Record::chunk_index, index);
+  chunk_indexes_ +=
+      record(Record::chunk_index, content(first, last, start, length, entries(places),
+                                          std::uint64_t{indexes.size()}, uncompressed, records, records));
   ++chunks_;
   chunk_ = {};
 }
 
 std::string McapWriter::statistics() const {
+  constexpr std::uint32_t kAttachments = 0;
   std::uint64_t all = 0;
   for (const auto& [channel, count] : messages_) all += count;
-  std::string content;
-  put(content, all), put(content, static_cast<std::uint16_t>(schemas_.size()));
-  put(content, static_cast<std::uint32_t>(messages_.size())), put(content, std::uint32_t{0});  // attachments
-  put(content, metadata_), put(content, chunks_);
-  put(content, times_.first), put(content, times_.last);
-  put_number_map(content, messages_);
-  return record(Record::statistics, content);
+  return record(
+      Record::statistics,
+      content(all, static_cast<std::uint16_t>(schemas_.size()), static_cast<std::uint32_t>(messages_.size()),
+              kAttachments, metadata_, chunks_, times_.first, times_.last, entries(messages_)));
 }
 
 void McapWriter::finish() {
   close_chunk();
-  std::string end;
-  put(end, crc_);
-  emit(record(Record::data_end, end));
+  emit(record(Record::data_end, content(crc_)));
   const std::uint64_t start = size_;
   std::string summary, offsets;
   const auto add = [&](Record kind, const std::string& records) {
     if (records.empty()) return;
-    std::string offset;
-    put(offset, static_cast<std::uint8_t>(kind));
-    put(offset, start + summary.size()), put(offset, std::uint64_t{records.size()});
-    offsets += record(Record::summary_offset, offset);
+    offsets += record(Record::summary_offset, content(static_cast<std::uint8_t>(kind), start + summary.size(),
+                                                      std::uint64_t{records.size()}));
     summary += records;
   };
   add(Record::schema, schema_records_);
@@ -203,16 +172,10 @@ void McapWriter::finish() {
   add(Record::chunk_index, chunk_indexes_);
   add(Record::metadata_index, metadata_indexes_);
   // The CRC covers everything from the start of the summary to the footer's own field for it.
-  std::string footer;
-  put(footer, start), put(footer, start + summary.size());
-  put(footer, std::uint32_t{0});
-  footer = record(Record::footer, footer);
+  std::string footer = record(Record::footer, content(start, start + summary.size(), std::uint32_t{0}));
   footer.resize(footer.size() - sizeof(std::uint32_t));
   const std::string checked = summary + offsets + footer;
-  emit(checked);
-  std::string sum;
-  put(sum, crc_after(0, checked));
-  emit(sum + kMagic);
+  emit(checked + content(crc_after(0, checked)) + kMagic);
 }
 
 namespace {
@@ -283,16 +246,6 @@ class CdrMessage {
 
 }  // namespace
 
-const RosSchema& pose_schema() {
-  return kPose;
-}
-const RosSchema& wrench_schema() {
-  return kWrench;
-}
-const RosSchema& point_cloud_schema() {
-  return kPointCloud;
-}
-
 std::string pose_message(std::uint64_t time_ns, const Vec3& position_W,
                          const Eigen::Quaterniond& orientation_W) {
   CdrMessage message(time_ns);
@@ -309,18 +262,19 @@ std::string wrench_message(std::uint64_t time_ns, const Vec3& force_N, const Vec
   return message.whole();
 }
 
-std::string point_cloud_message(std::uint64_t time_ns, const std::vector<RosField>& fields,
+std::string point_cloud_message(std::uint64_t time_ns, const std::vector<std::string>& fields,
                                 const std::string& data) {
   constexpr std::uint32_t kFieldSize = 4;
+  constexpr std::uint8_t kFloat32 = 7;  // in sensor_msgs/PointField
   const auto step = static_cast<std::uint32_t>(kFieldSize * fields.size());
   CdrMessage message(time_ns);
   message.number(std::uint32_t{1});                                // height
   message.number(static_cast<std::uint32_t>(data.size() / step));  // width
   message.number(static_cast<std::uint32_t>(fields.size()));
   for (std::uint32_t i = 0; i < fields.size(); ++i) {
-    message.text(fields[i].name);
+    message.text(fields[i]);
     message.number(kFieldSize * i);  // offset
-    message.number(fields[i].type);
+    message.number(kFloat32);
     message.number(std::uint32_t{1});  // count
   }
   message.number(std::uint8_t{0});  // is_bigendian
@@ -333,34 +287,26 @@ std::string point_cloud_message(std::uint64_t time_ns, const std::vector<RosFiel
 
 namespace {
 
-constexpr const char *kProfile = "ros2", *kLibrary = "remote-touch export";
-
 std::uint64_t nanoseconds(double time_s) {
   return static_cast<std::uint64_t>(std::llround(std::max(time_s, 0.0) * 1e9));
-}
-
-McapTopic topic(const char* name, const RosSchema& schema) {
-  return {name, schema.name, "ros2msg", schema.definition, "cdr"};
 }
 
 // Numbers have 32 bits, because readers of ROS 2 expect that. The rounding error is at most 0.06 micrometres
 // at a distance of 1 m.
 std::string cloud_message(const ExportedFrame& frame) {
   const PointCloud& cloud = frame.points;
-  std::vector<RosField> fields{{"x", kRosFloat32}, {"y", kRosFloat32}, {"z", kRosFloat32}};
-  if (!cloud.colour.empty()) fields.push_back({"rgb", kRosFloat32});  // the bits of 0x00RRGGBB
-  if (cloud.has_normals())
-    for (const char* name : {"normal_x", "normal_y", "normal_z"}) fields.push_back({name, kRosFloat32});
-  if (!cloud.fixture_radius_m.empty()) fields.push_back({"fixture_radius", kRosFloat32});
+  std::vector<std::string> fields{"x", "y", "z"};
+  if (!cloud.colour.empty()) fields.push_back("rgb");  // the bits of 0x00RRGGBB
+  if (cloud.has_normals()) fields.insert(fields.end(), {"normal_x", "normal_y", "normal_z"});
+  if (!cloud.fixture_radius_m.empty()) fields.push_back("fixture_radius");
   constexpr std::uint32_t kNan = 0x7FC00000;  // NaN of 32 bits
+  const auto single = [](double number) { return static_cast<float>(number); };
   std::string data;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    for (const double number : {cloud.x[i], cloud.y[i], cloud.z[i]}) put(data, static_cast<float>(number));
+    put(data, single(cloud.x[i]), single(cloud.y[i]), single(cloud.z[i]));
     if (!cloud.colour.empty()) put(data, cloud.colour[i] == kNoColour ? kNan : cloud.colour[i]);
-    if (cloud.has_normals())
-      for (const double number : {cloud.nx[i], cloud.ny[i], cloud.nz[i]})
-        put(data, static_cast<float>(number));
-    if (!cloud.fixture_radius_m.empty()) put(data, static_cast<float>(cloud.fixture_radius_m[i]));
+    if (cloud.has_normals()) put(data, single(cloud.nx[i]), single(cloud.ny[i]), single(cloud.nz[i]));
+    if (!cloud.fixture_radius_m.empty()) put(data, single(cloud.fixture_radius_m[i]));
   }
   return point_cloud_message(nanoseconds(frame.captured_s), fields, data);
 }
@@ -370,11 +316,11 @@ class RunMessages {
   RunMessages(const ExportedRun& run, McapWriter& mcap)
       : run_(run),
         mcap_(mcap),
-        cloud_(mcap.add_topic(topic("/cloud", point_cloud_schema()))),
-        hip_(mcap.add_topic(topic("/hip", pose_schema()))),
-        proxy_(mcap.add_topic(topic("/proxy", pose_schema()))),
-        force_(mcap.add_topic(topic("/force", wrench_schema()))) {
-    if (run.tool) tool_ = mcap.add_topic(topic("/tool", pose_schema()));
+        cloud_(mcap.add_topic("/cloud", kPointCloud)),
+        hip_(mcap.add_topic("/hip", kPose)),
+        proxy_(mcap.add_topic("/proxy", kPose)),
+        force_(mcap.add_topic("/force", kWrench)) {
+    if (run.tool) tool_ = mcap.add_topic("/tool", kPose);
   }
 
   void add(const ExportedFrame& frame) {
@@ -407,8 +353,8 @@ class RunMessages {
 
 void write_mcap(const ExportJob& job) {
   const ExportedRun run = exported_run(job);
-  job.begin(job.output, McapWriter::opening(kProfile, kLibrary));
-  McapWriter mcap(kProfile, kLibrary, [&](const std::string& bytes) { job.files.append(bytes); });
+  job.begin(job.output, McapWriter::opening());
+  McapWriter mcap([&](const std::string& bytes) { job.files.append(bytes); });
   RunMessages messages(run, mcap);
   mcap.add_metadata("remote-touch", job.result.attributes());
   for_each_frame(job, run, [&](const ExportedFrame& frame) { messages.add(frame); });

@@ -5,37 +5,47 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "analysis/storage/hdf5_file.h"
 #include "core/geometry/vector.h"
 #include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {
 
-// Files of time-stamped messages: MCAP, https://mcap.dev/spec, with chunks that are not compressed.
+// Messages of ROS 2: their definitions, and their bytes as DDS sends them (CDR, little-endian). There are
+// only the messages that an export contains.
 
-struct McapTopic {
-  std::string name;
-  std::string schema, schema_encoding, schema_text, message_encoding;
+// name: "geometry_msgs/msg/PoseStamped". definition: also contains the definitions of all messages that are
+// parts of it, as the schema encoding `ros2msg` of MCAP demands.
+struct RosSchema {
+  const char* name;
+  const char* definition;
 };
 
+// All messages are in the frame `world`, in metres, newtons and newton metres; time in nanoseconds since the
+// start.
+std::string pose_message(std::uint64_t time_ns, const Vec3& position_W,
+                         const Eigen::Quaterniond& orientation_W);
+std::string wrench_message(std::uint64_t time_ns, const Vec3& force_N, const Vec3& torque_Nm);
+// fields: their names; each is a float of 32 bits, one after the other in a point. data: those of all points.
+std::string point_cloud_message(std::uint64_t time_ns, const std::vector<std::string>& fields,
+                                const std::string& data);
+
+// Files of time-stamped messages of ROS 2: MCAP, https://mcap.dev/spec, with chunks that are not compressed.
 // Passes the bytes of the file to `write` as it grows. All topics are added before the first message.
 class McapWriter {
  public:
-  using Texts = std::vector<std::pair<std::string, std::string>>;
-
-  McapWriter(const std::string& profile, const std::string& library,
-             std::function<void(const std::string&)> write);
+  explicit McapWriter(std::function<void(const std::string&)> write);
   // Topics whose schemas have the same name share the schema. Returns the number of the topic's channel.
-  std::uint16_t add_topic(const McapTopic& topic);
-  void add_metadata(const std::string& name, const Texts& texts);
+  std::uint16_t add_topic(const std::string& name, const RosSchema& schema);
+  void add_metadata(const std::string& name, const TextAttributes& texts);
   void message(std::uint16_t channel, std::uint64_t log_ns, std::uint64_t publish_ns,
                const std::string& data);
   void finish();
 
-  // Returns the bytes with which a file of that profile and library begins.
-  static std::string opening(const std::string& profile, const std::string& library);
+  // Returns the bytes with which every file begins.
+  static std::string opening();
 
  private:
   struct Times {
@@ -63,34 +73,6 @@ class McapWriter {
   std::string schema_records_, channel_records_, chunk_indexes_, metadata_indexes_;
   std::uint32_t chunks_ = 0, metadata_ = 0;
 };
-
-// Messages of ROS 2: their definitions, and their bytes as DDS sends them (CDR, little-endian). There are
-// only the messages that an export contains.
-
-// name: "geometry_msgs/msg/PoseStamped". definition: also contains the definitions of all messages that are
-// parts of it, as the schema encoding `ros2msg` of MCAP demands.
-struct RosSchema {
-  const char* name;
-  const char* definition;
-};
-const RosSchema& pose_schema();
-const RosSchema& wrench_schema();
-const RosSchema& point_cloud_schema();
-
-// All messages are in the frame `world`, in metres, newtons and newton metres; time in nanoseconds since the
-// start.
-std::string pose_message(std::uint64_t time_ns, const Vec3& position_W,
-                         const Eigen::Quaterniond& orientation_W);
-std::string wrench_message(std::uint64_t time_ns, const Vec3& force_N, const Vec3& torque_Nm);
-
-struct RosField {
-  std::string name;
-  std::uint8_t type;  // type number of sensor_msgs/PointField
-};
-inline constexpr std::uint8_t kRosFloat32 = 7;
-// fields: four bytes each, one after the other in a point. data: the fields of all points.
-std::string point_cloud_message(std::uint64_t time_ns, const std::vector<RosField>& fields,
-                                const std::string& data);
 
 // Time is the simulated time, in nanoseconds. Topics:
 //   /cloud         sensor_msgs/msg/PointCloud2     each frame in use, at the time of its arrival; its

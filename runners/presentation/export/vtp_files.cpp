@@ -13,33 +13,23 @@
 namespace remote_touch {
 namespace {
 
-// The XML of a file and the numbers that it points to.
-class VtkFile {
- public:
-  void text(const std::string& more) { xml_ += more; }
-  void array(const VtkArray& one) {
-    xml_ += "<DataArray type=\"" + std::string(one.type) + "\" Name=\"" + xml_escaped(one.name) +
-            "\" NumberOfComponents=\"" + std::to_string(one.components) + "\" format=\"appended\" offset=\"" +
-            std::to_string(appended_.size()) + "\"/>\n";
-    put(appended_, std::uint64_t{one.bytes.size()});
-    appended_ += one.bytes;
-  }
-  void section(const std::string& name, const std::vector<VtkArray>& arrays) {
-    text("<" + name + ">\n");
-    for (const VtkArray& each : arrays) array(each);
-    text("</" + name + ">\n");
-  }
-  std::string whole() const {
-    return xml_ + "<AppendedData encoding=\"raw\">\n_" + appended_ + "\n</AppendedData>\n";
-  }
+template <class Number>
+constexpr const char* kTypeOf = nullptr;
+template <>
+constexpr const char* kTypeOf<double> = "Float64";
+template <>
+constexpr const char* kTypeOf<std::int32_t> = "Int32";
+template <>
+constexpr const char* kTypeOf<std::int64_t> = "Int64";
+template <>
+constexpr const char* kTypeOf<std::uint64_t> = "UInt64";
+template <>
+constexpr const char* kTypeOf<std::uint8_t> = "UInt8";
 
- private:
-  std::string xml_, appended_;
-};
-
-VtkArray integers(const std::string& name, const std::vector<std::int64_t>& values) {
-  VtkArray array{name, "Int64", 1, {}};
-  for (const std::int64_t value : values) put(array.bytes, value);
+template <class Number>
+VtkArray array_of(const std::string& name, const std::vector<Number>& values, int components = 1) {
+  VtkArray array{name, kTypeOf<Number>, components, {}};
+  for (const Number value : values) put(array.bytes, value);
   return array;
 }
 
@@ -53,7 +43,7 @@ struct Cells {
     ends.push_back(static_cast<std::int64_t>(points.size()));
   }
   std::vector<VtkArray> arrays() const {
-    return {integers("connectivity", points), integers("offsets", ends)};
+    return {array_of("connectivity", points), array_of("offsets", ends)};
   }
 };
 
@@ -87,54 +77,41 @@ std::string xml_escaped(const std::string& text) {
 }
 
 std::string vtp_file(const VtkPolyData& data) {
-  VtkFile file;
-  file.text(kVtkOpening);
-  file.text(
+  std::string appended, xml = kVtkOpening;
+  xml +=
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
       "<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
       "format=\"ascii\">" +
-      text_of(data.time_s) + "</DataArray>\n</FieldData>\n" + counts_of(data));
+      text_of(data.time_s) + "</DataArray>\n</FieldData>\n" + counts_of(data);
+  const auto section = [&](const std::string& name, const std::vector<VtkArray>& arrays) {
+    xml += "<" + name + ">\n";
+    for (const VtkArray& one : arrays) {
+      xml += "<DataArray type=\"" + std::string(one.type) + "\" Name=\"" + xml_escaped(one.name) +
+             "\" NumberOfComponents=\"" + std::to_string(one.components) +
+             "\" format=\"appended\" offset=\"" + std::to_string(appended.size()) + "\"/>\n";
+      put(appended, std::uint64_t{one.bytes.size()});
+      appended += one.bytes;
+    }
+    xml += "</" + name + ">\n";
+  };
   VtkArray points{"Points", "Float64", 3, {}};
-  for (const Vec3& p : data.points)
-    for (int axis = 0; axis < 3; ++axis) put(points.bytes, p[axis]);
+  for (const Vec3& p : data.points) put(points.bytes, p.x(), p.y(), p.z());
   Cells vertices, lines, faces;
   for (std::size_t i = 0; data.has_vertices && i < data.points.size(); ++i)
     vertices.add(std::array{static_cast<std::int64_t>(i)});
   for (const auto& line : data.lines) lines.add(line);
   for (const auto& face : data.faces) faces.add(face);
-  file.section("Points", {points});
-  file.section("Verts", vertices.arrays());
-  file.section("Lines", lines.arrays());
-  file.section("Polys", faces.arrays());
-  file.section("PointData", data.of_points);
-  file.section("CellData", data.of_cells);
-  file.text("</Piece>\n</PolyData>\n");
-  return file.whole() + "</VTKFile>\n";
+  section("Points", {points});
+  section("Verts", vertices.arrays());
+  section("Lines", lines.arrays());
+  section("Polys", faces.arrays());
+  section("PointData", data.of_points);
+  section("CellData", data.of_cells);
+  return xml + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + appended +
+         "\n</AppendedData>\n</VTKFile>\n";
 }
 
 namespace {
-
-template <class Number>
-VtkArray numbers_of(const std::string& name, const char* type, const std::vector<Number>& values) {
-  VtkArray array{name, type, 1, {}};
-  for (const Number value : values) put(array.bytes, value);
-  return array;
-}
-
-// Returns every value of the column twice, because both lines have the same ticks.
-VtkArray twice(const Column& column) {
-  VtkArray array{column.name, "Float64", column.width, {}};
-  if (std::holds_alternative<std::vector<std::int32_t>>(column.values)) array.type = "Int32";
-  if (std::holds_alternative<std::vector<std::uint64_t>>(column.values)) array.type = "UInt64";
-  std::visit(
-      [&](const auto& values) {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(values)>, std::vector<std::string>>)
-          for (int line = 0; line < 2; ++line)
-            for (const auto value : values) put(array.bytes, value);
-      },
-      column.values);
-  return array;
-}
 
 VtkPolyData paths_of(const ExportJob& job, const ExportedRun& run) {
   VtkPolyData data;
@@ -145,9 +122,15 @@ VtkPolyData paths_of(const ExportJob& job, const ExportedRun& run) {
     data.lines[i / run.ticks()].push_back(static_cast<std::int64_t>(i));
   const std::vector<Table> tables = result_tables(job.result);
   for (const Column& column : tables.front().columns)
-    if (!std::holds_alternative<std::vector<std::string>>(column.values))
-      data.of_points.push_back(twice(column));
-  data.of_cells.push_back(numbers_of("path", "Int32", std::vector<std::int32_t>{0, 1}));
+    std::visit(
+        [&]<class Value>(const std::vector<Value>& values) {
+          if constexpr (!std::is_same_v<Value, std::string>) {
+            VtkArray& array = data.of_points.emplace_back(array_of(column.name, values, column.width));
+            array.bytes += array.bytes;  // both lines have the same ticks
+          }
+        },
+        column.values);
+  data.of_cells.push_back(array_of("path", std::vector<std::int32_t>{0, 1}));
   return data;
 }
 
@@ -167,18 +150,17 @@ VtkPolyData cloud_of(const ExportedFrame& frame, double time_s) {
     }
     data.of_points.push_back(std::move(colour));
     if (std::find(has_colour.begin(), has_colour.end(), 0) != has_colour.end())
-      data.of_points.push_back(numbers_of("has_colour", "UInt8", has_colour));
+      data.of_points.push_back(array_of("has_colour", has_colour));
   }
   if (cloud.has_normals()) {
     VtkArray normals{"normal", "Float64", 3, {}};
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      for (int axis = 0; axis < 3; ++axis) put(normals.bytes, cloud.normal(i)[axis]);
+    for (std::size_t i = 0; i < cloud.size(); ++i) put(normals.bytes, cloud.nx[i], cloud.ny[i], cloud.nz[i]);
     data.of_points.push_back(std::move(normals));
   }
   if (!cloud.fixture_radius_m.empty())
-    data.of_points.push_back(numbers_of("fixture_radius", "Float64", cloud.fixture_radius_m));
+    data.of_points.push_back(array_of("fixture_radius", cloud.fixture_radius_m));
   if (!cloud.stiffness_N_per_m.empty())
-    data.of_points.push_back(numbers_of("stiffness", "Float64", cloud.stiffness_N_per_m));
+    data.of_points.push_back(array_of("stiffness", cloud.stiffness_N_per_m));
   return data;
 }
 
@@ -194,14 +176,6 @@ VtkPolyData tool_at(const VoxelTool& tool, const ToolPose& pose, double time_s) 
 struct Series {
   std::vector<std::string> names;
   std::vector<double> time_s;
-
-  void write(const ExportJob& job, const std::filesystem::path& file) const {
-    constexpr const char* kOpening = "{\"file-series-version\":\"1.0\",";  // as dump() writes it
-    Json list = Json::array();
-    for (std::size_t i = 0; i < names.size(); ++i) list.push_back({{"name", names[i]}, {"time", time_s[i]}});
-    job.begin(file, kOpening);
-    job.files.append(Json{{"file-series-version", "1.0"}, {"files", list}}.dump() + "\n");
-  }
 };
 
 class VtpFolder {
@@ -238,7 +212,13 @@ class VtpFolder {
     write(stem_ + ".pvd", xml + "</Collection>\n</VTKFile>\n");
   }
   void write_series(const Series& series, const std::string& thing) const {
-    if (!series.names.empty()) series.write(job_, path_of(stem_ + "_" + thing + ".vtp.series"));
+    constexpr const char* kOpening = "{\"file-series-version\":\"1.0\",";  // as dump() writes it
+    if (series.names.empty()) return;
+    Json list = Json::array();
+    for (std::size_t i = 0; i < series.names.size(); ++i)
+      list.push_back({{"name", series.names[i]}, {"time", series.time_s[i]}});
+    job_.begin(path_of(stem_ + "_" + thing + ".vtp.series"), kOpening);
+    job_.files.append(Json{{"file-series-version", "1.0"}, {"files", list}}.dump() + "\n");
   }
   std::string path_name() const { return job_.output.filename().string(); }
 

@@ -36,8 +36,8 @@ std::string record(int kind, const std::string& content) {
 // Follows https://mcap.dev/spec, record by record.
 TEST(McapWriter, HasTheRecordsOfTheSpecification) {
   std::string file;
-  McapWriter mcap("profile", "library", [&](const std::string& bytes) { file += bytes; });
-  const std::uint16_t channel = mcap.add_topic({"/a", "schema", "ros2msg", "definition", "cdr"});
+  McapWriter mcap([&](const std::string& bytes) { file += bytes; });
+  const std::uint16_t channel = mcap.add_topic("/a", {"schema", "definition"});
   mcap.add_metadata("about", {{"key", "value"}});
   mcap.message(channel, 7, 5, "one");
   mcap.message(channel, 9, 9, "two");
@@ -50,7 +50,7 @@ TEST(McapWriter, HasTheRecordsOfTheSpecification) {
   const std::string second = record(5, u16(0) + u32(1) + u64(9) + u64(9) + "two");
   const std::string records = schema + topic + first + second;
   const std::string metadata = record(12, text("about") + text(text("key") + text("value")));
-  std::string data = magic + record(1, text("profile") + text("library"));
+  std::string data = magic + record(1, text("ros2") + text("remote-touch export"));
   const std::size_t metadata_at = data.size();
   data += metadata;
   const std::size_t chunk_at = data.size();
@@ -80,15 +80,15 @@ TEST(McapWriter, HasTheRecordsOfTheSpecification) {
   footer.resize(footer.size() - 4);
   const std::string checked = summary + offsets + footer;
   EXPECT_EQ(file, data + checked + u32(crc(checked)) + magic);
-  EXPECT_TRUE(file.starts_with(McapWriter::opening("profile", "library")));
+  EXPECT_TRUE(file.starts_with(McapWriter::opening()));
 }
 
 // A message larger than a chunk, and many small ones: each chunk can be found by its index.
 TEST(McapWriter, LongFilesHaveSeveralChunks) {
   std::string file;
-  McapWriter mcap("", "", [&](const std::string& bytes) { file += bytes; });
-  const std::uint16_t channel = mcap.add_topic({"/a", "s", "ros2msg", "", "cdr"});
-  EXPECT_EQ(mcap.add_topic({"/b", "s", "ros2msg", "", "cdr"}), channel + 1);
+  McapWriter mcap([&](const std::string& bytes) { file += bytes; });
+  const std::uint16_t channel = mcap.add_topic("/a", {"s", ""});
+  EXPECT_EQ(mcap.add_topic("/b", {"s", ""}), channel + 1);
   mcap.message(channel, 0, 0, std::string(3 << 20, 'x'));
   for (std::uint64_t i = 1; i <= 5000; ++i) mcap.message(channel, i, i, std::string(1000, 'y'));
   mcap.finish();
@@ -122,7 +122,7 @@ TEST(RosMessages, Wrench) {
 TEST(RosMessages, PointCloud) {
   const std::string data = raw(1.0f) + raw(2.0f) + raw(3.0f) + raw(4.0f);
   const std::string zero3(3, '\0'), zero2(2, '\0');
-  EXPECT_EQ(point_cloud_message(3'500'000'000, {{"x", kRosFloat32}, {"rgb", kRosFloat32}}, data),
+  EXPECT_EQ(point_cloud_message(3'500'000'000, {"x", "rgb"}, data),
             header(2) + raw(1) + raw(2) + raw(2) +                                           // 1 x 2, fields
                 raw(2) + std::string("x\0", 2) + zero2 + raw(0) + "\x07" + zero3 + raw(1) +  // x
                 raw(4) + std::string("rgb\0", 4) + raw(4) + "\x07" + zero3 + raw(1) +        // rgb
