@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "core/parameters/input_error.h"
@@ -20,46 +21,21 @@ constexpr const char* kYear = "{2026}";
 
 // BibTeX counts braces even behind a backslash, so a brace is written as a command.
 std::string escaped(char c) {
-  switch (c) {
-    case '\\':
-      return "{\\textbackslash}";
-    case '{':
-      return "{\\textbraceleft}";
-    case '}':
-      return "{\\textbraceright}";
-    case '^':
-      return "{\\textasciicircum}";
-    case '~':
-      return "{\\textasciitilde}";
-    case '<':
-      return "{\\textless}";
-    case '>':
-      return "{\\textgreater}";
-    case '|':
-      return "{\\textbar}";
-    case '\'':
-      return "{\\textquotesingle}";
-    case '`':
-      return "{\\textasciigrave}";
-    case '#':
-    case '$':
-    case '%':
-    case '&':
-    case '_':
-      return {'\\', c};
-    default:
-      return {c};
-  }
+  static const std::map<char, const char*> commands = {
+      {'\\', "backslash"},   {'{', "braceleft"}, {'}', "braceright"}, {'^', "asciicircum"},
+      {'~', "asciitilde"},   {'<', "less"},      {'>', "greater"},    {'|', "bar"},
+      {'\'', "quotesingle"}, {'`', "asciigrave"}};
+  if (const auto found = commands.find(c); found != commands.end())
+    return std::string("{\\text") + found->second + "}";
+  return std::string("#$%&_").find(c) != std::string::npos ? std::string{'\\', c} : std::string{c};
 }
 
 std::string braced(const std::string& text) {
-  std::string value = "{";
-  return value.append(bibtex_text(text)).append("}");
+  return "{" + bibtex_text(text) + "}";
 }
 
 std::string typewriter(const std::string& text) {
-  std::string value = "\\texttt";
-  return value.append(braced(text));
+  return "\\texttt" + braced(text);
 }
 
 // Names and values of fields; each value includes its braces.
@@ -68,11 +44,10 @@ using Fields = std::vector<std::pair<std::string, std::string>>;
 std::string bibtex_entry(const std::string& kind, const std::string& key, const Fields& fields) {
   std::size_t width = 0;
   for (const auto& field : fields) width = std::max(width, field.first.size());
-  std::string text = "@";
-  text.append(kind).append("{").append(key);
+  std::string text = "@" + kind + "{" + key;
   for (const auto& [name, value] : fields)
-    text.append(",\n  ").append(name).append(width - name.size(), ' ').append(" = ").append(value);
-  return text.append("\n}\n");
+    text += ",\n  " + name + std::string(width - name.size(), ' ') + " = " + value;
+  return text + "\n}\n";
 }
 
 // Returns a key that BibTeX accepts.
@@ -87,12 +62,10 @@ std::string key_of(const std::string& name) {
 
 // "version 0.3.0, commit HASH with local changes, sources with SHA-256 HASH"
 std::string build_text(const TextAttributes& attributes) {
-  std::string text = "version ";
-  text.append(attribute(attributes, "version")).append(", ").append(commit_text(attributes));
+  const std::string text = "version " + attribute(attributes, "version") + ", " + commit_text(attributes);
   const std::string sources = attribute(attributes, "source_digest");
-  if (attribute(attributes, "git_dirty") != "no" && !sources.empty())
-    text.append(", sources with SHA-256 ").append(sources);
-  return text;
+  if (attribute(attributes, "git_dirty") == "no" || sources.empty()) return text;
+  return text + ", sources with SHA-256 " + sources;
 }
 
 // Returns the names of the user's program or plug-ins that add renderers and the like to the catalog; empty
@@ -100,29 +73,23 @@ std::string build_text(const TextAttributes& attributes) {
 std::string own_programs(const TextAttributes& attributes) {
   std::string text;
   if (const std::string program = attribute(attributes, "program"); !program.empty())
-    text.append("; in the program ")
-        .append(program)
-        .append(", SHA-256 ")
-        .append(attribute(attributes, "program_sha256"));
+    text = "; in the program " + program + ", SHA-256 " + attribute(attributes, "program_sha256");
   if (const std::string plugins = attribute(attributes, "plugins"); !plugins.empty())
-    text.append("; with the plug-ins ").append(plugins);
+    text += "; with the plug-ins " + plugins;
   return text;
 }
 
 // Returns the text as TeX.
 std::string how_to_repeat(const CitedResult& result) {
   std::string commands;
-  for (const std::string& command : result.commands)
-    commands.append(commands.empty() ? "" : "; ").append(command);
+  for (const std::string& command : result.commands) commands += (commands.empty() ? "" : "; ") + command;
   std::string text;
   if (commands != printable(commands))
-    text.append("; ")
-        .append(typewriter(shell_command({"remote-touch", "repro", result.file})))
-        .append(" prints the commands that make it again");
+    text = "; " + typewriter(shell_command({"remote-touch", "repro", result.file})) +
+           " prints the commands that make it again";
   else if (!commands.empty())
-    text.append("; made again by ").append(typewriter(commands));
-  if (!result.remark.empty()) text.append("; ").append(bibtex_text(result.remark));
-  return text;
+    text = "; made again by " + typewriter(commands);
+  return result.remark.empty() ? text : text + "; " + bibtex_text(result.remark);
 }
 
 }  // namespace
@@ -150,29 +117,27 @@ std::string dissertation_entry() {
 std::string program_entry(const TextAttributes& attributes) {
   const std::string stored_version = attribute(attributes, "version");
   const std::string commit = attribute(attributes, "git_commit");
-  std::string key = "remote_touch_";
-  key += key_of(commit.empty() || commit == "unknown" ? stored_version : commit.substr(0, 12));
+  const std::string build = commit.empty() || commit == "unknown" ? stored_version : commit.substr(0, 12);
   Fields fields = {{"author", kAuthor}, {"title", kTitle}, {"version", braced(stored_version)}};
   if (stored_version == version()) fields.emplace_back("year", kYear);
   fields.emplace_back("note", braced(build_text(attributes)));
-  return bibtex_entry("software", key, fields);
+  return bibtex_entry("software", "remote_touch_" + key_of(build), fields);
 }
 
 std::string result_entry(const CitedResult& result, const TextAttributes& attributes) {
   const std::filesystem::path file(result.file);
   const std::string name = file.filename().string();
-  std::string origin = "{";
-  origin.append(bibtex_text(result.kind + " ")).append(typewriter(name));
-  origin.append(bibtex_text(" of Remote Touch, " + build_text(attributes) + own_programs(attributes)));
-  std::string note = "{";
-  note.append(bibtex_text(result.digest)).append(how_to_repeat(result));
+  const std::string origin =
+      bibtex_text(result.kind + " ") + typewriter(name) +
+      bibtex_text(" of Remote Touch, " + build_text(attributes) + own_programs(attributes));
+  std::string note = bibtex_text(result.digest) + how_to_repeat(result);
   if (const std::string inputs = attribute(attributes, "input_digests"); !inputs.empty())
-    note.append(bibtex_text("; it read " + inputs));
+    note += bibtex_text("; it read " + inputs);
   return bibtex_entry("misc", key_of(file.stem().string()),
                       {{"key", braced(name)},
                        {"title", braced(result.title.empty() ? name : result.title)},
-                       {"howpublished", origin.append("}")},
-                       {"note", note.append("}")}});
+                       {"howpublished", "{" + origin + "}"},
+                       {"note", "{" + note + "}"}});
 }
 
 }  // namespace remote_touch
