@@ -13,10 +13,6 @@ namespace {
 // Fraction of a mean by which it may differ: for rounding, and for changes too small to matter.
 constexpr double kSlack = 1e-3;
 
-using Texts = std::vector<std::string>;
-using Counts = std::vector<std::int32_t>;
-using Numbers = std::vector<double>;
-
 // The table with its columns scene, method and noise_sigma.
 template <class Row>
 Table table_of_cells(const char* name, const char* title, const std::vector<Row>& rows) {
@@ -29,9 +25,8 @@ Table table_of_cells(const char* name, const char* title, const std::vector<Row>
   return table;
 }
 
-CardCell cell_in(const Table& table, std::size_t row) {
-  return {values_of<Texts>(table, "scene")[row], values_of<Texts>(table, "method")[row],
-          values_of<Numbers>(table, "noise_sigma")[row]};
+CardCell cell_in(const TableRow& row) {
+  return {row.text("scene"), row.text("method"), row.number("noise_sigma")};
 }
 
 // Key for sorting. A NaN noise is the scene's own, and comes before all others.
@@ -70,6 +65,13 @@ void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::v
 }
 
 }  // namespace
+
+std::vector<TableRow> rows_by(const Table& table, const char* text_column) {
+  std::vector<TableRow> rows;
+  const std::size_t count = values_of<std::vector<std::string>>(table, text_column).size();
+  for (std::size_t i = 0; i < count; ++i) rows.push_back({&table, i});
+  return rows;
+}
 
 CardNumbers numbers_of(const Scorecard& card, KeptMeasures kept) {
   CardNumbers numbers;
@@ -113,31 +115,29 @@ Table means_table(const CardNumbers& numbers) {
   add_column(table, rows, "units", "unit of the measure", &Row::units);
   add_column(table, rows, "runs", "runs that have a number",
              [](const Row& row) { return static_cast<std::int32_t>(row.value.clusters); });
-  add_column(table, rows, "mean", "mean, in the measure's unit",
-             [](const Row& row) { return row.value.value; });
-  add_column(table, rows, "low", "lower end of the interval", [](const Row& row) { return row.value.low; });
-  add_column(table, rows, "high", "upper end of the interval", [](const Row& row) { return row.value.high; });
+  const auto add = [&](const char* name, const char* meaning, auto part) {
+    add_column(table, rows, name, meaning, [part](const Row& row) { return row.value.*part; });
+  };
+  add("mean", "mean, in the measure's unit", &Estimate::value);
+  add("low", "lower end of the interval", &Estimate::low);
+  add("high", "upper end of the interval", &Estimate::high);
   return table;
 }
 
 CardNumbers numbers_in(const Table& counts, const Table& means) {
   CardNumbers numbers;
-  const auto number = [](const Table& table, const char* name, std::size_t row) {
-    return values_of<Numbers>(table, name)[row];
-  };
-  for (std::size_t i = 0; i < values_of<Texts>(counts, "scene").size(); ++i)
-    numbers.counts.push_back(
-        {cell_in(counts, i),
-         {values_of<Counts>(counts, "successes")[i], values_of<Counts>(counts, "runs")[i],
-          number(counts, "fraction", i), number(counts, "low", i), number(counts, "high", i)}});
-  for (std::size_t i = 0; i < values_of<Texts>(means, "scene").size(); ++i)
-    numbers.means.push_back({cell_in(means, i),
-                             values_of<Texts>(means, "measure")[i],
-                             values_of<Texts>(means, "units")[i],
-                             {.value = number(means, "mean", i),
-                              .low = number(means, "low", i),
-                              .high = number(means, "high", i),
-                              .clusters = values_of<Counts>(means, "runs")[i]}});
+  for (const TableRow& row : rows_by(counts, "scene"))
+    numbers.counts.push_back({cell_in(row),
+                              {row.count("successes"), row.count("runs"), row.number("fraction"),
+                               row.number("low"), row.number("high")}});
+  for (const TableRow& row : rows_by(means, "scene"))
+    numbers.means.push_back({cell_in(row),
+                             row.text("measure"),
+                             row.text("units"),
+                             {.value = row.number("mean"),
+                              .low = row.number("low"),
+                              .high = row.number("high"),
+                              .clusters = row.count("runs")}});
   return numbers;
 }
 
@@ -317,12 +317,6 @@ Table behind_table(const Scorecard& card) {
 
 namespace {
 
-const SceneThreshold* find_threshold(const SceneScore& scene, const std::string& measure) {
-  for (const SceneThreshold& one : scene.thresholds)
-    if (one.measure == measure) return &one;
-  return nullptr;
-}
-
 void add_scene(const SceneThreshold& scene, ThresholdSummary& summary) {
   for (std::size_t c = 0; c < summary.methods.size(); ++c) {
     ThresholdCounts& counts = summary.methods[c];
@@ -342,8 +336,8 @@ std::vector<ThresholdSummary> threshold_summary(const Scorecard& card) {
     ThresholdSummary summary{threshold, std::vector<ThresholdCounts>(card.methods.size())};
     bool is_reported = false;
     for (const SceneScore& scene : card.scenes) {
-      const SceneThreshold* found = find_threshold(scene, threshold.measure);
-      if (!found) continue;
+      const auto found = std::ranges::find(scene.thresholds, threshold.measure, &SceneThreshold::measure);
+      if (found == scene.thresholds.end()) continue;
       is_reported = true;
       add_scene(*found, summary);
     }

@@ -2,6 +2,7 @@
 // thresholds of perception.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -54,6 +55,20 @@ const List& values_of(const Table& table, const std::string& name) {
   throw std::out_of_range("table " + table.name + " has no usable column " + name);
 }
 
+// A row of a table. Throws as values_of().
+struct TableRow {
+  const Table* table;
+  std::size_t row;
+
+  std::string text(const char* name) const { return values_of<std::vector<std::string>>(*table, name)[row]; }
+  double number(const char* name) const { return values_of<std::vector<double>>(*table, name)[row]; }
+  std::int32_t count(const char* name) const {
+    return values_of<std::vector<std::int32_t>>(*table, name)[row];
+  }
+};
+// Returns the rows of a table by a column of texts. Throws as values_of().
+std::vector<TableRow> rows_by(const Table& table, const char* text_column);
+
 // Adds to the table a column of numbers without unit, counts or texts: value(row) of each row.
 template <class Row, class Value>
 void add_column(Table& table, const std::vector<Row>& rows, std::string name, std::string meaning,
@@ -76,9 +91,6 @@ CardNumbers numbers_in(const Table& counts, const Table& means);
 // Stored numbers that the new card lacks are not compared. Both cards use the same seeds, so equal programs
 // have equal numbers and no difference is due to chance.
 std::vector<std::string> differences(const CardNumbers& stored, const CardNumbers& now);
-
-// Summary of a scorecard's methods over all scenes, and a list of everything in which a method is behind
-// others.
 
 enum class Mark { none, best, worst };
 Mark mark_of(const Ranking& ranking, std::size_t method);
@@ -119,8 +131,6 @@ std::vector<Weakness> weaknesses(const Scorecard& card, const std::string& metho
 // own_method().
 Table overview_table(const Scorecard& card);
 Table behind_table(const Scorecard& card);
-
-// Measures of a scorecard's methods, compared with the published thresholds of perception.
 
 // Number of runs of one method whose measure is below its threshold, over all scenes that report the measure.
 // Only successful runs in which the measure is a number count: a run that lost the surface has no force to

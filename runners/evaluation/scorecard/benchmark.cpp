@@ -32,17 +32,15 @@ Json read_object(const std::string& json, const std::string& label, const std::v
 }
 
 std::string text_of(const Json& object, const char* part, const std::string& label) {
-  const auto found = object.find(part);
-  if (found == object.end() || !found->is_string())
-    throw InputError(label + ": " + part, "missing: expected a text");
-  return found->get<std::string>();
+  const Json found = object.value(part, Json());
+  if (!found.is_string()) throw InputError(label + ": " + part, "missing: expected a text");
+  return found.get<std::string>();
 }
 
 std::string object_of(const Json& object, const char* part, const std::string& label) {
-  const auto found = object.find(part);
-  if (found == object.end() || !found->is_object())
-    throw InputError(label + ": " + part, "missing: expected {...}");
-  return found->dump();
+  const Json found = object.value(part, Json());
+  if (!found.is_object()) throw InputError(label + ": " + part, "missing: expected {...}");
+  return found.dump();
 }
 
 // Returns the direction of a measure in a scene. "judged" is the measure's own direction. A scene may define
@@ -81,12 +79,29 @@ std::vector<Bound> bounds_of(const Json& success, const char* part, const std::s
 }
 
 void add_measure(BenchmarkScene& scene, const std::string& name, Better better) {
-  for (const BenchmarkScene::Judged& judged : scene.measures)
-    if (judged.measure == name) return;
-  scene.measures.push_back({name, better});
+  if (std::ranges::find(scene.measures, name, &BenchmarkScene::Judged::measure) == scene.measures.end())
+    scene.measures.push_back({name, better});
 }
 void add_judged(BenchmarkScene& scene, const std::string& name) {
   add_measure(scene, name, direction_of(directions(), name));
+}
+
+// The symmetric rule of a scene in which the surface has to be held: one for balls, points and springs, see
+// contact_measures.h.
+std::vector<Bound> held_bounds(double tolerance_m) {
+  return {{.measure = "max_contact_error", .max = tolerance_m},
+          {.measure = "contact_force_fraction", .min = 0.9},
+          {.measure = "contact_known_fraction", .min = 0.9}};
+}
+
+std::string held_meaning(double tolerance_m) {
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "held: from %g s after the HIP got below the true surface on, the contact point is never more "
+      "than %g mm from it, above or below, and there is a force in 90 %% of these ticks",
+      kSettling_s, 1e3 * tolerance_m);
+  return text;
 }
 
 // Reads {"rule": "held", "tolerance_m", "bounds" and their "meaning"}. The bounds are added to those of the
@@ -130,9 +145,7 @@ void read_rule(const Json& success, const std::string& rule, BenchmarkScene& sce
 void read_success(const Json& success, const std::string& rule, BenchmarkScene& scene) {
   scene.old_success = bounds_of(success, "old_bounds", rule);
   read_rule(success, rule, scene);
-  Bound finite{"non_finite_fraction"};
-  finite.max = 0;
-  scene.success.push_back(finite);
+  scene.success.push_back({.measure = "non_finite_fraction", .max = 0});
   scene.meaning += "; every output is finite";
 }
 
@@ -199,19 +212,6 @@ std::vector<std::string> measured(const BenchmarkScene& scene) {
 const std::vector<double>& scorecard_noise_m() {
   static const std::vector<double> levels = {0, 0.0005, 0.001, 0.003, 0.005, 0.01};
   return levels;
-}
-
-std::vector<Bound> held_bounds(double tolerance_m) {
-  Bound error{"max_contact_error"}, force{"contact_force_fraction"}, known{"contact_known_fraction"};
-  error.max = tolerance_m, force.min = 0.9, known.min = 0.9;
-  return {error, force, known};
-}
-
-std::string held_meaning(double tolerance_m) {
-  return formatted(
-      "held: from %g s after the HIP got below the true surface on, the contact point is never more "
-      "than %g mm from it, above or below, and there is a force in 90 %% of these ticks",
-      kSettling_s, 1e3 * tolerance_m);
 }
 
 Method read_method(const std::string& name, const std::string& json) {
@@ -362,9 +362,7 @@ std::vector<Method> chosen_methods(const std::vector<std::string>& names) {
   std::vector<EmbeddedText> known(stored.begin(), stored.end());
   std::deque<std::string> texts;
   for (const RendererEntry& entry : renderers()) {
-    if (std::any_of(stored.begin(), stored.end(),
-                    [&](const EmbeddedText& text) { return text.name == entry.name; }))
-      continue;
+    if (is_stored(stored, entry.name)) continue;
     texts.push_back(Json{{"title", entry.summary}, {"renderer", {{"name", entry.name}}}}.dump());
     known.push_back({entry.name.c_str(), texts.back().c_str()});
   }

@@ -51,11 +51,6 @@ struct BenchmarkScene {
   Sweep sweep(const Method& method, int replicates) const;
 };
 
-// The symmetric rule of a scene in which the surface has to be held, {"rule": "held"}: one for balls, points
-// and springs, see contact_measures.h.
-std::vector<Bound> held_bounds(double tolerance_m);
-std::string held_meaning(double tolerance_m);
-
 // Methods and scenes as JSON, stored with results.
 std::string configuration(const std::vector<Method>& methods, const std::vector<BenchmarkScene>& scenes,
                           int replicates);

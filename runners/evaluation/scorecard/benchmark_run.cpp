@@ -1,5 +1,6 @@
 #include "runners/evaluation/scorecard/benchmark_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -17,8 +18,9 @@ namespace {
 
 constexpr double kDamper_Ns_per_m = 3;
 
-// Returns all parameters of the renderer; those that are left out have their defaults.
-Json complete(const Json& renderer) {
+// Returns all parameters of the method's renderer; those that are left out have their defaults.
+Json complete(const Method& method) {
+  const Json renderer = parse_json(method.renderer, method.name);
   auto factory = find_entry(renderers(), renderer.at("name").get<std::string>(), "renderer.name").make();
   read_parameters(renderer, factory->settings(), "renderer", {"name"});
   Json all = {{"name", renderer.at("name")}};
@@ -29,8 +31,8 @@ Json complete(const Json& renderer) {
 // Returns the method with one parameter changed, or the method itself if the parameter has that value
 // already.
 Method with(const Method& method, const char* parameter, const Json& value, const std::string& mark) {
+  if (complete(method).at(parameter) == value) return method;
   Json renderer = parse_json(method.renderer, method.name);
-  if (complete(renderer).at(parameter) == value) return method;
   renderer[parameter] = value;
   return {method.name + "+" + mark, method.title + ", " + parameter + " = " + value.dump(), renderer.dump()};
 }
@@ -41,10 +43,9 @@ std::vector<Method> force_laws_of(const Method& method) {
   std::vector<Method> laws;
   std::set<std::string> complete_laws;
   const auto add = [&](Method law) {
-    if (complete_laws.insert(complete(parse_json(law.renderer, law.name)).dump()).second)
-      laws.push_back(std::move(law));
+    if (complete_laws.insert(complete(law).dump()).second) laws.push_back(std::move(law));
   };
-  const Json own = complete(parse_json(method.renderer, method.name));
+  const Json own = complete(method);
   add(method);
   // The velocity term is zero without an estimate, whatever its sign.
   if (own.contains("velocity_force") && own.value("velocity_estimate", true))
@@ -76,6 +77,27 @@ std::vector<BenchmarkSweep> BenchmarkPlan::sweeps() const {
   return list;
 }
 
+namespace {
+
+// The sweeps of all methods in a scene, in order. Throws MissingRecording for a scene whose recording is not
+// on this machine, InputError for a sweep that cannot be run.
+std::vector<BenchmarkSweep> sweeps_of(const Benchmark& benchmark, const BenchmarkScene& scene) {
+  std::vector<BenchmarkSweep> sweeps;
+  for (const Method& method : benchmark.methods) {
+    Sweep sweep = scene.sweep(method, benchmark.replicates);
+    const std::string name = scene.name + "." + method.name;
+    // Makes the file again, in any folder.
+    const std::string command = program_text() + " scorecard " + method.name + " --scene " + scene.name +
+                                " --seeds " + std::to_string(benchmark.replicates);
+    TextAttributes attributes = provenance(sweep.to_json(), command, "", input_hashes(sweep.inputs()));
+    sweeps.push_back(
+        {name, std::move(sweep), std::move(attributes), benchmark.folder / "runs" / (name + ".h5")});
+  }
+  return sweeps;
+}
+
+}  // namespace
+
 BenchmarkPlan plan_of(const Benchmark& benchmark) {
   BenchmarkPlan plan;
   plan.benchmark = benchmark;
@@ -86,7 +108,7 @@ BenchmarkPlan plan_of(const Benchmark& benchmark) {
       plan.skipped.emplace_back(scene.name, missing.what());
       continue;
     }
-    if (!is_passivity_scene(scene.name)) continue;
+    if (std::ranges::find(kPassivityScenes, scene.name) == std::end(kPassivityScenes)) continue;
     if (plan.laws.empty())
       for (const Method& method : plan.benchmark.methods)
         for (Method& law : force_laws_of(method)) plan.laws.push_back(std::move(law));
@@ -95,29 +117,6 @@ BenchmarkPlan plan_of(const Benchmark& benchmark) {
     plan.audit.push_back({scene, sweeps_of(audit, scene)});
   }
   return plan;
-}
-
-namespace {
-
-// Returns the command that makes the file again, in any folder.
-std::string command_of(const Benchmark& benchmark, const BenchmarkScene& scene, const Method& method) {
-  return program_text() + " scorecard " + method.name + " --scene " + scene.name + " --seeds " +
-         std::to_string(benchmark.replicates);
-}
-
-}  // namespace
-
-std::vector<BenchmarkSweep> sweeps_of(const Benchmark& benchmark, const BenchmarkScene& scene) {
-  std::vector<BenchmarkSweep> sweeps;
-  for (const Method& method : benchmark.methods) {
-    Sweep sweep = scene.sweep(method, benchmark.replicates);
-    const std::string name = scene.name + "." + method.name;
-    TextAttributes attributes =
-        provenance(sweep.to_json(), command_of(benchmark, scene, method), "", input_hashes(sweep.inputs()));
-    sweeps.push_back(
-        {name, std::move(sweep), std::move(attributes), benchmark.folder / "runs" / (name + ".h5")});
-  }
-  return sweeps;
 }
 
 void require_same_benchmark(const std::vector<BenchmarkSweep>& sweeps) {
@@ -172,15 +171,7 @@ bool judges_contact(const BenchmarkScene& scene) {
 }
 
 const char* words_of(Compared kind) {
-  switch (kind) {
-    case Compared::hip:
-      return "for a HIP";
-    case Compared::tools:
-      return "for tools";
-    case Compared::teleoperation:
-      break;
-  }
-  return "of teleoperation";
+  return kind == Compared::hip ? "for a HIP" : kind == Compared::tools ? "for tools" : "of teleoperation";
 }
 
 // Throws InputError if a scene judges the contact of a renderer whose rest distance is not known. Its runs

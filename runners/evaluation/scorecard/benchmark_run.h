@@ -1,7 +1,6 @@
 // The runs of a scorecard: the choice of methods and scenes, all sweeps, the passivity audit, and doing them.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <functional>
@@ -21,10 +20,6 @@ namespace remote_touch {
 // Scenes of the audit. A HIP presses and slides. A tool does the same, and also presses, tilts and turns.
 inline constexpr const char* kPassivityScenes[] = {"passivity", "tool-passivity-slide",
                                                    "tool-passivity-turn"};
-inline bool is_passivity_scene(const std::string& name) {
-  return std::find(std::begin(kPassivityScenes), std::end(kPassivityScenes), name) !=
-         std::end(kPassivityScenes);
-}
 inline constexpr int kPassivityCycles = 3;  // number of cycles in a run of such a scene
 
 // Returns the method with each combination of those parameters of its renderer that affect energy: without
@@ -50,10 +45,6 @@ struct Benchmark {
   int replicates = 10;
   std::filesystem::path folder;
 };
-
-// The sweeps of all methods in a scene, in order. Throws MissingInput for a scene whose recording is not
-// on this machine, InputError for a sweep that cannot be run.
-std::vector<BenchmarkSweep> sweeps_of(const Benchmark& benchmark, const BenchmarkScene& scene);
 
 // Throws InputError, before anything is run or written, if a file of one of these sweeps exists that is of
 // other settings or another build.

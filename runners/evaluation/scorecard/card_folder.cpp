@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <stdexcept>
 
 #include "analysis/figures/result_file.h"
@@ -99,14 +98,12 @@ std::string with_unit(double value, const std::string& units) {
 
 std::string behind_text(const Table& behind, const std::string& own, bool is_significant) {
   std::string rows;
-  for (std::size_t i = 0; i < values_of<std::vector<std::string>>(behind, "scene").size(); ++i) {
-    if ((values_of<std::vector<std::int32_t>>(behind, "significant")[i] != 0) != is_significant) continue;
-    const auto text = [&](const char* name) { return values_of<std::vector<std::string>>(behind, name)[i]; };
-    const auto number = [&](const char* name) { return values_of<std::vector<double>>(behind, name)[i]; };
-    rows += "| " + text("scene") + " | " + text("what") + " | " +
-            with_unit(number("own_mean"), text("units")) + " | " +
-            with_unit(number("other_mean"), text("units")) + " (" + text("other") + ") | " +
-            digits(number("p")) + " |\n";
+  for (const TableRow& row : rows_by(behind, "scene")) {
+    if ((row.count("significant") != 0) != is_significant) continue;
+    rows += "| " + row.text("scene") + " | " + row.text("what") + " | " +
+            with_unit(row.number("own_mean"), row.text("units")) + " | " +
+            with_unit(row.number("other_mean"), row.text("units")) + " (" + row.text("other") + ") | " +
+            digits(row.number("p")) + " |\n";
   }
   if (rows.empty()) return "None.\n";
   return "| scene | what | " + own + " | better | p, corrected |\n|---|---|---|---|---|\n" + rows;
@@ -121,22 +118,15 @@ struct ThresholdColumns {
 // Returns the thresholds of a table "thresholds" in its order.
 std::vector<ThresholdColumns> threshold_columns(const Table& thresholds) {
   std::vector<ThresholdColumns> list;
-  const auto& measures = values_of<std::vector<std::string>>(thresholds, "measure");
-  for (std::size_t i = 0; i < measures.size(); ++i) {
-    const auto text = [&](const char* name) {
-      return values_of<std::vector<std::string>>(thresholds, name)[i];
-    };
+  for (const TableRow& row : rows_by(thresholds, "measure")) {
     const auto share = [&](const char* below, const char* runs) {
-      const auto count = [&](const char* name) {
-        return values_of<std::vector<std::int32_t>>(thresholds, name)[i];
-      };
-      return count(runs) == 0 ? "-" : std::to_string(count(below)) + " of " + std::to_string(count(runs));
+      const std::int32_t all = row.count(runs);
+      return all == 0 ? "-" : std::to_string(row.count(below)) + " of " + std::to_string(all);
     };
-    if (list.empty() || list.back().measure != measures[i])
-      list.push_back({measures[i],
-                      with_unit(values_of<std::vector<double>>(thresholds, "threshold")[i], text("units")),
-                      text("meaning"), text("source")});
-    list.back().cells[text("method")] =
+    if (list.empty() || list.back().measure != row.text("measure"))
+      list.push_back({row.text("measure"), with_unit(row.number("threshold"), row.text("units")),
+                      row.text("meaning"), row.text("source")});
+    list.back().cells[row.text("method")] =
         share("below", "runs") + " | " + share("noise_free_below", "noise_free_runs") + " |";
   }
   return list;
@@ -159,24 +149,18 @@ std::string overview_text(const Table& overview, const std::vector<ThresholdColu
     line += "---|---|";
   }
   text += line + "\n";
-  const auto& methods = values_of<std::vector<std::string>>(overview, "method");
-  const auto& success = values_of<std::vector<double>>(overview, "success");
-  std::vector<std::size_t> order(methods.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return success[a] > success[b]; });
-  for (const std::size_t i : order) {
-    const auto number = [&](const char* name) {
-      return digits(values_of<std::vector<double>>(overview, name)[i]);
-    };
-    const auto count = [&](const char* name) {
-      return std::to_string(values_of<std::vector<std::int32_t>>(overview, name)[i]);
-    };
-    text += "| " + methods[i] + " | " + number("success") + " (" + number("low") + " to " + number("high") +
-            ") | " + number("noise_free") + " | " + number("old_success") + " | " + count("best") + " | " +
-            count("worst") + " |";
+  std::vector<TableRow> rows = rows_by(overview, "method");
+  const auto succeeds_more = [](const TableRow& a, const TableRow& b) {
+    return a.number("success") > b.number("success");
+  };
+  std::stable_sort(rows.begin(), rows.end(), succeeds_more);
+  for (const TableRow& row : rows) {
+    const auto number = [&](const char* name) { return digits(row.number(name)); };
+    text += "| " + row.text("method") + " | " + number("success") + " (" + number("low") + " to " +
+            number("high") + ") | " + number("noise_free") + " | " + number("old_success") + " | " +
+            std::to_string(row.count("best")) + " | " + std::to_string(row.count("worst")) + " |";
     for (const ThresholdColumns& one : thresholds) {
-      const auto found = one.cells.find(methods[i]);
+      const auto found = one.cells.find(row.text("method"));
       text += " " + (found == one.cells.end() ? std::string("- | - |") : found->second);
     }
     text += "\n";
@@ -248,7 +232,7 @@ std::string stored_summary(const std::filesystem::path& file) {
     return "Where " + own + " is not the best, by more than chance:\n\n" + behind_text(behind, own, true) +
            "\nWhere others succeed more often, but not by more than chance, or without noise:\n\n" +
            behind_text(behind, own, false) + "\nAll methods, means over " +
-           std::to_string(values_of<std::vector<std::int32_t>>(overview, "scenes").at(0)) + " scenes:\n\n" +
+           std::to_string(rows_by(overview, "method").at(0).count("scenes")) + " scenes:\n\n" +
            overview_text(overview, thresholds) + sources_text(thresholds);
   } catch (const std::out_of_range& missing) {
     hdf5.damaged(missing.what());

@@ -21,6 +21,11 @@
 
 namespace remote_touch {
 
+namespace {
+
+// Measures one run twice on one thread, at the noise level kCostLevel if there are levels, and returns the
+// faster one. Every point of a frame is computed before the frame is passed to the renderer, so the times do
+// not contain the generation of noise. Returns NaN if the run ends with an error. Throws Interrupted.
 Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
                    const Kernels& kernels, const std::atomic<bool>* stop) {
   const std::size_t cell = std::min(kCostLevel, sweep.sweep.plan().cell_count() - 1);
@@ -41,12 +46,15 @@ Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const 
   return best;
 }
 
+// Returns build, instruction set and processor.
 TextAttributes cost_origin(const Kernels& kernels) {
   TextAttributes origin = provenance("", "", kernels.isa);
   std::erase_if(origin, [](const auto& one) { return one.first == "config" || one.first == "command"; });
   origin.emplace_back("cpu", cpu_name());
   return origin;
 }
+
+}  // namespace
 
 void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
                  const TextAttributes& origin) {
@@ -82,13 +90,13 @@ std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttrib
   return costs;
 }
 
+namespace {
+
 const Cost* find_cost(const std::vector<Cost>& costs, const std::string& scene, const std::string& method) {
   for (const Cost& cost : costs)
     if (cost.scene == scene && cost.method == method) return &cost;
   return nullptr;
 }
-
-namespace {
 
 // Returns true if the file is the trace of this experiment, which an earlier call of the same build wrote.
 // Another build or another failure has another source digest or configuration.
@@ -105,8 +113,9 @@ bool is_there(const std::filesystem::path& file, const Experiment& experiment, c
   }
 }
 
-}  // namespace
-
+// Replays the typical failure, see typical_failure(), at the lowest noise level that has failures, into
+// FOLDER/traces/NAME.h5, unless that file is the trace of this run already. If that run ended with an error,
+// no trace is made and `error` is set. Returns none if every run succeeded.
 std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const StoredSweep& stored,
                                           const std::vector<Bound>& success,
                                           const std::filesystem::path& folder, const Kernels& kernels,
@@ -131,8 +140,6 @@ std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const Sto
   return {};
 }
 
-namespace {
-
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::sort(values.begin(), values.end());
@@ -145,12 +152,6 @@ double median(std::vector<double> values) {
 void add_cost(double own_s, double other_s, std::vector<double>& ratio, std::vector<double>& all_s) {
   if (!(std::isfinite(own_s) && std::isfinite(other_s) && own_s > 0 && other_s > 0)) return;
   ratio.push_back(own_s / other_s), all_s.push_back(own_s);
-}
-
-const JudgedMeasure* find_measure(const SceneScore& scene, const std::string& name) {
-  for (const JudgedMeasure& measure : scene.measures)
-    if (measure.name == name) return &measure;
-  return nullptr;
 }
 
 }  // namespace
@@ -196,9 +197,9 @@ std::vector<CostSummary> cost_summary(const Scorecard& card, const std::vector<C
 }
 
 std::optional<std::vector<std::vector<EnergySummary>>> energies(const SceneScore& scene) {
-  const JudgedMeasure* run = find_measure(scene, "energy_injected");
-  const JudgedMeasure* update = find_measure(scene, "mean_energy_per_update");
-  if (!run || !update) return {};
+  const auto run = std::ranges::find(scene.measures, "energy_injected", &JudgedMeasure::name);
+  const auto update = std::ranges::find(scene.measures, "mean_energy_per_update", &JudgedMeasure::name);
+  if (run == scene.measures.end() || update == scene.measures.end()) return {};
   std::vector<std::vector<EnergySummary>> laws(run->at_level.size());
   for (std::size_t c = 0; c < laws.size(); ++c)
     for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
@@ -255,15 +256,12 @@ Scorecard empty_card(const std::vector<Method>& methods) {
 }
 
 // Computes on one thread while it lives.
-class OneThread {
- public:
+struct OneThread {
   OneThread() { omp_set_num_threads(1); }
-  ~OneThread() { omp_set_num_threads(threads_); }
+  ~OneThread() { omp_set_num_threads(threads); }
   OneThread(const OneThread&) = delete;
   OneThread& operator=(const OneThread&) = delete;
-
- private:
-  const int threads_ = omp_get_max_threads();
+  const int threads = omp_get_max_threads();
 };
 
 // Measures the costs that the file does not contain yet, and returns all. Writes the file after each scene.

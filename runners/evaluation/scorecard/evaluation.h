@@ -19,33 +19,22 @@ namespace remote_touch {
 
 // The cost of renderers: wall-clock time of ticks and frames on this machine. It varies from run to run, so
 // it is stored apart from all results.
-
 struct Cost {
   std::string scene, method;
   double tick_s = 0;   // mean of a tick
   double frame_s = 0;  // mean of on_frame(); NaN without frames
 };
-
-inline constexpr std::size_t kCostLevel = 3;  // index in scorecard_noise_m(): 0.6 r_c
-
-// Measures one run twice on one thread, at the noise level kCostLevel if there are levels, and returns the
-// faster one. Every point of a frame is computed before the frame is passed to the renderer, so the times do
-// not contain the generation of noise. Returns NaN if the run ends with an error. Throws Interrupted.
-Cost measured_cost(const BenchmarkSweep& sweep, const std::string& scene, const std::string& method,
-                   const Kernels& kernels, const std::atomic<bool>* stop);
+inline constexpr std::size_t kCostLevel = 3;  // measured at this index in scorecard_noise_m(): 0.6 r_c
 
 // The costs are stored in a JSON file beside the results, so that scorecard.json of a finished scorecard does
-// not change. origin: see cost_origin(); costs of another origin are not read, nor are those of runs
-// that ended with an error. read_costs() returns none for a file that does not exist or cannot be used.
+// not change. origin: build, instruction set and processor; costs of another origin are not read, nor
+// are those of runs that ended with an error. read_costs() returns none for a file that does not exist or
+// cannot be used.
 void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
                  const TextAttributes& origin);
 std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin);
-// Build, instruction set and processor.
-TextAttributes cost_origin(const Kernels& kernels);
-const Cost* find_cost(const std::vector<Cost>& costs, const std::string& scene, const std::string& method);
 
 // A typical failure of each method in each scene, run again as a full trace.
-
 struct FailureTrace {
   std::size_t level = 0;  // lowest noise level with a failure
   int replicate = 0;
@@ -55,16 +44,7 @@ struct FailureTrace {
   std::string page = {};  // page that shows the trace, relative to the folder; empty: not requested
 };
 
-// Replays the typical failure, see typical_failure(), at the lowest noise level that has failures, into
-// FOLDER/traces/NAME.h5, unless that file is the trace of this run already. If that run ended with an error,
-// no trace is made and `error` is set. Returns none if every run succeeded.
-std::optional<FailureTrace> trace_failure(const BenchmarkSweep& sweep, const StoredSweep& stored,
-                                          const std::vector<Bound>& success,
-                                          const std::filesystem::path& folder, const Kernels& kernels,
-                                          const std::atomic<bool>* stop);
-
 // The results of a scorecard's runs: its numbers, failures, costs and the audit of passivity.
-
 struct ScorecardReport {
   Scorecard card;
   int replicates = 0;
@@ -77,8 +57,6 @@ struct ScorecardReport {
   std::optional<Scorecard> audit;
   std::string cpu = {};  // processor on which the costs were measured
 };
-
-// Summaries of the numbers of a scorecard: which methods stand out, how often, and at what cost.
 
 // Returns a sentence: the best and the worst method by successes, or that none differs from another.
 std::string verdict(const Scorecard& card, const SceneScore& scene);
