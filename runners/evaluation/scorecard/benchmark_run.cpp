@@ -79,7 +79,7 @@ std::vector<BenchmarkSweep> BenchmarkPlan::sweeps() const {
 
 namespace {
 
-// The sweeps of all methods in a scene, in order. Throws MissingRecording for a scene whose recording is not
+// The sweeps of all methods in a scene, in order. Throws MissingInput for a scene whose recording is not
 // on this machine, InputError for a sweep that cannot be run.
 std::vector<BenchmarkSweep> sweeps_of(const Benchmark& benchmark, const BenchmarkScene& scene) {
   std::vector<BenchmarkSweep> sweeps;

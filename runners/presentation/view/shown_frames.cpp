@@ -245,59 +245,37 @@ std::vector<std::uint32_t> all_of(const TouchingPoints& lists) {
   return all;
 }
 
-// Keeps the part of each frame that is shown.
-class FrameViewer {
- public:
-  FrameViewer(const RunPath& path, const ShownPointsRule& rule, const Kernels& kernels)
-      : path_(path), rule_(rule), scale_(point_scale(rule.box_W)), kernels_(kernels) {}
+TouchingPoints touching_in(const PointCloud& cloud, const RunPath& path, std::size_t begin, std::size_t end) {
+  if (!path.tool)
+    return touching_proxy(std::span(path.proxy_W).subspan(begin, end - begin), path.touch_radius_m, cloud);
+  std::vector<ToolPose> poses;
+  for (std::size_t tick = begin; tick < end; ++tick)
+    poses.push_back({path.proxy_W[tick], path.tool_orientation_W[tick]});
+  return touching_tool(*path.tool, poses, cloud);
+}
 
-  void on_frame(const Frame& frame) {
-    const auto [first, last] = std::equal_range(path_.frame.begin(), path_.frame.end(), frame.index);
-    const auto begin = static_cast<std::size_t>(first - path_.frame.begin()),
-               end = static_cast<std::size_t>(last - path_.frame.begin());
-    if (begin == end) return;  // no tick used it: it arrived too late
-    PointCloud buffer;
-    const PointCloud& cloud = frame.points->every_point(kernels_, buffer);
-    const std::uint64_t hash = path_.frame_hash.empty() ? 0 : path_.frame_hash[begin];
-    if (hash != 0 && hash != frame_hash(cloud, frame.captured_s)) shown.are_those_of_the_run = false;
-    if (shown.frames.empty() && cloud.image) shown.X_WC = cloud.image->X_WC;
-    const auto touching = touching_in(cloud, begin, end);
-    ShownPoints points =
-        shown_points(cloud, all_of(touching), std::span(path_.proxy_W).subspan(begin, end - begin), rule_);
-    ShownFrame& now = shown.frames.emplace_back();
-    now.index = frame.index, now.captured_s = frame.captured_s;
-    now.measured = points.measured, now.in_box = points.in_box, now.others = points.others;
-    now.rank = std::move(points.rank);
-    now.positions = numbers_of(cloud, points.indices, scale_);
-    now.colours = colours_of(cloud, points.indices);
-    now.lacks_colours = lacks_colours(cloud, points.indices);
-    now.fixture_radius_m = radii_of(cloud, points.indices);
-    for (const auto& of_tick : touching) {
-      for (const std::uint32_t i : of_tick)
-        now.touching.push_back(static_cast<std::uint32_t>(
-            std::lower_bound(points.indices.begin(), points.indices.end(), i) - points.indices.begin()));
-      now.touching_end.push_back(static_cast<std::uint32_t>(now.touching.size()));
-    }
+// Returns the part of a frame that is shown. begin, end: the ticks that used it.
+ShownFrame shown_frame(const Frame& frame, const PointCloud& cloud, const RunPath& path, std::size_t begin,
+                       std::size_t end, const ShownPointsRule& rule) {
+  const TouchingPoints touching = touching_in(cloud, path, begin, end);
+  ShownPoints points =
+      shown_points(cloud, all_of(touching), std::span(path.proxy_W).subspan(begin, end - begin), rule);
+  ShownFrame now;
+  now.index = frame.index, now.captured_s = frame.captured_s;
+  now.measured = points.measured, now.in_box = points.in_box, now.others = points.others;
+  now.rank = std::move(points.rank);
+  now.positions = numbers_of(cloud, points.indices, point_scale(rule.box_W));
+  now.colours = colours_of(cloud, points.indices);
+  now.lacks_colours = lacks_colours(cloud, points.indices);
+  now.fixture_radius_m = radii_of(cloud, points.indices);
+  for (const auto& of_tick : touching) {
+    for (const std::uint32_t i : of_tick)
+      now.touching.push_back(static_cast<std::uint32_t>(
+          std::lower_bound(points.indices.begin(), points.indices.end(), i) - points.indices.begin()));
+    now.touching_end.push_back(static_cast<std::uint32_t>(now.touching.size()));
   }
-
-  ShownFrames shown;
-
- private:
-  TouchingPoints touching_in(const PointCloud& cloud, std::size_t begin, std::size_t end) const {
-    if (!path_.tool)
-      return touching_proxy(std::span(path_.proxy_W).subspan(begin, end - begin), path_.touch_radius_m,
-                            cloud);
-    std::vector<ToolPose> poses;
-    for (std::size_t tick = begin; tick < end; ++tick)
-      poses.push_back({path_.proxy_W[tick], path_.tool_orientation_W[tick]});
-    return touching_tool(*path_.tool, poses, cloud);
-  }
-
-  const RunPath& path_;
-  const ShownPointsRule& rule_;
-  const PointScale scale_;
-  const Kernels& kernels_;
-};
+  return now;
+}
 
 }  // namespace
 
@@ -330,9 +308,20 @@ ShownFrame thinned(const ShownFrame& frame, std::size_t wanted_others) {
 
 ShownFrames shown_frames(const Experiment& experiment, const RunPath& path, const ShownPointsRule& rule,
                          const Kernels& kernels, const std::atomic<bool>* stop) {
-  FrameViewer viewer(path, rule, kernels);
-  replay_frames(experiment, path.time_s, kernels, stop, [&](const Frame& frame) { viewer.on_frame(frame); });
-  return std::move(viewer.shown);
+  ShownFrames shown;
+  replay_frames(experiment, path.time_s, kernels, stop, [&](const Frame& frame) {
+    const auto [first, last] = std::equal_range(path.frame.begin(), path.frame.end(), frame.index);
+    const auto begin = static_cast<std::size_t>(first - path.frame.begin()),
+               end = static_cast<std::size_t>(last - path.frame.begin());
+    if (begin == end) return;  // no tick used it: it arrived too late
+    PointCloud buffer;
+    const PointCloud& cloud = frame.points->every_point(kernels, buffer);
+    const std::uint64_t hash = path.frame_hash.empty() ? 0 : path.frame_hash[begin];
+    if (hash != 0 && hash != frame_hash(cloud, frame.captured_s)) shown.are_those_of_the_run = false;
+    if (shown.frames.empty() && cloud.image) shown.X_WC = cloud.image->X_WC;
+    shown.frames.push_back(shown_frame(frame, cloud, path, begin, end, rule));
+  });
+  return shown;
 }
 
 }  // namespace remote_touch

@@ -20,8 +20,6 @@
 
 namespace remote_touch {
 
-// The frames of a stored run, made again from its configuration.
-
 // Returns the experiment of a stored trace. Throws InputError, about the name, in three cases: the trace is
 // of a live run, whose frames came from a sensor at times that only its recording contains; the configuration
 // cannot be run; or a recording is not the one that was read.
@@ -35,7 +33,6 @@ void replay_frames(const Experiment& experiment, std::span<const double> time_s,
 
 // Selects the points of a frame that a page shows: all that touch, all near the proxy, and some of the others
 // around the action.
-
 struct ShownPointsRule {
   BoundingBox box_W;              // points outside are left out
   double near_m = 0;              // all points in the box this near to a position of the proxy are shown
@@ -58,9 +55,8 @@ std::uint32_t rank_limit(std::size_t others, std::size_t wanted_others);
 ShownPoints shown_points(const PointCloud& cloud, std::span<const std::uint32_t> always,
                          std::span<const Vec3> proxies_W, const ShownPointsRule& rule);
 
-// Points of a frame that touch the proxy or the tool in each tick.
-
-// Indices of the points that touch, ascending, for each tick. Empty for a tick whose position is not finite.
+// Indices of the points that touch the proxy or the tool, ascending, for each tick. Empty for a tick whose
+// position is not finite.
 using TouchingPoints = std::vector<std::vector<std::uint32_t>>;
 
 // Returns the points whose regions are within radius_m of the proxy's centre. With r2 these are the points

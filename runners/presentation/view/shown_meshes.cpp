@@ -13,9 +13,20 @@
 
 namespace remote_touch {
 
-Json json_of(const PackedArray& array) {
-  return {{"at", array.at}, {"type", array.type}, {"length", array.length}};
+template <class Number>
+Json PackedArrays::add(const std::vector<Number>& values) {
+  constexpr const char* kind = std::is_floating_point_v<Number> ? "f" : std::is_signed_v<Number> ? "i" : "u";
+  bytes_.resize((bytes_.size() + 7) / 8 * 8);
+  const std::size_t at = bytes_.size();
+  bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number));
+  return {{"at", at}, {"type", kind + std::to_string(8 * sizeof(Number))}, {"length", values.size()}};
 }
+template Json PackedArrays::add(const std::vector<double>&);
+template Json PackedArrays::add(const std::vector<float>&);
+template Json PackedArrays::add(const std::vector<std::int32_t>&);
+template Json PackedArrays::add(const std::vector<std::uint32_t>&);
+template Json PackedArrays::add(const std::vector<std::uint16_t>&);
+template Json PackedArrays::add(const std::vector<std::uint8_t>&);
 
 Json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
@@ -67,8 +78,8 @@ Json json_of(const ShownTool& tool, PackedArrays& numbers) {
     for (int axis = 0; axis < 3; ++axis) vertices.push_back(static_cast<float>(v[axis]));
   for (const auto& triangle : tool.tool->mesh.triangles)
     for (const int corner : triangle) triangles.push_back(static_cast<std::uint32_t>(corner));
-  Json json{{"vertices", json_of(numbers.add(vertices))}, {"triangles", json_of(numbers.add(triangles))}};
-  if (tool.spheres) json["spheres"] = json_of(numbers.add(centres_and_radii(tool.spheres->spheres.leaves())));
+  Json json{{"vertices", numbers.add(vertices)}, {"triangles", numbers.add(triangles)}};
+  if (tool.spheres) json["spheres"] = numbers.add(centres_and_radii(tool.spheres->spheres.leaves()));
   return json;
 }
 
@@ -125,8 +136,11 @@ bool same_pose(const ShownPose& a, const ShownPose& b) {
   return a == b || (std::isnan(a[0]) && std::isnan(b[0]));
 }
 
-// Returns the largest part that each of several may have, so that all together have at most `most`.
-std::size_t limit_of_each(std::vector<std::size_t> sizes, std::size_t most) {
+// Returns the largest part that each of the meshes may have, so that all together have at most `most`.
+template <class Mesh, class SizeOf>
+std::size_t limit_of_each(const std::vector<Mesh>& meshes, std::size_t most, SizeOf size_of) {
+  std::vector<std::size_t> sizes;
+  for (const Mesh& mesh : meshes) sizes.push_back(size_of(mesh));
   std::sort(sizes.begin(), sizes.end());
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const std::size_t share = most / (sizes.size() - i);
@@ -134,18 +148,6 @@ std::size_t limit_of_each(std::vector<std::size_t> sizes, std::size_t most) {
     most -= sizes[i];
   }
   return std::numeric_limits<std::size_t>::max();
-}
-
-std::size_t limit_of_triangles(const std::vector<PosedMesh>& meshes) {
-  std::vector<std::size_t> sizes;
-  for (const PosedMesh& mesh : meshes) sizes.push_back(mesh.triangles.size());
-  return limit_of_each(std::move(sizes), kMaxShownTriangles);
-}
-
-std::size_t limit_of_poses(const std::vector<ShownMesh>& meshes) {
-  std::vector<std::size_t> sizes;
-  for (const ShownMesh& mesh : meshes) sizes.push_back(mesh.poses.size());
-  return limit_of_each(std::move(sizes), kMaxShownPoses);
 }
 
 // Keeps every nth pose, beginning with the first, so that at most max_poses remain.
@@ -173,7 +175,8 @@ MeshOnGrid mesh_on_grid(const PosedMesh& mesh, std::size_t max_triangles) {
 
 std::vector<ShownMesh> shown_meshes(const Scenario& scenario, std::span<const double> time_s) {
   const std::vector<PosedMesh> meshes = scenario.true_meshes(time_s.front());
-  const std::size_t max_triangles = limit_of_triangles(meshes);
+  const std::size_t max_triangles =
+      limit_of_each(meshes, kMaxShownTriangles, [](const PosedMesh& mesh) { return mesh.triangles.size(); });
   std::vector<ShownMesh> shown;
   for (const PosedMesh& mesh : meshes)
     shown.push_back({mesh.name, mesh_on_grid(mesh, max_triangles), {}, {}});
@@ -186,27 +189,18 @@ std::vector<ShownMesh> shown_meshes(const Scenario& scenario, std::span<const do
       shown[i].time_s.push_back(t), shown[i].poses.push_back(pose);
     }
   }
-  const std::size_t max_poses = limit_of_poses(shown);
+  const std::size_t max_poses =
+      limit_of_each(shown, kMaxShownPoses, [](const ShownMesh& mesh) { return mesh.poses.size(); });
   for (ShownMesh& mesh : shown) thin(mesh, max_poses);
   return shown;
 }
 
-namespace {
-
-// Returns the time from which a simulated scene rests; 0 if it does not move.
-double end_of_motion_s(const Scenario& scenario) {
-  double end_s = 0;
-  for (const Phase& phase : scenario.phases())
-    end_s = std::max(end_s, std::isfinite(phase.ends_s) ? phase.ends_s : phase.begins_s);
-  return end_s;
-}
-
-}  // namespace
-
 std::vector<ShownMesh> shown_meshes_of_live(const Scenario& scenario, double haptic_rate_hz) {
   constexpr double kMaxTimes = 2000;
   if (!scenario.truth_text().empty()) return {};  // a recording
-  const double end_s = end_of_motion_s(scenario);
+  double end_s = 0;  // from then on the scene rests
+  for (const Phase& phase : scenario.phases())
+    end_s = std::max(end_s, std::isfinite(phase.ends_s) ? phase.ends_s : phase.begins_s);
   const double steps = std::clamp(std::ceil(end_s * haptic_rate_hz), 1.0, kMaxTimes);
   std::vector<double> time_s;
   for (double i = 0; i <= steps; ++i) time_s.push_back(i / steps * end_s);
@@ -219,10 +213,10 @@ Json json_of(const ShownMesh& mesh, PackedArrays& numbers) {
   return {{"name", mesh.name},
           {"low_m", json_of(mesh.mesh.low_O)},
           {"step_m", mesh.mesh.step_m},
-          {"vertices", json_of(numbers.add(mesh.mesh.vertices))},
-          {"triangles", json_of(numbers.add(mesh.mesh.triangles))},
-          {"time_s", json_of(numbers.add(mesh.time_s))},
-          {"poses", json_of(numbers.add(poses))}};
+          {"vertices", numbers.add(mesh.mesh.vertices)},
+          {"triangles", numbers.add(mesh.mesh.triangles)},
+          {"time_s", numbers.add(mesh.time_s)},
+          {"poses", numbers.add(poses)}};
 }
 
 std::string note_on(const std::vector<ShownMesh>& meshes) {

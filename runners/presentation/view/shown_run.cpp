@@ -57,9 +57,9 @@ Json columns_json(const ColumnSource& columns, PackedArrays& numbers) {
                {"width", column.width},
                {"names", column.value_names}};
     if (const auto* doubles = std::get_if<std::vector<double>>(&column.values))
-      entry["numbers"] = json_of(numbers.add(*doubles));
+      entry["numbers"] = numbers.add(*doubles);
     else if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values))
-      entry["numbers"] = json_of(numbers.add(*integers));
+      entry["numbers"] = numbers.add(*integers);
     else
       continue;
     list.push_back(std::move(entry));
@@ -71,12 +71,11 @@ Json frame_json(const ShownFrame& frame, PackedArrays& numbers) {
   Json json{{"index", frame.index},
             {"captured_s", frame.captured_s},
             {"measured", frame.measured},
-            {"positions", json_of(numbers.add(frame.positions))}};
-  if (!frame.colours.empty()) json["colours"] = json_of(numbers.add(frame.colours));
-  if (!frame.fixture_radius_m.empty())
-    json["fixture_radius_m"] = json_of(numbers.add(frame.fixture_radius_m));
-  json["touching"] = json_of(numbers.add(frame.touching));
-  json["touching_end"] = json_of(numbers.add(frame.touching_end));
+            {"positions", numbers.add(frame.positions)}};
+  if (!frame.colours.empty()) json["colours"] = numbers.add(frame.colours);
+  if (!frame.fixture_radius_m.empty()) json["fixture_radius_m"] = numbers.add(frame.fixture_radius_m);
+  json["touching"] = numbers.add(frame.touching);
+  json["touching_end"] = numbers.add(frame.touching_end);
   return json;
 }
 
@@ -223,12 +222,9 @@ struct ShownRun::State {
       add_note(kSheetIsOff + std::string(size));
       run["note"] = note;
     }
-    run["truth"] = {{"columns", TrueHeights::kColumns},
-                    {"stays", heights.stays},
-                    {"low_m", json_of(shown_box_W.min())},
-                    {"high_m", json_of(shown_box_W.max())},
-                    {"time_s", json_of(numbers.add(heights.time_s))},
-                    {"height_m", json_of(numbers.add(heights.height_m))}};
+    run["truth"] = {{"columns", TrueHeights::kColumns},      {"stays", heights.stays},
+                    {"low_m", json_of(shown_box_W.min())},   {"high_m", json_of(shown_box_W.max())},
+                    {"time_s", numbers.add(heights.time_s)}, {"height_m", numbers.add(heights.height_m)}};
   }
 
   const RunSource source;

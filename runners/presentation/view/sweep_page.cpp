@@ -228,11 +228,10 @@ Json map_json(const std::string& file, const std::string& title, const SweepResu
            {"measures", Json::array()}};
   for (const Column& axis : result.axes) map["axes"].push_back(axis_json(axis));
   for (const Column& measure : result.measures)
-    map["measures"].push_back(
-        {{"name", measure.name},
-         {"unit", measure.units},
-         {"meaning", measure.long_name},
-         {"numbers", json_of(numbers.add(std::get<std::vector<double>>(measure.values)))}});
+    map["measures"].push_back({{"name", measure.name},
+                               {"unit", measure.units},
+                               {"meaning", measure.long_name},
+                               {"numbers", numbers.add(std::get<std::vector<double>>(measure.values))}});
   return map;
 }
 

@@ -34,20 +34,13 @@ void find_pop_throughs(const ColumnSource& trace, double held_depth_m, std::vect
                                     : "The proxy's centre passes behind the true surface."});
 }
 
-void find_first_contact(const ColumnSource& trace, std::vector<TraceEvent>& events) {
-  const auto contacts = values_or_none<std::int32_t>(trace, "contact_count");
-  const auto first = std::find_if(contacts.begin(), contacts.end(), [](std::int32_t n) { return n > 0; });
-  if (first != contacts.end())
-    events.push_back({static_cast<std::size_t>(first - contacts.begin()), "first contact",
-                      "The first contact with the measured points."});
-}
-
-void find_first_slave_contact(const ColumnSource& trace, std::vector<TraceEvent>& events) {
-  const auto force_N = values_or_none<double>(trace, "slave_peak_force");
-  const auto first = std::find_if(force_N.begin(), force_N.end(), [](double size_N) { return size_N > 0; });
-  if (first != force_N.end())
-    events.push_back({static_cast<std::size_t>(first - force_N.begin()), "slave contact",
-                      "The slave touches the true surface for the first time."});
+// The first tick at which the column is above zero.
+template <class Number>
+void find_first(const ColumnSource& trace, const char* column, const char* kind, const char* text,
+                std::vector<TraceEvent>& events) {
+  const auto values = values_or_none<Number>(trace, column);
+  const auto first = std::ranges::find_if(values, [](Number value) { return value > 0; });
+  if (first != values.end()) events.push_back({static_cast<std::size_t>(first - values.begin()), kind, text});
 }
 
 void find_hardest_hit(const ColumnSource& trace, std::vector<TraceEvent>& events) {
@@ -141,8 +134,10 @@ std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vecto
                                      double held_depth_m) {
   std::vector<TraceEvent> events;
   find_pop_throughs(trace, held_depth_m, events);
-  find_first_contact(trace, events);
-  find_first_slave_contact(trace, events);
+  find_first<std::int32_t>(trace, "contact_count", "first contact",
+                           "The first contact with the measured points.", events);
+  find_first<double>(trace, "slave_peak_force", "slave contact",
+                     "The slave touches the true surface for the first time.", events);
   find_hardest_hit(trace, events);
   find_largest_forces(trace, events);
   if (trace.has("budget_exhausted"))

@@ -14,15 +14,12 @@
 namespace remote_touch {
 
 // The viewer's script and style, which the build made from runners/presentation/view/page and embedded in the
-// program.
-
-// Both empty in a program that was built without Node.
+// program. Both empty in a program that was built without Node.
 std::string_view viewer_script();
 std::string_view viewer_style();
 
-// An HTML page of the viewer: its script and style, what to show as JSON, and numbers, compressed.
-
-// json: names the arrays in bytes by PackedArray. Throws InputError without viewer_script().
+// Returns an HTML page of the viewer: its script and style, what to show as JSON, and numbers, compressed.
+// json: names the arrays in bytes as PackedArrays::add() does. Throws InputError without viewer_script().
 std::string page_file(const std::string& title, const std::string& json, const std::string& bytes);
 
 // Returns the bytes as a page stores them: gzip, then Base64.
