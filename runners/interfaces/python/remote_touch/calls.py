@@ -1,16 +1,29 @@
 """What the commands of remote-touch do, as functions."""
+from __future__ import annotations
+
 import json
 import operator
 import os
+from builtins import list as _list  # list is a function of this file, below
+from typing import TYPE_CHECKING
 
 from remote_touch import _core
 from remote_touch._core import InputError
 from remote_touch.classes import Renderer, identify, name_of
 
-_list = list  # which is a function of this file, below
+if TYPE_CHECKING:  # what only types need: xarray takes most of a second
+    from collections.abc import Callable, Iterable, Mapping
+    from concurrent.futures import Executor
+    from typing import Any, Literal, Union
+
+    import xarray
+    _Path = Union[str, os.PathLike[str]]
+    _Progress = Union[None, bool, Callable[[float], object]]
 
 
-def run(experiment, *, seed=None, set=None, output=None, force=False, timing=False, progress=None):
+
+def run(experiment: _Path | dict[str, Any], *, seed: int | None = None, set: Mapping[str, Any] | None = None,
+        output: _Path | None = None, force: bool = False, timing: bool = False, progress: _Progress = None) -> xarray.Dataset:
     """Runs an experiment; returns its trace as an xarray.Dataset over time.
 
     experiment: a name, a path of a JSON file, or a dict. set: settings by path, {"scenario.noise_sigma_m": 0.003};
@@ -29,7 +42,9 @@ def run(experiment, *, seed=None, set=None, output=None, force=False, timing=Fal
     return dataset.of_trace(result)
 
 
-def sweep(sweep, *, set=None, threads=None, output=None, progress=None, executor=None, chunk=None):
+def sweep(sweep: _Path | dict[str, Any], *, set: Mapping[str, Any] | None = None, threads: int | None = None,
+          output: _Path | None = None, progress: _Progress = None, executor: Executor | None = None,
+          chunk: int | None = None) -> xarray.Dataset:
     """Does all runs of a sweep; returns the measures as an xarray.Dataset over its axes and replicate.
 
     sweep: a name, a path of a JSON file, or a dict. set: settings of the sweep or of its experiment, by path. threads:
@@ -68,7 +83,8 @@ def _sweep_by(executor, chunk, subject, text, set, threads, output, progress):
     return sweep
 
 
-def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None):
+def replay(sweep: _Path | xarray.Dataset, *, cell: Iterable[int] | Mapping[str, Any] | str | int, replicate: int = 0,
+           output: _Path | None = None, force: bool = False, progress: _Progress = None) -> xarray.Dataset:
     """Repeats one run of a sweep as a full trace. sweep: a file, or what sweep() returned.
 
     cell: the place on each axis from 0, as a tuple, or the value of each axis, as a dict. replicate: its place. In a data set
@@ -89,8 +105,10 @@ def replay(sweep, *, cell, replicate=0, output=None, force=False, progress=None)
     return dataset.of_trace(_warned(result, file))
 
 
-def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=(), difference=(), between=None,
-            direction=None):
+def analyse(sweep: _Path | xarray.Dataset, *, limit: str | None = None, along: str | None = None, above: float = 0.5,
+            level: float = 0.5, mean: str | Iterable[str] = (), by: str | Iterable[str] = (),
+            difference: str | Iterable[str] = (), between: str | None = None,
+            direction: Literal["rises", "falls"] | None = None) -> dict[str, xarray.Dataset]:
     """Answers questions about a sweep; returns tables as a dict of Datasets: limits, mean_MEASURE, difference_MEASURE, and
     limit_difference and limit_ratio.
 
@@ -112,7 +130,7 @@ def analyse(sweep, *, limit=None, along=None, above=0.5, level=0.5, mean=(), by=
     return dataset.of_figure(_warned(result, file))
 
 
-def open(path):
+def open(path: _Path) -> Any:
     """Reads a result: a trace, a sweep or a tally as a Dataset; a figure or a scorecard as a dict of Datasets, its tables.
 
     A folder of a scorecard stands for the file scorecard.h5 in it. Warns if some runs are known to be wrong, or are left out because
@@ -142,23 +160,25 @@ class Comparison:
     "not comparable": also where there are too few runs to decide.
     """
 
-    def __init__(self, outcome, text, report):
+    outcome: Literal["same", "regressed", "not comparable", "changed"]
+
+    def __init__(self, outcome: int, text: str, report: dict[str, Any]) -> None:
         self.outcome = {0: "same", 1: "regressed", 2: "not comparable", 4: "changed"}[outcome]
         self.text, self.report = text, report
 
     @property
-    def same(self):
+    def same(self) -> bool:
         """Whether all values are within their tolerances."""
         return self.outcome == "same"
 
     @property
-    def differences(self):
+    def differences(self) -> _list[str]:
         """The names of columns or measures of which a value is outside."""
         parts = self.report.get("columns") or self.report.get("sweep", {}).get("measures") or []
         return [part["name"] for part in parts if part.get("outside") or part.get("problem")]
 
     @property
-    def judgements(self):
+    def judgements(self) -> dict[str, str]:
         """{"popped_through": "better", ...}: equal, within_margin, better, worse, changed or undecided, of every measure
         of sweeps, and of traces that differ."""
         measures = self.report.get("measures") or self.report.get("sweep", {}).get("measures") or []
@@ -171,7 +191,8 @@ class Comparison:
         return f"<Comparison: {self.outcome}>"
 
 
-def compare(baseline, candidate, *, tolerance=None, paired=False):
+def compare(baseline: _Path | xarray.Dataset, candidate: _Path | xarray.Dataset, *,
+            tolerance: Mapping[str, float | tuple[float, float]] | None = None, paired: bool = False) -> Comparison:
     """Compares two results: files, or Datasets of traces. tolerance: {"force": 1e-9} or {"force": (1e-9, 1e-6)},
     absolute and relative; "*" is every column. All else must be equal bit for bit."""
     tolerances = {_native(name): _tolerance(name, value) for name, value in _items("tolerance", tolerance)}
@@ -184,17 +205,18 @@ def compare(baseline, candidate, *, tolerance=None, paired=False):
     return _comparison(_core.compare_columns(*sides, tolerances))
 
 
-def describe(name):
+def describe(name: str) -> str:
     """All that has the name, as text: parameters of a renderer, the configuration of an experiment, and so on."""
     return _core.describe(_native(name))
 
 
-def list():
+def list() -> dict[str, dict[str, str]]:
     """Names and summaries by kind: rt.list()["renderers"]["proxy"]."""
     return _core.list()
 
 
-def scorecard(methods=(), *, scenes=(), seeds=10, output, threads=None, progress=None):
+def scorecard(methods: Iterable[_Path | type[Renderer]] = (), *, scenes: Iterable[_Path] = (), seeds: int = 10, output: _Path,
+              threads: int | None = None, progress: _Progress = None) -> dict[str, xarray.Dataset]:
     """Compares methods on many scenes; returns the tables of the scorecard as a dict of Datasets.
 
     methods: names, JSON files, dicts {"title", "renderer"} by name, or registered renderer classes; empty: all. scenes:

@@ -1,4 +1,6 @@
 """Base classes of own renderers, scenarios and trajectories, and their place in the catalog."""
+from __future__ import annotations
+
 import dis
 import hashlib
 import math
@@ -6,9 +8,19 @@ import os
 import pathlib
 import sys
 import types
+from typing import TYPE_CHECKING, overload
 
 from remote_touch import _core
 from remote_touch._core import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any, ClassVar, TypeVar, Union
+
+    from numpy.typing import ArrayLike
+
+    from remote_touch._core import Cloud, Device, Frame, NoiseKey, Output, Scene
+    _Class = TypeVar("_Class", bound=Union[type["Renderer"], type["Scenario"], type["Trajectory"]])
 
 
 class Setting:
@@ -17,16 +29,17 @@ class Setting:
     low and high: the range of numbers, ends included. live: may change during a run.
     """
 
-    def __init__(self, value, low=-1e12, high=1e12, help="", live=False, integer=False):
+    def __init__(self, value: Any, low: float = -1e12, high: float = 1e12, help: str = "", live: bool = False,
+                 integer: bool = False) -> None:
         self.name = ""
         self.value, self.low, self.high = value, float(low), float(high)
         self.help, self.live, self.integer = help, live, integer
 
 
 class _Base:
-    settings = {}
+    settings: ClassVar[dict[str, Setting]] = {}
 
-    def validate(self):
+    def validate(self) -> str | None:
         """None, or what is wrong with the settings together: "radius_m = 1: expected less than depth_m".
 
         Called on an object that has its settings as attributes, but whose __init__ was not called.
@@ -41,33 +54,33 @@ class Renderer(_Base):
     over it uses one core.
     """
 
-    degrees_of_freedom = 3  # or 6: outputs have torque_Nm and tool_orientation
+    degrees_of_freedom: ClassVar[int] = 3  # or 6: outputs have torque_Nm and tool_orientation
     # or regions, mesh, sheet, nothing, oriented, resting_points, see runners/interfaces/plugins/remote_touch_plugin.h
-    contact_model = "points"
-    needs = ()  # of "normals", "organised", "regions", "view": runs whose frames lack one are refused
-    haptic_rate_hz = 1000.0  # set before __init__ too
+    contact_model: ClassVar[str] = "points"
+    needs: ClassVar[tuple[str, ...]] = ()  # of "normals", "organised", "regions", "view": runs whose frames lack one are refused
+    haptic_rate_hz: float = 1000.0  # set before __init__ too
 
-    def on_frame(self, frame):
+    def on_frame(self, frame: Frame) -> None:
         """A new Frame arrived. Drop it if its captured_s is not later than that of the last one."""
 
-    def step(self, device, time_s):
+    def step(self, device: Device, time_s: float) -> Output:
         """One tick: returns an Output for a Device at a time. Equal calls must give equal numbers."""
         raise NotImplementedError("step(self, device, time_s) is missing")
 
-    def parameters_changed(self):
+    def parameters_changed(self) -> None:
         """Live settings, which are attributes, have changed between two steps."""
 
-    def max_stiffness_N_per_m(self):
+    def max_stiffness_N_per_m(self) -> float:
         """Upper bound of how fast the force grows with the displacement of the hand. Uses settings only."""
         if not hasattr(self, "stiffness_N_per_m"):
             raise NotImplementedError("max_stiffness_N_per_m(self) is missing, and there is no setting stiffness_N_per_m")
         return self.stiffness_N_per_m
 
-    def rest_distance_m(self):
+    def rest_distance_m(self) -> float:
         """Distance of the proxy from a flat surface in contact; NaN: not known, then no contact is measured."""
         return math.nan
 
-    def spring_N_per_m(self):
+    def spring_N_per_m(self) -> float:
         """Of a renderer without a proxy: the stiffness with which its force pushes the HIP out; else 0."""
         return 0.0
 
@@ -79,19 +92,19 @@ class Scenario(_Base):
     numbers. Take random numbers from self.key.normals(use, frame, count), never from numpy.random.
     """
 
-    frame_rate_hz = 30.0  # an attribute or a method
-    frame_count = 1  # a scene with one frame never changes
-    key = None
+    frame_rate_hz: float = 30.0  # an attribute or a method
+    frame_count: int = 1  # a scene with one frame never changes
+    key: NoiseKey = None
 
-    def cloud(self, frame):
+    def cloud(self, frame: int) -> ArrayLike | Cloud:
         """The points of a frame: an array of shape (n, 3) in metres, NaN where nothing was measured, or a Cloud."""
         raise NotImplementedError("cloud(self, frame) is missing")
 
-    def signed_distance(self, p, time_s):
+    def signed_distance(self, p: ArrayLike, time_s: float) -> float:
         """Distance of p to the true surface, positive on the side that the sensor sees; NaN: not known."""
         return math.nan
 
-    def surface_height(self, x, z, time_s):
+    def surface_height(self, x: float, z: float, time_s: float) -> float:
         """Height y of the true surface over (x, z); NaN where the scene is no height field."""
         return math.nan
 
@@ -99,10 +112,10 @@ class Scenario(_Base):
 class Trajectory(_Base):
     """A motion of the hand. The settings are attributes, and so is scene, a Scene without the faults of a sensor."""
 
-    duration_s = 0.0  # an attribute or a method; 0: it has no end
-    scene = None
+    duration_s: float = 0.0  # an attribute or a method; 0: it has no end
+    scene: Scene = None
 
-    def at(self, time_s):
+    def at(self, time_s: float) -> ArrayLike | tuple[ArrayLike, ArrayLike] | Device:
         """A position, or (position, quaternion w x y z), or a Device."""
         raise NotImplementedError("at(self, time_s) is missing")
 
@@ -111,6 +124,11 @@ _KINDS = {"renderer": Renderer, "scenario": Scenario, "trajectory": Trajectory}
 _registered = {}  # (kind, name) -> class
 
 
+@overload
+def register(cls: _Class, name: str | None = None, *, summary: str | None = None) -> _Class: ...
+@overload
+def register(cls: str | None = None, name: str | None = None, *,
+             summary: str | None = None) -> Callable[[_Class], _Class]: ...
 def register(cls=None, name=None, *, summary=None):
     """Puts a class into the catalog, so that experiments can name it; returns the class.
 
@@ -132,7 +150,7 @@ def register(cls=None, name=None, *, summary=None):
     return cls
 
 
-def name_of(cls):
+def name_of(cls: type) -> str:
     """The name under which a class is registered."""
     for (_, name), registered in reversed(_registered.items()):
         if registered is cls:
@@ -140,7 +158,7 @@ def name_of(cls):
     raise InputError(f"class {cls.__name__}: is not in the catalog: expected rt.register({cls.__name__}) before")
 
 
-def scene(name, *, key=None, **settings):
+def scene(name: str, *, key: NoiseKey | None = None, **settings: Any) -> Scene:
     """A scenario of the catalog with settings, to be queried for clouds and distances: rt.scene("moving-lift")."""
     from remote_touch.calls import _json, _native
     if key is not None and not isinstance(key, _core.NoiseKey):
@@ -180,7 +198,7 @@ _of_files = {}  # class -> the name of its file, and the bytes that this had whe
 _identity = []  # what the results record now
 
 
-def identify():
+def identify() -> None:
     """Tells the results which classes take part, by file, and the hash of those files. Called again before each run and sweep:
     a cell of a notebook may have changed what a method calls."""
     files, sources = {}, set()
