@@ -112,11 +112,7 @@ struct Reader {
 };
 
 struct Writer {
-  Json operator()(const double* v) const { return *v; }
-  Json operator()(const int* v) const { return *v; }
-  Json operator()(const std::uint64_t* v) const { return *v; }
-  Json operator()(const bool* v) const { return *v; }
-  Json operator()(const std::string* v) const { return *v; }
+  Json operator()(const auto* v) const { return *v; }
   Json operator()(const Vec3* v) const { return {v->x(), v->y(), v->z()}; }
   Json operator()(const Choice& choice) const { return choice.names[static_cast<std::size_t>(choice.get())]; }
   Json operator()(const Rows& rows) const {

@@ -1,6 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -26,51 +25,40 @@
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
-namespace {
-
-// The file that a call writes, if it writes one.
-
-// Throws InputError, before any work is done, unless the result can be written there. The folder must be
-// writable. The file must be none of the inputs. An existing file must be a result of this project or empty,
-// unless force is given. Holds the lock of the file. If the name is empty, there is no file.
-class OutputFile {
- public:
-  OutputFile(const std::string& file, bool force, const std::string& subject,
-             const std::vector<InputPart>& inputs);
-  // Calls write(file) while no other call uses the HDF5 library, or without_file() if there is no file.
-  // Returns the result of that call.
-  std::string write(const std::function<std::string(const std::string&)>& write,
-                    const std::function<std::string()>& without_file) const;
-
- private:
-  const std::string file_;
-  std::optional<FileLock> lock_;
-};
-
-OutputFile::OutputFile(const std::string& file, bool force, const std::string& subject,
-                       const std::vector<InputPart>& inputs)
-    : file_(file) {
-  if (file.empty()) return;
-  require_different_file(file, subject);
-  for (const InputPart& part : inputs) require_different_file(file, part.path);
-  require_output(file, {.is_ours = has_result_header, .force = force, .force_option = "force=True"});
-  lock_.emplace(file);
-}
-
-std::string OutputFile::write(const std::function<std::string(const std::string&)>& write,
-                              const std::function<std::string()>& without_file) const {
-  if (file_.empty()) return without_file();
-  const FileTurn turn;
-  return write(file_);
-}
-
-}  // namespace
 
 // Runs an experiment, or repeats one run of a sweep.
 
 namespace py = pybind11;
 
 namespace {
+
+// The file that a call writes, if it writes one: if the name is empty, there is no file.
+class OutputFile {
+ public:
+  // Throws InputError, before any work is done, unless the result can be written there. The folder must be
+  // writable. The file must be none of the inputs. An existing file must be a result of this project or
+  // empty, unless force is given. Holds the lock of the file.
+  OutputFile(const std::string& file, bool force, const std::string& subject,
+             const std::vector<InputPart>& inputs)
+      : file_(file) {
+    if (file.empty()) return;
+    require_different_file(file, subject);
+    for (const InputPart& part : inputs) require_different_file(file, part.path);
+    require_output(file, {.is_ours = has_result_header, .force = force, .force_option = "force=True"});
+    lock_.emplace(file);
+  }
+  // Writes the trace while no other call uses the HDF5 library. Returns its digest.
+  std::string write(const std::vector<Column>& columns, const TextAttributes& origin,
+                    const std::vector<double>& durations) const {
+    if (file_.empty()) return digest(columns);
+    const FileTurn turn;
+    return write_trace(file_, columns, origin, durations);
+  }
+
+ private:
+  const std::string file_;
+  std::optional<FileLock> lock_;
+};
 
 using Texts = std::vector<std::string>;
 
@@ -127,11 +115,8 @@ RunResult run(const std::string& subject, const std::optional<std::string>& text
   add_unknown_outcome(measures(), trace, report.notes);
   add_report(origin, report);
   RunResult result{trace.columns(), measures_of(trace), {}, {}};
-  result.attributes = trace_attributes(
-      origin,
-      output.write([&](const auto& file) { return write_trace(file, result.columns, origin, durations); },
-                   [&] { return digest(result.columns); }),
-      result.columns);
+  result.attributes =
+      trace_attributes(origin, output.write(result.columns, origin, durations), result.columns);
   if (timing) result.timing.push_back({"step_duration", "s", "wall clock of one tick", std::move(durations)});
   return result;
 }
@@ -178,8 +163,7 @@ RunResult replay(const std::string& file, const TextAttributes& attributes, cons
   const OutputFile output(file_or_none, force, file, {});
   Replay again = replay_run(of_sweep, sweep, grid.run(cell, replicate), options_of(work), "");
   RunResult result{again.trace.columns(), measures_of(again.trace), {}, {}};
-  output.write([&](const auto& path) { return write_trace(path, result.columns, again.attributes, {}); },
-               [] { return std::string(); });
+  output.write(result.columns, again.attributes, {});
   result.attributes = trace_attributes(again.attributes, again.digest, result.columns);
   result.warning = distrust_of(of_sweep);
   return result;

@@ -96,15 +96,14 @@ class PythonClass {
 class HeldObject {
  public:
   HeldObject() = default;
-  ~HeldObject() { reset(); }
-  HeldObject(const HeldObject&) = delete;
-  HeldObject& operator=(const HeldObject&) = delete;
-  void hold(pybind11::object object) { object_ = std::move(object); }  // pre: the lock
-  void reset() {
+  ~HeldObject() {
     if (!object_) return;
     const pybind11::gil_scoped_acquire lock;
     object_ = pybind11::object();
   }
+  HeldObject(const HeldObject&) = delete;
+  HeldObject& operator=(const HeldObject&) = delete;
+  void hold(pybind11::object object) { object_ = std::move(object); }  // pre: the lock
   const pybind11::object& operator*() const { return object_; }
 
  private:
