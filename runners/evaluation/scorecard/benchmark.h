@@ -4,10 +4,8 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "analysis/scorecard/ranking.h"
 #include "analysis/scorecard/scorecard.h"
 #include "runners/sweep/sweep.h"
 

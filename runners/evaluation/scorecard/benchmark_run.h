@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/sweeps/sweep_file.h"
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/scorecard/benchmark.h"
 

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/scorecard/card_summaries.h"
 #include "analysis/scorecard/scorecard.h"
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"

@@ -4,7 +4,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <deque>
 #include <memory>
 #include <string>
 #include <utility>

@@ -3,7 +3,6 @@
 #include <pybind11/stl.h>
 
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <optional>

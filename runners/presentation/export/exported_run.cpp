@@ -1,7 +1,6 @@
 #include "runners/presentation/export/exported_run.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "analysis/trace/trace.h"
@@ -91,24 +90,20 @@ ExportedRun exported_run(const ExportJob& job) {
 
 void for_each_frame(const ExportJob& job, const ExportedRun& run,
                     const std::function<void(const ExportedFrame&)>& use) {
-  ExportedFrame now;
   replay_frames(run.experiment, run.time_s, *job.kernels, job.stop, [&](const Frame& frame) {
     job.go_on();
     const auto first = std::lower_bound(run.frame.begin(), run.frame.end(), frame.index);
     if (first == run.frame.end() || *first != frame.index) return;  // no tick used it: it arrived too late
-    now.first_tick = static_cast<std::size_t>(first - run.frame.begin());
+    const auto first_tick = static_cast<std::size_t>(first - run.frame.begin());
     PointCloud buffer;
     const PointCloud& cloud = frame.points->every_point(*job.kernels, buffer);
-    const std::uint64_t hash = run.frame_hash[now.first_tick];
+    const std::uint64_t hash = run.frame_hash[first_tick];
     if (hash != 0 && hash != frame_hash(cloud, frame.captured_s))
       throw InputError(
           job.result.file(),
           "has other frames than this program makes from its configuration: expected a trace that "
           "this version made, or .csv or .npz");
-    now.captured_s = frame.captured_s, now.arrives_s = frame.arrives_s;
-    now.points = measured_points(cloud);
-    use(now);
-    ++now.number;
+    use({frame.captured_s, frame.arrives_s, first_tick, measured_points(cloud)});
   });
 }
 

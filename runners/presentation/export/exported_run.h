@@ -67,7 +67,6 @@ struct ExportedRun {
 ExportedRun exported_run(const ExportJob& job);
 
 struct ExportedFrame {
-  int number = 0;  // index among the frames in use, from 0
   double captured_s = 0, arrives_s = 0;
   std::size_t first_tick = 0;  // first tick that used the frame
   PointCloud points;           // the measured ones

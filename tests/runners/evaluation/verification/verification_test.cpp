@@ -1,16 +1,15 @@
 // Every renderer of the catalog passes the metamorphic checks, and each check can fail.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 
-#include "core/parameters/input_error.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
 #include "runners/evaluation/verification/variation.h"
 #include "runners/evaluation/verification/verification_scenes.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "tests/runners/evaluation/verification/wrong_renderers.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::verification_test {
 namespace {
@@ -20,16 +19,6 @@ using Names = std::set<std::string>;
 std::vector<CheckResult> verify(const RendererEntry& entry,
                                 const std::vector<std::string>& assignments = {}) {
   return verify_renderer(entry, assignments, scenes::kernels());
-}
-
-template <class Action>
-std::string refusal(Action action) {
-  try {
-    action();
-    return "accepted";
-  } catch (const InputError& error) {
-    return error.what();
-  }
 }
 
 // Returns "check in scene" for every failure.
