@@ -64,6 +64,72 @@ void compare(const CardNumbers::Mean& then, const CardNumbers::Mean& now, std::v
                                : sentence(now.cell, "%s is %.6g, stored %.6g", what.c_str(), b, a));
 }
 
+constexpr double kUntested = std::numeric_limits<double>::quiet_NaN();
+
+// A scene without runs counts with no method.
+EventCounts counts_of(const Proportion& share) {
+  return {share.events, share.runs - share.events, 0};
+}
+
+// Adds a weakness if other methods are better by more than chance. It names the first of them in the order of
+// the ranking.
+void add_significant(const SceneScore& scene, const std::string& what, const std::string& units,
+                     const Ranking& ranking, const Scorecard& card, std::size_t own,
+                     std::vector<Weakness>& list) {
+  if (ranking.against.empty()) return;
+  Weakness found{scene.name, what, units, {}, 0, ranking.mean[own].value, 0, 0, true};
+  for (const std::size_t c : ranking.order) {
+    if (!ranking.against[c][own].shows_better()) continue;
+    if (found.ahead++ > 0) continue;
+    found.other = card.methods[c], found.other_mean = ranking.mean[c].value;
+    found.p = ranking.against[c][own].p;
+  }
+  if (found.ahead > 0) list.push_back(found);
+}
+
+// Counts the methods c whose fraction(c) is larger than that of `own`, and names the one with the largest.
+template <class Fraction>
+Weakness more_often(const SceneScore& scene, const char* what, const Scorecard& card, std::size_t own,
+                    Fraction&& fraction) {
+  Weakness found{scene.name, what, "1", {}, 0, fraction(own), fraction(own), kUntested, false};
+  for (std::size_t c = 0; c < card.methods.size(); ++c) {
+    if (!(fraction(c) > fraction(own))) continue;
+    ++found.ahead;
+    if (fraction(c) > found.other_mean) found.other = card.methods[c], found.other_mean = fraction(c);
+  }
+  return found;
+}
+
+void add_not_significant(const SceneScore& scene, const Scorecard& card, std::size_t own,
+                         std::vector<Weakness>& list) {
+  Weakness noisy =
+      more_often(scene, "success", card, own, [&](std::size_t c) { return scene.success[c].noisy.fraction; });
+  const auto& against = scene.ranking.against;
+  const auto is_significant = [&](std::size_t c) {
+    return !against.empty() && against[c][own].shows_better();
+  };
+  for (std::size_t c = 0; c < card.methods.size(); ++c) {
+    if (is_significant(c)) noisy.ahead = 0;  // it is in the list already
+    if (card.methods[c] == noisy.other && !against.empty()) noisy.p = against[c][own].p;
+  }
+  if (noisy.ahead > 0) list.push_back(noisy);
+  if (!scene.success[own].noise_free) return;
+  const Weakness quiet = more_often(scene, "success without noise", card, own,
+                                    [&](std::size_t c) { return scene.success[c].noise_free->fraction; });
+  if (quiet.ahead > 0) list.push_back(quiet);
+}
+
+void add_scene(const SceneThreshold& scene, ThresholdSummary& summary) {
+  for (std::size_t c = 0; c < summary.methods.size(); ++c) {
+    ThresholdCounts& counts = summary.methods[c];
+    const Successes& below = scene.below[c];
+    counts.scenes += below.noisy.runs > 0 ? 1 : 0;
+    counts.below += below.noisy.events, counts.runs += below.noisy.runs;
+    if (!below.noise_free) continue;
+    counts.noise_free_below += below.noise_free->events, counts.noise_free_runs += below.noise_free->runs;
+  }
+}
+
 }  // namespace
 
 std::vector<TableRow> rows_by(const Table& table, const char* text_column) {
@@ -164,65 +230,6 @@ std::vector<std::string> differences(const CardNumbers& stored, const CardNumber
   return list;
 }
 
-namespace {
-
-constexpr double kUntested = std::numeric_limits<double>::quiet_NaN();
-
-// A scene without runs counts with no method.
-EventCounts counts_of(const Proportion& share) {
-  return {share.events, share.runs - share.events, 0};
-}
-
-// Adds a weakness if other methods are better by more than chance. It names the first of them in the order of
-// the ranking.
-void add_significant(const SceneScore& scene, const std::string& what, const std::string& units,
-                     const Ranking& ranking, const Scorecard& card, std::size_t own,
-                     std::vector<Weakness>& list) {
-  if (ranking.against.empty()) return;
-  Weakness found{scene.name, what, units, {}, 0, ranking.mean[own].value, 0, 0, true};
-  for (const std::size_t c : ranking.order) {
-    if (!ranking.against[c][own].shows_better()) continue;
-    if (found.ahead++ > 0) continue;
-    found.other = card.methods[c], found.other_mean = ranking.mean[c].value;
-    found.p = ranking.against[c][own].p;
-  }
-  if (found.ahead > 0) list.push_back(found);
-}
-
-// Counts the methods c whose fraction(c) is larger than that of `own`, and names the one with the largest.
-template <class Fraction>
-Weakness more_often(const SceneScore& scene, const char* what, const Scorecard& card, std::size_t own,
-                    Fraction&& fraction) {
-  Weakness found{scene.name, what, "1", {}, 0, fraction(own), fraction(own), kUntested, false};
-  for (std::size_t c = 0; c < card.methods.size(); ++c) {
-    if (!(fraction(c) > fraction(own))) continue;
-    ++found.ahead;
-    if (fraction(c) > found.other_mean) found.other = card.methods[c], found.other_mean = fraction(c);
-  }
-  return found;
-}
-
-void add_not_significant(const SceneScore& scene, const Scorecard& card, std::size_t own,
-                         std::vector<Weakness>& list) {
-  Weakness noisy =
-      more_often(scene, "success", card, own, [&](std::size_t c) { return scene.success[c].noisy.fraction; });
-  const auto& against = scene.ranking.against;
-  const auto is_significant = [&](std::size_t c) {
-    return !against.empty() && against[c][own].shows_better();
-  };
-  for (std::size_t c = 0; c < card.methods.size(); ++c) {
-    if (is_significant(c)) noisy.ahead = 0;  // it is in the list already
-    if (card.methods[c] == noisy.other && !against.empty()) noisy.p = against[c][own].p;
-  }
-  if (noisy.ahead > 0) list.push_back(noisy);
-  if (!scene.success[own].noise_free) return;
-  const Weakness quiet = more_often(scene, "success without noise", card, own,
-                                    [&](std::size_t c) { return scene.success[c].noise_free->fraction; });
-  if (quiet.ahead > 0) list.push_back(quiet);
-}
-
-}  // namespace
-
 Mark mark_of(const Ranking& ranking, std::size_t method) {
   if (ranking.order.empty()) return Mark::none;
   if (ranking.has_best && ranking.order.front() == method) return Mark::best;
@@ -314,21 +321,6 @@ Table behind_table(const Scorecard& card) {
   add("p", "p value, corrected for all comparisons of the card; NaN: not tested", &Row::p);
   return table;
 }
-
-namespace {
-
-void add_scene(const SceneThreshold& scene, ThresholdSummary& summary) {
-  for (std::size_t c = 0; c < summary.methods.size(); ++c) {
-    ThresholdCounts& counts = summary.methods[c];
-    const Successes& below = scene.below[c];
-    counts.scenes += below.noisy.runs > 0 ? 1 : 0;
-    counts.below += below.noisy.events, counts.runs += below.noisy.runs;
-    if (!below.noise_free) continue;
-    counts.noise_free_below += below.noise_free->events, counts.noise_free_runs += below.noise_free->runs;
-  }
-}
-
-}  // namespace
 
 std::vector<ThresholdSummary> threshold_summary(const Scorecard& card) {
   std::vector<ThresholdSummary> list;

@@ -193,39 +193,6 @@ SceneThreshold below(const PerceptionThreshold& threshold, const Runs& runs,
   return scene;
 }
 
-}  // namespace
-
-SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise) {
-  SceneScore scene{rules.name, rules.title, rules.meaning, {kNone}, {}, {}, {}, {}};
-  if (!own_noise) scene.noise_m = std::get<std::vector<double>>(sweeps.front().axes.front().values);
-  Runs runs{sweeps, scene.noise_m};
-  for (std::size_t c = 0; c < sweeps.size(); ++c)
-    runs.shared.push_back(
-        {repeats_of(sweeps[c], scene.noise_m), c < rules.by_replicate.size() && rules.by_replicate[c]});
-  const std::vector<PairedValues> won = won_by(runs, rules.success);
-  scene.success = counts_of(runs, won);
-  if (!rules.old_success.empty()) scene.old_success = counts_of(runs, won_by(runs, rules.old_success));
-  scene.ranking = ranking(runs.noisy_levels(won), Better::larger, true, runs.shared_noisy());
-  for (const auto& [name, better] : rules.measures) scene.measures.push_back(judged(name, better, runs, won));
-  for (const PerceptionThreshold& threshold : perception_thresholds())
-    if (std::any_of(rules.measures.begin(), rules.measures.end(),
-                    [&](const auto& measure) { return measure.first == threshold.measure; }))
-      scene.thresholds.push_back(below(threshold, runs, won));
-  return scene;
-}
-
-void correct(Scorecard& card) {
-  std::vector<Ranking*> rankings;
-  for (SceneScore& scene : card.scenes) {
-    rankings.push_back(&scene.ranking);
-    for (JudgedMeasure& measure : scene.measures) rankings.push_back(&measure.ranking);
-  }
-  card.tests = correct_together(rankings);
-  card.least_pairs = std::max(kMinPairs, pairs_for_family(card.tests));
-}
-
-namespace {
-
 Table success_table(const Scorecard& card, const CardNumbers& numbers) {
   std::vector<std::int32_t> old_events;
   for (const SceneScore& s : card.scenes)
@@ -298,6 +265,35 @@ void add_panel(const Scorecard& card, std::size_t number, Figure& figure) {
 }
 
 }  // namespace
+
+SceneScore score(const SceneRules& rules, const std::vector<SweepResult>& sweeps, bool own_noise) {
+  SceneScore scene{rules.name, rules.title, rules.meaning, {kNone}, {}, {}, {}, {}};
+  if (!own_noise) scene.noise_m = std::get<std::vector<double>>(sweeps.front().axes.front().values);
+  Runs runs{sweeps, scene.noise_m};
+  for (std::size_t c = 0; c < sweeps.size(); ++c)
+    runs.shared.push_back(
+        {repeats_of(sweeps[c], scene.noise_m), c < rules.by_replicate.size() && rules.by_replicate[c]});
+  const std::vector<PairedValues> won = won_by(runs, rules.success);
+  scene.success = counts_of(runs, won);
+  if (!rules.old_success.empty()) scene.old_success = counts_of(runs, won_by(runs, rules.old_success));
+  scene.ranking = ranking(runs.noisy_levels(won), Better::larger, true, runs.shared_noisy());
+  for (const auto& [name, better] : rules.measures) scene.measures.push_back(judged(name, better, runs, won));
+  for (const PerceptionThreshold& threshold : perception_thresholds())
+    if (std::any_of(rules.measures.begin(), rules.measures.end(),
+                    [&](const auto& measure) { return measure.first == threshold.measure; }))
+      scene.thresholds.push_back(below(threshold, runs, won));
+  return scene;
+}
+
+void correct(Scorecard& card) {
+  std::vector<Ranking*> rankings;
+  for (SceneScore& scene : card.scenes) {
+    rankings.push_back(&scene.ranking);
+    for (JudgedMeasure& measure : scene.measures) rankings.push_back(&measure.ranking);
+  }
+  card.tests = correct_together(rankings);
+  card.least_pairs = std::max(kMinPairs, pairs_for_family(card.tests));
+}
 
 Figure scorecard_figure(const Scorecard& card) {
   const CardNumbers numbers = numbers_of(card, KeptMeasures::all);

@@ -14,8 +14,7 @@
 
 namespace remote_touch {
 
-// Success of a run: bounds on its measures, all of which must hold.
-
+// A bound on a measure of a run; success means that all its bounds hold.
 struct Bound {
   std::string measure;
   double min = -std::numeric_limits<double>::infinity();

@@ -19,7 +19,6 @@
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
-
 namespace {
 
 Json read_object(const std::string& json, const std::string& label, const std::vector<std::string>& parts) {
@@ -207,48 +206,6 @@ std::vector<std::string> measured(const BenchmarkScene& scene) {
   return names;
 }
 
-}  // namespace
-
-const std::vector<double>& scorecard_noise_m() {
-  static const std::vector<double> levels = {0, 0.0005, 0.001, 0.003, 0.005, 0.01};
-  return levels;
-}
-
-Method read_method(const std::string& name, const std::string& json) {
-  const std::string label = "method " + name;
-  Json object =
-      read_object(json, label, {"title", "renderer", "feedback", "fixtures", "frame_link", "registration"});
-  Method method{name, text_of(object, "title", label), object_of(object, "renderer", label)};
-  for (const char* part : {"title", "renderer"}) object.erase(part);
-  if (!object.empty()) method.sections = object.dump();
-  return method;
-}
-
-BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json) {
-  const std::string label = "scene " + name;
-  const Json object =
-      read_object(json, label, {"title", "experiment", "tool", "noise", "measures", "success"});
-  BenchmarkScene scene{
-      name, text_of(object, "title", label), object_of(object, "experiment", label), {}, {}, {}, {}};
-  if (object.contains("tool")) scene.tool = object_of(object, "tool", label);
-  if (object.contains("noise")) scene.noise = text_of(object, "noise", label);
-  const Json measures = parse_json(object_of(object, "measures", label), label);
-  for (const auto& item : measures.items())
-    scene.measures.push_back(
-        {item.key(), better_of(item.value(), item.key(), label + ": measures." + item.key())});
-  const std::string rule = label + ": success";
-  read_success(read_object(object_of(object, "success", label), rule,
-                           {"rule", "tolerance_m", "meaning", "bounds", "old_bounds"}),
-               rule, scene);
-  add_judged(scene, "jump_fraction_10");
-  for (const char* perceived : {"jump_fraction_5", "jump_fraction_20", "packet_rate_5", "packet_rate_10",
-                                "packet_rate_20", "max_relative_jump"})
-    add_measure(scene, perceived, Better::neither);
-  return scene;
-}
-
-namespace {
-
 // Adds the sections of a method to the experiment of a scene. Throws InputError for one that the scene has,
 // too.
 void add_sections(const Json& sections, const std::string& scene, const std::string& method, Json& run) {
@@ -312,6 +269,44 @@ const std::string& file_of(const std::string& line, const BenchmarkScene& scene,
 }
 
 }  // namespace
+
+const std::vector<double>& scorecard_noise_m() {
+  static const std::vector<double> levels = {0, 0.0005, 0.001, 0.003, 0.005, 0.01};
+  return levels;
+}
+
+Method read_method(const std::string& name, const std::string& json) {
+  const std::string label = "method " + name;
+  Json object =
+      read_object(json, label, {"title", "renderer", "feedback", "fixtures", "frame_link", "registration"});
+  Method method{name, text_of(object, "title", label), object_of(object, "renderer", label)};
+  for (const char* part : {"title", "renderer"}) object.erase(part);
+  if (!object.empty()) method.sections = object.dump();
+  return method;
+}
+
+BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& json) {
+  const std::string label = "scene " + name;
+  const Json object =
+      read_object(json, label, {"title", "experiment", "tool", "noise", "measures", "success"});
+  BenchmarkScene scene{
+      name, text_of(object, "title", label), object_of(object, "experiment", label), {}, {}, {}, {}};
+  if (object.contains("tool")) scene.tool = object_of(object, "tool", label);
+  if (object.contains("noise")) scene.noise = text_of(object, "noise", label);
+  const Json measures = parse_json(object_of(object, "measures", label), label);
+  for (const auto& item : measures.items())
+    scene.measures.push_back(
+        {item.key(), better_of(item.value(), item.key(), label + ": measures." + item.key())});
+  const std::string rule = label + ": success";
+  read_success(read_object(object_of(object, "success", label), rule,
+                           {"rule", "tolerance_m", "meaning", "bounds", "old_bounds"}),
+               rule, scene);
+  add_judged(scene, "jump_fraction_10");
+  for (const char* perceived : {"jump_fraction_5", "jump_fraction_20", "packet_rate_5", "packet_rate_10",
+                                "packet_rate_20", "max_relative_jump"})
+    add_measure(scene, perceived, Better::neither);
+  return scene;
+}
 
 Sweep BenchmarkScene::sweep(const Method& method, int replicates) const {
   const std::string label = "scene " + name + " with " + method.name;

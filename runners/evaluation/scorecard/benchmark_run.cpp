@@ -37,48 +37,6 @@ Method with(const Method& method, const char* parameter, const Json& value, cons
   return {method.name + "+" + mark, method.title + ", " + parameter + " = " + value.dump(), renderer.dump()};
 }
 
-}  // namespace
-
-std::vector<Method> force_laws_of(const Method& method) {
-  std::vector<Method> laws;
-  std::set<std::string> complete_laws;
-  const auto add = [&](Method law) {
-    if (complete_laws.insert(complete(law).dump()).second) laws.push_back(std::move(law));
-  };
-  const Json own = complete(method);
-  add(method);
-  // The velocity term is zero without an estimate, whatever its sign.
-  if (own.contains("velocity_force") && own.value("velocity_estimate", true))
-    for (const char* sign : {"minus", "plus", "none"})
-      add(with(method, "velocity_force", sign, std::string("v_") + sign));
-  if (!own.contains("damping_Ns_per_m")) return laws;
-  const std::vector<Method> with_own_damper = laws;
-  for (const Method& law : with_own_damper) {
-    add(with(law, "damping_Ns_per_m", 0.0, "k_d0"));
-    add(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"));
-  }
-  if (!own.contains("damping_sign")) return laws;
-  for (const Method& law : with_own_damper)
-    for (const char* sign : {"plus", "minus"})
-      add(with(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"), "damping_sign", sign,
-               std::string("k_d_") + sign));
-  return laws;
-}
-
-std::vector<BenchmarkSweep> BenchmarkPlan::sweeps() const {
-  std::vector<BenchmarkSweep> list;
-  for (const ScenePlan& one : scenes) list.insert(list.end(), one.sweeps.begin(), one.sweeps.end());
-  // A method's own force law is also in the audit, with the same file, so it is listed once.
-  for (const ScenePlan& scene : audit)
-    for (const BenchmarkSweep& one : scene.sweeps)
-      if (std::none_of(list.begin(), list.end(),
-                       [&](const BenchmarkSweep& other) { return other.name == one.name; }))
-        list.push_back(one);
-  return list;
-}
-
-namespace {
-
 // The sweeps of all methods in a scene, in order. Throws MissingInput for a scene whose recording is not
 // on this machine, InputError for a sweep that cannot be run.
 std::vector<BenchmarkSweep> sweeps_of(const Benchmark& benchmark, const BenchmarkScene& scene) {
@@ -95,46 +53,6 @@ std::vector<BenchmarkSweep> sweeps_of(const Benchmark& benchmark, const Benchmar
   }
   return sweeps;
 }
-
-}  // namespace
-
-BenchmarkPlan plan_of(const Benchmark& benchmark) {
-  BenchmarkPlan plan;
-  plan.benchmark = benchmark;
-  for (const BenchmarkScene& scene : plan.benchmark.scenes) {
-    try {
-      plan.scenes.push_back({scene, sweeps_of(plan.benchmark, scene)});
-    } catch (const MissingInput& missing) {
-      plan.skipped.emplace_back(scene.name, missing.what());
-      continue;
-    }
-    if (std::ranges::find(kPassivityScenes, scene.name) == std::end(kPassivityScenes)) continue;
-    if (plan.laws.empty())
-      for (const Method& method : plan.benchmark.methods)
-        for (Method& law : force_laws_of(method)) plan.laws.push_back(std::move(law));
-    Benchmark audit = plan.benchmark;
-    audit.methods = plan.laws;
-    plan.audit.push_back({scene, sweeps_of(audit, scene)});
-  }
-  return plan;
-}
-
-void require_same_benchmark(const std::vector<BenchmarkSweep>& sweeps) {
-  for (const BenchmarkSweep& one : sweeps) plan_in_file(one.sweep, {}, one.attributes, one.file);
-}
-
-void do_sweeps(const std::vector<BenchmarkSweep>& sweeps, const Kernels& kernels,
-               const std::atomic<bool>* stop, const BenchmarkProgress& progress) {
-  for (std::size_t i = 0; i < sweeps.size(); ++i) {
-    progress(i, sweeps.size(), 0);
-    SweepSession session(sweeps[i].sweep, {}, sweeps[i].attributes, sweeps[i].file);
-    session.run(kernels, stop, [&](std::size_t done, std::size_t total, std::size_t) {
-      progress(i, sweeps.size(), static_cast<double>(done) / static_cast<double>(total));
-    });
-  }
-}
-
-namespace {
 
 // Returns of(method), which reads the method's renderer. If it throws InputError and the method is from a
 // file, the message begins with the file name.
@@ -189,6 +107,80 @@ void require_known_contact(const Benchmark& chosen) {
 }
 
 }  // namespace
+
+std::vector<Method> force_laws_of(const Method& method) {
+  std::vector<Method> laws;
+  std::set<std::string> complete_laws;
+  const auto add = [&](Method law) {
+    if (complete_laws.insert(complete(law).dump()).second) laws.push_back(std::move(law));
+  };
+  const Json own = complete(method);
+  add(method);
+  // The velocity term is zero without an estimate, whatever its sign.
+  if (own.contains("velocity_force") && own.value("velocity_estimate", true))
+    for (const char* sign : {"minus", "plus", "none"})
+      add(with(method, "velocity_force", sign, std::string("v_") + sign));
+  if (!own.contains("damping_Ns_per_m")) return laws;
+  const std::vector<Method> with_own_damper = laws;
+  for (const Method& law : with_own_damper) {
+    add(with(law, "damping_Ns_per_m", 0.0, "k_d0"));
+    add(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"));
+  }
+  if (!own.contains("damping_sign")) return laws;
+  for (const Method& law : with_own_damper)
+    for (const char* sign : {"plus", "minus"})
+      add(with(with(law, "damping_Ns_per_m", kDamper_Ns_per_m, "k_d3"), "damping_sign", sign,
+               std::string("k_d_") + sign));
+  return laws;
+}
+
+std::vector<BenchmarkSweep> BenchmarkPlan::sweeps() const {
+  std::vector<BenchmarkSweep> list;
+  for (const ScenePlan& one : scenes) list.insert(list.end(), one.sweeps.begin(), one.sweeps.end());
+  // A method's own force law is also in the audit, with the same file, so it is listed once.
+  for (const ScenePlan& scene : audit)
+    for (const BenchmarkSweep& one : scene.sweeps)
+      if (std::none_of(list.begin(), list.end(),
+                       [&](const BenchmarkSweep& other) { return other.name == one.name; }))
+        list.push_back(one);
+  return list;
+}
+
+BenchmarkPlan plan_of(const Benchmark& benchmark) {
+  BenchmarkPlan plan;
+  plan.benchmark = benchmark;
+  for (const BenchmarkScene& scene : plan.benchmark.scenes) {
+    try {
+      plan.scenes.push_back({scene, sweeps_of(plan.benchmark, scene)});
+    } catch (const MissingInput& missing) {
+      plan.skipped.emplace_back(scene.name, missing.what());
+      continue;
+    }
+    if (std::ranges::find(kPassivityScenes, scene.name) == std::end(kPassivityScenes)) continue;
+    if (plan.laws.empty())
+      for (const Method& method : plan.benchmark.methods)
+        for (Method& law : force_laws_of(method)) plan.laws.push_back(std::move(law));
+    Benchmark audit = plan.benchmark;
+    audit.methods = plan.laws;
+    plan.audit.push_back({scene, sweeps_of(audit, scene)});
+  }
+  return plan;
+}
+
+void require_same_benchmark(const std::vector<BenchmarkSweep>& sweeps) {
+  for (const BenchmarkSweep& one : sweeps) plan_in_file(one.sweep, {}, one.attributes, one.file);
+}
+
+void do_sweeps(const std::vector<BenchmarkSweep>& sweeps, const Kernels& kernels,
+               const std::atomic<bool>* stop, const BenchmarkProgress& progress) {
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
+    progress(i, sweeps.size(), 0);
+    SweepSession session(sweeps[i].sweep, {}, sweeps[i].attributes, sweeps[i].file);
+    session.run(kernels, stop, [&](std::size_t done, std::size_t total, std::size_t) {
+      progress(i, sweeps.size(), static_cast<double>(done) / static_cast<double>(total));
+    });
+  }
+}
 
 Compared compared(const Method& method) {
   if (!method.sections.empty()) return Compared::teleoperation;

@@ -56,13 +56,12 @@ using BenchmarkProgress =
 void do_sweeps(const std::vector<BenchmarkSweep>& sweeps, const Kernels& kernels,
                const std::atomic<bool>* stop, const BenchmarkProgress& progress);
 
-// All sweeps of a scorecard: those of its scenes, and those of the passivity audit.
-
 struct ScenePlan {
   BenchmarkScene scene;
   std::vector<BenchmarkSweep> sweeps;  // one for each method
 };
 
+// All sweeps of a scorecard: those of its scenes, and those of the passivity audit.
 struct BenchmarkPlan {
   Benchmark benchmark;
   std::vector<ScenePlan> scenes;
@@ -78,11 +77,9 @@ struct BenchmarkPlan {
 // Resolves and checks every run. Throws InputError for what cannot be run.
 BenchmarkPlan plan_of(const Benchmark& benchmark);
 
-// Chooses the methods and scenes that a scorecard compares: those of a HIP, those of a tool, or those of
-// teleoperation. A scene for tools names the tool; a scene of teleoperation has a slave. A method is for
-// tools if its renderer has six degrees of freedom, and for teleoperation if it has sections of the
-// experiment.
-
+// What a scorecard compares: methods and scenes of a HIP, of a tool, or of teleoperation. A scene for tools
+// names the tool; a scene of teleoperation has a slave. A method is for tools if its renderer has six degrees
+// of freedom, and for teleoperation if it has sections of the experiment.
 enum class Compared { hip, tools, teleoperation };
 Compared compared(const Method& method);
 Compared compared(const BenchmarkScene& scene);

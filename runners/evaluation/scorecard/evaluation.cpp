@@ -20,7 +20,6 @@
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Measures one run twice on one thread, at the noise level kCostLevel if there are levels, and returns the
@@ -53,44 +52,6 @@ TextAttributes cost_origin(const Kernels& kernels) {
   origin.emplace_back("cpu", cpu_name());
   return origin;
 }
-
-}  // namespace
-
-void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
-                 const TextAttributes& origin) {
-  Json list = Json::array();
-  for (const Cost& cost : costs)
-    list.push_back(
-        {{"scene", cost.scene}, {"method", cost.method}, {"tick_s", cost.tick_s}, {"frame_s", cost.frame_s}});
-  Json all = Json::object();
-  for (const auto& [name, value] : origin) all[name] = value;
-  all["costs"] = list;
-  write_file_atomically(file, all.dump(1) + "\n");
-}
-
-std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin) {
-  const Json all = json_in_file(file);
-  std::vector<Cost> costs;
-  if (!all.is_object() || !all.contains("costs") || !all["costs"].is_array()) return costs;
-  for (const char* name : {"source_digest", "isa", "cpu"})
-    if (all.value(name, Json()) != attribute(origin, name)) return costs;
-  const Json& list = all["costs"];
-  const auto seconds = [](const Json& value) {
-    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
-  };
-  for (const Json& item : list) {
-    if (!item.is_object() || !item.value("scene", Json()).is_string() ||
-        !item.value("method", Json()).is_string())
-      return {};
-    const double tick_s = seconds(item.value("tick_s", Json()));
-    if (std::isnan(tick_s)) continue;  // the run ended with an error: it is measured again
-    costs.push_back({item["scene"].get<std::string>(), item["method"].get<std::string>(), tick_s,
-                     seconds(item.value("frame_s", Json()))});
-  }
-  return costs;
-}
-
-namespace {
 
 const Cost* find_cost(const std::vector<Cost>& costs, const std::string& scene, const std::string& method) {
   for (const Cost& cost : costs)
@@ -153,64 +114,6 @@ void add_cost(double own_s, double other_s, std::vector<double>& ratio, std::vec
   if (!(std::isfinite(own_s) && std::isfinite(other_s) && own_s > 0 && other_s > 0)) return;
   ratio.push_back(own_s / other_s), all_s.push_back(own_s);
 }
-
-}  // namespace
-
-std::string verdict(const Scorecard& card, const SceneScore& scene) {
-  const Ranking& ranking = scene.ranking;
-  if (ranking.ranked < 2) return "";
-  std::string text;
-  if (ranking.has_best) {
-    text = "Best: " + card.methods[ranking.order.front()] + ".";
-  } else if (ranking.top_group.size() == ranking.ranked) {
-    text = "No difference between any.";
-  } else {
-    text = "No difference at the top:";
-    for (const std::size_t c : ranking.top_group)
-      text += (c == ranking.top_group.front() ? " " : ", ") + card.methods[c];
-    text += ".";
-  }
-  if (ranking.has_worst) text += " Worst: " + card.methods[ranking.order[ranking.ranked - 1]] + ".";
-  return text;
-}
-
-std::string cost_reference(const Scorecard& card) {
-  const auto proxy = std::find(card.methods.begin(), card.methods.end(), "proxy");
-  return proxy != card.methods.end() ? *proxy : card.methods.front();
-}
-
-std::vector<CostSummary> cost_summary(const Scorecard& card, const std::vector<Cost>& costs) {
-  std::vector<CostSummary> methods;
-  const std::string reference = cost_reference(card);
-  for (const std::string& method : card.methods) {
-    std::vector<double> tick_ratio, frame_ratio, tick_s, frame_s;
-    for (const SceneScore& scene : card.scenes) {
-      const Cost* own = find_cost(costs, scene.name, method);
-      const Cost* other = find_cost(costs, scene.name, reference);
-      if (!own || !other) continue;
-      add_cost(own->tick_s, other->tick_s, tick_ratio, tick_s);
-      add_cost(own->frame_s, other->frame_s, frame_ratio, frame_s);
-    }
-    methods.push_back({median(tick_ratio), median(frame_ratio), median(tick_s), median(frame_s)});
-  }
-  return methods;
-}
-
-std::optional<std::vector<std::vector<EnergySummary>>> energies(const SceneScore& scene) {
-  const auto run = std::ranges::find(scene.measures, "energy_injected", &JudgedMeasure::name);
-  const auto update = std::ranges::find(scene.measures, "mean_energy_per_update", &JudgedMeasure::name);
-  if (run == scene.measures.end() || update == scene.measures.end()) return {};
-  std::vector<std::vector<EnergySummary>> laws(run->at_level.size());
-  for (std::size_t c = 0; c < laws.size(); ++c)
-    for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
-      Estimate cycle = run->at_level[c][i];
-      for (double* energy : {&cycle.value, &cycle.low, &cycle.high}) *energy /= kPassivityCycles;
-      laws[c].push_back({cycle, update->at_level[c][i].value});
-    }
-  return laws;
-}
-
-namespace {
 
 std::vector<StoredSweep> read_all(const std::vector<BenchmarkSweep>& sweeps) {
   std::vector<StoredSweep> stored;
@@ -283,6 +186,94 @@ std::vector<Cost> costs_of(const BenchmarkPlan& plan, const Kernels& kernels, co
 }
 
 }  // namespace
+
+void write_costs(const std::filesystem::path& file, const std::vector<Cost>& costs,
+                 const TextAttributes& origin) {
+  Json list = Json::array();
+  for (const Cost& cost : costs)
+    list.push_back(
+        {{"scene", cost.scene}, {"method", cost.method}, {"tick_s", cost.tick_s}, {"frame_s", cost.frame_s}});
+  Json all = Json::object();
+  for (const auto& [name, value] : origin) all[name] = value;
+  all["costs"] = list;
+  write_file_atomically(file, all.dump(1) + "\n");  // null: not a finite number
+}
+
+std::vector<Cost> read_costs(const std::filesystem::path& file, const TextAttributes& origin) {
+  const Json all = json_in_file(file);
+  std::vector<Cost> costs;
+  if (!all.is_object() || !all.contains("costs") || !all["costs"].is_array()) return costs;
+  for (const char* name : {"source_digest", "isa", "cpu"})
+    if (all.value(name, Json()) != attribute(origin, name)) return costs;
+  const Json& list = all["costs"];
+  const auto seconds = [](const Json& value) {
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+  };
+  for (const Json& item : list) {
+    if (!item.is_object() || !item.value("scene", Json()).is_string() ||
+        !item.value("method", Json()).is_string())
+      return {};
+    const double tick_s = seconds(item.value("tick_s", Json()));
+    if (std::isnan(tick_s)) continue;  // the run ended with an error: it is measured again
+    costs.push_back({item["scene"].get<std::string>(), item["method"].get<std::string>(), tick_s,
+                     seconds(item.value("frame_s", Json()))});
+  }
+  return costs;
+}
+
+std::string verdict(const Scorecard& card, const SceneScore& scene) {
+  const Ranking& ranking = scene.ranking;
+  if (ranking.ranked < 2) return "";
+  std::string text;
+  if (ranking.has_best) {
+    text = "Best: " + card.methods[ranking.order.front()] + ".";
+  } else if (ranking.top_group.size() == ranking.ranked) {
+    text = "No difference between any.";
+  } else {
+    text = "No difference at the top:";
+    for (const std::size_t c : ranking.top_group)
+      text += (c == ranking.top_group.front() ? " " : ", ") + card.methods[c];
+    text += ".";
+  }
+  if (ranking.has_worst) text += " Worst: " + card.methods[ranking.order[ranking.ranked - 1]] + ".";
+  return text;
+}
+
+std::string cost_reference(const Scorecard& card) {
+  const auto proxy = std::find(card.methods.begin(), card.methods.end(), "proxy");
+  return proxy != card.methods.end() ? *proxy : card.methods.front();
+}
+
+std::vector<CostSummary> cost_summary(const Scorecard& card, const std::vector<Cost>& costs) {
+  std::vector<CostSummary> methods;
+  const std::string reference = cost_reference(card);
+  for (const std::string& method : card.methods) {
+    std::vector<double> tick_ratio, frame_ratio, tick_s, frame_s;
+    for (const SceneScore& scene : card.scenes) {
+      const Cost* own = find_cost(costs, scene.name, method);
+      const Cost* other = find_cost(costs, scene.name, reference);
+      if (!own || !other) continue;
+      add_cost(own->tick_s, other->tick_s, tick_ratio, tick_s);
+      add_cost(own->frame_s, other->frame_s, frame_ratio, frame_s);
+    }
+    methods.push_back({median(tick_ratio), median(frame_ratio), median(tick_s), median(frame_s)});
+  }
+  return methods;
+}
+
+std::optional<std::vector<std::vector<EnergySummary>>> energies(const SceneScore& scene) {
+  const auto run = std::ranges::find(scene.measures, "energy_injected", &JudgedMeasure::name);
+  const auto update = std::ranges::find(scene.measures, "mean_energy_per_update", &JudgedMeasure::name);
+  if (run == scene.measures.end() || update == scene.measures.end()) return {};
+  std::vector<std::vector<EnergySummary>> laws(run->at_level.size());
+  for (std::size_t c = 0; c < laws.size(); ++c)
+    for (std::size_t i = 0; i < scene.noise_m.size(); ++i) {
+      Estimate cycle = run->at_level[c][i];
+      for (double* energy : {&cycle.value, &cycle.low, &cycle.high}) *energy /= kPassivityCycles;
+      laws[c].push_back({cycle, update->at_level[c][i].value});
+    }
+  return laws;
+}
 
 Scorecard scores_of(const BenchmarkPlan& plan) {
   Scorecard card = empty_card(plan.benchmark.methods);

@@ -12,9 +12,6 @@
 
 namespace remote_touch {
 
-// The scenes of the metamorphic tests: a stream of clouds and a path of the HIP as plain data, so that both
-// can be rotated, scaled, reordered or delayed before they are played again.
-
 // One frame of the stream.
 struct CloudView {
   int index = 0;
@@ -23,7 +20,8 @@ struct CloudView {
   PointCloud cloud;
 };
 
-// World frame, metres, seconds.
+// A stream of clouds and a path of the HIP as plain data, so that both can be rotated, scaled, reordered or
+// delayed before they are played again. World frame, metres, seconds.
 struct MetamorphicScene {
   std::string name;
   std::string what;  // one line
@@ -46,23 +44,19 @@ struct MetamorphicScene {
 // One output for each tick.
 std::vector<RenderOutput> play(const MetamorphicScene& scene, Renderer& renderer);
 
-// The scenes in which renderers of a tool are checked.
-
-// Returns scenes like verification_scenes(), with normals and a device that turns, for the tool
-// kVerifiedTool. Points have regions in the scenes for renderers of regions.
+// Returns the scenes in which renderers of a tool are checked, like verification_scenes(), with normals and a
+// device that turns, for the tool kVerifiedTool. Points have regions in the scenes for renderers of regions.
 std::vector<MetamorphicScene> tool_scenes(const Kernels& kernels);
 
 // A bar of 80 x 20 x 10 mm, which is its own mirror image along every axis. Written as assignments. The
 // voxels are coarse, because the tool is made or loaded for every check.
 inline constexpr const char* kVerifiedTool[] = {"tool_mesh=bar", "tool_size_m=0.08", "tool_voxel_m=0.001"};
 
-// The scenes in which every renderer is checked.
-
-// 320 ticks at 1024 Hz each, with clouds at 32 Hz that arrive 5 ticks late: all times are whole multiples of
-// 1/1024 s, so they stay exact when they are halved or shifted by whole seconds. A proxy of about 5 mm on
-// points 1.5 mm apart is pressed most of the time. Every surface is tilted and every point displaced from its
-// lattice, so that no comparison in a renderer is a tie that rounding decides. The same bits on every machine
-// and for all kernels.
+// Returns the scenes in which every renderer is checked: 320 ticks at 1024 Hz each, with clouds at 32 Hz that
+// arrive 5 ticks late: all times are whole multiples of 1/1024 s, so they stay exact when they are halved or
+// shifted by whole seconds. A proxy of about 5 mm on points 1.5 mm apart is pressed most of the time. Every
+// surface is tilted and every point displaced from its lattice, so that no comparison in a renderer is a tie
+// that rounding decides. The same bits on every machine and for all kernels.
 std::vector<MetamorphicScene> verification_scenes(const Kernels& kernels);
 
 }  // namespace remote_touch

@@ -11,15 +11,12 @@
 
 namespace remote_touch {
 
-// The folder of the cache.
-
-// Returns the folder that the environment variable REMOTE_TOUCH_CACHE names. If it is not set, returns the
-// folder remote-touch in XDG_CACHE_HOME, or in .cache of HOME. The path is empty if none of these variables
-// is set.
+// Returns the folder of the cache: the folder that the environment variable REMOTE_TOUCH_CACHE names. If it
+// is not set, returns the folder remote-touch in XDG_CACHE_HOME, or in .cache of HOME. The path is empty if
+// none of these variables is set.
 std::filesystem::path cache_folder();
 
 // The size of the cache folder, which is bounded: tools of many variants of a mesh would fill the disk.
-
 struct CacheSize {
   std::size_t files = 0;
   std::uintmax_t bytes = 0;

@@ -91,6 +91,16 @@ std::shared_ptr<py::error_already_set> wait(Ending& ending, const py::object& re
   return raised;
 }
 
+std::mutex file_mutex;
+bool sweep_is_written = false;  // guarded by file_mutex
+thread_local bool has_turn = false;
+
+void require_no_sweep() {
+  if (sweep_is_written)
+    throw InputError("a file",
+                     "a sweep is being written by this process: expected the call before or after it");
+}
+
 }  // namespace
 
 UnchangedCatalog::UnchangedCatalog() {
@@ -135,18 +145,6 @@ void choose_python_kernels(const std::string& forced) {
 const Kernels& chosen_python_kernels() {
   return *kernels_in_use();
 }
-
-namespace {
-std::mutex file_mutex;
-bool sweep_is_written = false;  // guarded by file_mutex
-thread_local bool has_turn = false;
-
-void require_no_sweep() {
-  if (sweep_is_written)
-    throw InputError("a file",
-                     "a sweep is being written by this process: expected the call before or after it");
-}
-}  // namespace
 
 FileTurn::FileTurn(For duration) : duration_(duration) {
   if (has_turn)

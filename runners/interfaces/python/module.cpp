@@ -16,8 +16,6 @@
 
 namespace remote_touch {
 
-// The module remote_touch._core: the part of the Python package that is written in C++.
-
 namespace py = pybind11;
 
 namespace {
@@ -42,6 +40,7 @@ void bind_errors(py::module_& module) {
 
 }  // namespace
 
+// The part of the Python package that is written in C++.
 PYBIND11_MODULE(_core, module) {
   module.doc() = "What the package remote_touch is made of.";
   bind_errors(module);

@@ -127,8 +127,6 @@ py::object PythonClass::object(const PythonSettings& settings, Init init, const 
 
 namespace {
 
-// A renderer written in Python.
-
 class PythonRenderer final : public Renderer {
  public:
   PythonRenderer(std::shared_ptr<const PythonClass> type, const PythonSettings& settings,

@@ -16,8 +16,6 @@
 
 namespace remote_touch {
 
-// A class of Python that has an entry in the catalog: its settings, its objects, and calls of their methods.
-
 // An exception that a Python class raised, as an InputError of one line. raised() is its cause.
 class PythonProblem : public InputError {
  public:
@@ -108,8 +106,6 @@ class HeldObject {
  private:
   pybind11::object object_;
 };
-
-// Entries of the catalog for classes of Python.
 
 // A class as it is registered: its name in the catalog, and the settings of its objects.
 struct PythonEntry {

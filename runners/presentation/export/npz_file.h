@@ -11,17 +11,14 @@
 
 namespace remote_touch {
 
-// Arrays in the file format of NumPy: .npy, version 1.0.
-
-// Returns an array of shape (n,) or (n, width), little-endian: <f8, <i4, <u8, or <U for texts.
+// Returns an array in the file format of NumPy, .npy, version 1.0. Its shape is (n,) or (n, width), its type
+// little-endian: <f8, <i4, <u8, or <U for texts.
 std::string npy_array(const Column& column);
 // One text, of shape ().
 std::string npy_text(const std::string& text);
 
-// Archives in the format ZIP, whose members are stored as they are.
-
-// Passes the bytes of the archive to `write` as it grows. It stores no times, so that equal members give
-// equal bytes.
+// An archive in the format ZIP, whose members are stored as they are. Passes the bytes of the archive to
+// `write` as it grows. It stores no times, so that equal members give equal bytes.
 class ZipArchive {
  public:
   explicit ZipArchive(std::function<void(const std::string& bytes)> write) : write_(std::move(write)) {}

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
@@ -96,6 +95,52 @@ void require_exportable(const Hdf5Reader& result, const Table& table) {
   }
 }
 
+constexpr std::size_t kRowsAtOnce = 4096;
+
+template <class Number>
+void add_number(std::string& line, Number number) {
+  std::array<char, 32> text{};
+  const auto [end, error] = std::to_chars(text.begin(), text.end(), number);
+  line.append(text.begin(), end);
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string inside = text;
+  for (std::size_t at = 0; (at = inside.find('"', at)) != std::string::npos; at += 2)
+    inside.insert(at, 1, '"');
+  return '"' + inside + '"';
+}
+
+void add_cell(std::string& line, const Column& column, std::size_t place) {
+  const auto add = [&]<class Value>(const std::vector<Value>& values) {
+    const Value& value = values[place];
+    if constexpr (std::is_same_v<Value, std::string>)
+      line += quoted(value);
+    else if (std::is_same_v<Value, std::int32_t> &&
+             static_cast<std::size_t>(value) < column.value_names.size())
+      line += quoted(column.value_names[static_cast<std::size_t>(value)]);  // a negative one is too large
+    else if (value != value)
+      line += "nan";  // without the sign that to_chars would print
+    else
+      add_number(line, value);
+  };
+  std::visit(add, column.values);
+}
+
+std::filesystem::path beside(const std::filesystem::path& output, const std::string& name) {
+  return output.parent_path() / (output.stem().string() + "_" + name + output.extension().string());
+}
+
+std::string lines_of_columns(const Table& table) {
+  std::string lines;
+  for (const Column& column : table.columns)
+    for (const std::string& name : component_names(column))
+      lines += quoted(table.name) + ',' + quoted(name) + ',' + quoted(column.units) + ',' +
+               quoted(column.long_name) + '\n';
+  return lines;
+}
+
 }  // namespace
 
 std::string exported_kind(const Hdf5Reader& result) {
@@ -138,63 +183,6 @@ std::vector<std::string> component_names(const Column& column) {
   return names;
 }
 
-namespace {
-
-constexpr std::size_t kRowsAtOnce = 4096;
-
-template <class Number>
-void add_number(std::string& line, Number number) {
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.begin(), text.end(), number);
-  line.append(text.begin(), end);
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string inside = text;
-  for (std::size_t at = 0; (at = inside.find('"', at)) != std::string::npos; at += 2)
-    inside.insert(at, 1, '"');
-  return '"' + inside + '"';
-}
-
-struct Cell {
-  std::string& line;
-  const Column& column;
-  std::size_t place;
-
-  void operator()(const std::vector<double>& values) const {
-    const double value = values[place];
-    if (std::isnan(value))
-      line += "nan";  // without the sign that to_chars would print
-    else
-      add_number(line, value);
-  }
-  void operator()(const std::vector<std::int32_t>& values) const {
-    const auto name = static_cast<std::size_t>(values[place]);
-    if (values[place] >= 0 && name < column.value_names.size())
-      line += quoted(column.value_names[name]);
-    else
-      add_number(line, values[place]);
-  }
-  void operator()(const std::vector<std::uint64_t>& values) const { add_number(line, values[place]); }
-  void operator()(const std::vector<std::string>& values) const { line += quoted(values[place]); }
-};
-
-std::filesystem::path beside(const std::filesystem::path& output, const std::string& name) {
-  return output.parent_path() / (output.stem().string() + "_" + name + output.extension().string());
-}
-
-std::string lines_of_columns(const Table& table) {
-  std::string lines;
-  for (const Column& column : table.columns)
-    for (const std::string& name : component_names(column))
-      lines += quoted(table.name) + ',' + quoted(name) + ',' + quoted(column.units) + ',' +
-               quoted(column.long_name) + '\n';
-  return lines;
-}
-
-}  // namespace
-
 std::string csv_header(const Table& table) {
   std::string line;
   for (const Column& column : table.columns)
@@ -208,7 +196,7 @@ std::string csv_rows(const Table& table, std::size_t first, std::size_t end) {
     for (const Column& column : table.columns) {
       const auto width = static_cast<std::size_t>(column.width);
       for (std::size_t place = row * width; place < (row + 1) * width; ++place) {
-        std::visit(Cell{lines, column, place}, column.values);
+        add_cell(lines, column, place);
         lines += ',';
       }
     }

@@ -27,10 +27,9 @@ TextAttributes exported_attributes(const Hdf5Reader& result, const std::vector<T
 // y, z, and those of another width 0, 1, ... A column of width 1 has its own name.
 std::vector<std::string> component_names(const Column& column);
 
-// Tables as text, for spreadsheets, R and pandas.
-
-// Writes x.csv, or x_NAME.csv for each of several tables, with one line of names. Also writes x_columns.csv
-// with a line for each of these names: table, column, unit, meaning. Lines end with a line feed.
+// Writes tables as text, for spreadsheets, R and pandas: x.csv, or x_NAME.csv for each of several tables,
+// with one line of names. Also writes x_columns.csv with a line for each of these names: table, column, unit,
+// meaning. Lines end with a line feed.
 void write_csv(const ExportJob& job);
 // The same with these tables instead of those of the result.
 void write_csv(const std::vector<Table>& tables, const ExportJob& job);

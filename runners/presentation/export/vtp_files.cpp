@@ -59,60 +59,6 @@ std::string counts_of(const VtkPolyData& data) {
          std::to_string(data.faces.size()) + "\">\n";
 }
 
-}  // namespace
-
-std::string xml_escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else
-      escaped += c;
-  }
-  return escaped;
-}
-
-std::string vtp_file(const VtkPolyData& data) {
-  std::string appended, xml = kVtkOpening;
-  xml +=
-      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-      "<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
-      "format=\"ascii\">" +
-      text_of(data.time_s) + "</DataArray>\n</FieldData>\n" + counts_of(data);
-  const auto section = [&](const std::string& name, const std::vector<VtkArray>& arrays) {
-    xml += "<" + name + ">\n";
-    for (const VtkArray& one : arrays) {
-      xml += "<DataArray type=\"" + std::string(one.type) + "\" Name=\"" + xml_escaped(one.name) +
-             "\" NumberOfComponents=\"" + std::to_string(one.components) +
-             "\" format=\"appended\" offset=\"" + std::to_string(appended.size()) + "\"/>\n";
-      put(appended, std::uint64_t{one.bytes.size()});
-      appended += one.bytes;
-    }
-    xml += "</" + name + ">\n";
-  };
-  VtkArray points{"Points", "Float64", 3, {}};
-  for (const Vec3& p : data.points) put(points.bytes, p.x(), p.y(), p.z());
-  Cells vertices, lines, faces;
-  for (std::size_t i = 0; data.has_vertices && i < data.points.size(); ++i)
-    vertices.add(std::array{static_cast<std::int64_t>(i)});
-  for (const auto& line : data.lines) lines.add(line);
-  for (const auto& face : data.faces) faces.add(face);
-  section("Points", {points});
-  section("Verts", vertices.arrays());
-  section("Lines", lines.arrays());
-  section("Polys", faces.arrays());
-  section("PointData", data.of_points);
-  section("CellData", data.of_cells);
-  return xml + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + appended +
-         "\n</AppendedData>\n</VTKFile>\n";
-}
-
-namespace {
-
 VtkPolyData paths_of(const ExportJob& job, const ExportedRun& run) {
   VtkPolyData data;
   data.points = run.hip_W;
@@ -229,6 +175,56 @@ class VtpFolder {
 };
 
 }  // namespace
+
+std::string xml_escaped(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&')
+      escaped += "&amp;";
+    else if (c == '<')
+      escaped += "&lt;";
+    else if (c == '"')
+      escaped += "&quot;";
+    else
+      escaped += c;
+  }
+  return escaped;
+}
+
+std::string vtp_file(const VtkPolyData& data) {
+  std::string appended, xml = kVtkOpening;
+  xml +=
+      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+      "<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
+      "format=\"ascii\">" +
+      text_of(data.time_s) + "</DataArray>\n</FieldData>\n" + counts_of(data);
+  const auto section = [&](const std::string& name, const std::vector<VtkArray>& arrays) {
+    xml += "<" + name + ">\n";
+    for (const VtkArray& one : arrays) {
+      xml += "<DataArray type=\"" + std::string(one.type) + "\" Name=\"" + xml_escaped(one.name) +
+             "\" NumberOfComponents=\"" + std::to_string(one.components) +
+             "\" format=\"appended\" offset=\"" + std::to_string(appended.size()) + "\"/>\n";
+      put(appended, std::uint64_t{one.bytes.size()});
+      appended += one.bytes;
+    }
+    xml += "</" + name + ">\n";
+  };
+  VtkArray points{"Points", "Float64", 3, {}};
+  for (const Vec3& p : data.points) put(points.bytes, p.x(), p.y(), p.z());
+  Cells vertices, lines, faces;
+  for (std::size_t i = 0; data.has_vertices && i < data.points.size(); ++i)
+    vertices.add(std::array{static_cast<std::int64_t>(i)});
+  for (const auto& line : data.lines) lines.add(line);
+  for (const auto& face : data.faces) faces.add(face);
+  section("Points", {points});
+  section("Verts", vertices.arrays());
+  section("Lines", lines.arrays());
+  section("Polys", faces.arrays());
+  section("PointData", data.of_points);
+  section("CellData", data.of_cells);
+  return xml + "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_" + appended +
+         "\n</AppendedData>\n</VTKFile>\n";
+}
 
 void write_vtp(const ExportJob& job) {
   const ExportedRun run = exported_run(job);

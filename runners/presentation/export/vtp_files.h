@@ -11,8 +11,6 @@
 
 namespace remote_touch {
 
-// Points, lines and triangles in the XML format of VTK: .vtp.
-
 // Values of the points or cells of a piece.
 struct VtkArray {
   std::string name;
@@ -21,6 +19,7 @@ struct VtkArray {
   std::string bytes;   // little-endian
 };
 
+// Points, lines and triangles in the XML format of VTK: .vtp.
 struct VtkPolyData {
   double time_s = 0;
   std::vector<Vec3> points;

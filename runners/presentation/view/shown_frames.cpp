@@ -25,47 +25,6 @@ class FrameObserver final : public FrameReceiver {
   const std::function<void(const Frame&)>& on_frame_;
 };
 
-}  // namespace
-
-Experiment experiment_of_run(const TextAttributes& trace, const std::string& name) {
-  if (!recipe_of(trace) && attribute(trace, "command").find(" live ") != std::string::npos)
-    throw InputError(
-        name,
-        "is of a live run, without its frames: expected the trace that `remote-touch run` makes from its recording");
-  Experiment experiment = read_configuration(
-      trace, name, [&] { return Experiment::from_json(parse_json(attribute(trace, "config"), name)); });
-  for (const ChangedInput& input :
-       changed_inputs(attribute(trace, "input_digests"), input_hashes(experiment.inputs())))
-    throw InputError(name, "its recording " + input.path + " has changed: expected " + input.before +
-                               ", found " + input.now);
-  return experiment;
-}
-
-void replay_frames(const Experiment& experiment, std::span<const double> time_s, const Kernels& kernels,
-                   const std::atomic<bool>* stop, const std::function<void(const Frame&)>& on_frame) {
-  // A task switches fixtures on and off, at times that are known only from the run itself.
-  if (!experiment.sequence().empty()) {
-    SimulationOptions options;
-    options.kernels = &kernels;
-    options.stop = stop;
-    options.on_frame = on_frame;
-    simulate(experiment, options);
-    return;
-  }
-  FrameObserver observer(on_frame);
-  const auto scenario = experiment.build_scenario(kernels);
-  FrameProcessing processing = experiment.build_processing(kernels);
-  processing.needs = {};  // so that a run of an earlier version, which refused nothing, can be shown too
-  FrameStream stream(*scenario, std::move(processing), experiment.settings().transport,
-                     experiment.settings().key, false);
-  for (const double now_s : time_s) {
-    if (stop && *stop) throw Interrupted{};
-    stream.deliver_until(now_s, observer);
-  }
-}
-
-namespace {
-
 // Returns a rank from 1 to 2^32 - 1. The ranks of successive numbers are spread evenly (multiplicative
 // hashing, Knuth 6.4).
 std::uint32_t rank_of(std::uint32_t number) {
@@ -83,50 +42,6 @@ std::vector<Vec3> thinned_path(std::span<const Vec3> path_W, double side_m) {
     if (p.allFinite() && (kept.empty() || (p - kept.back()).norm() > side_m)) kept.push_back(p);
   return kept;
 }
-
-}  // namespace
-
-std::uint32_t rank_limit(std::size_t others, std::size_t wanted_others) {
-  constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
-  if (others <= wanted_others) return kAll;
-  return static_cast<std::uint32_t>(static_cast<double>(wanted_others) / static_cast<double>(others) * kAll);
-}
-
-ShownPoints shown_points(const PointCloud& cloud, std::span<const std::uint32_t> always,
-                         std::span<const Vec3> proxies_W, const ShownPointsRule& rule) {
-  ShownPoints shown;
-  const double step_m = 0.1 * rule.near_m;
-  const std::vector<Vec3> path = thinned_path(proxies_W, step_m);
-  const double squared = (rule.near_m + step_m) * (rule.near_m + step_m);
-  std::vector<std::uint32_t> others;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!cloud.is_measured(i)) continue;
-    ++shown.measured;
-    const Vec3 p = cloud.point(i);
-    const bool in_box = rule.box_W.contains(p);
-    shown.in_box += in_box ? 1 : 0;
-    if (std::binary_search(always.begin(), always.end(), i)) {
-      shown.indices.push_back(static_cast<std::uint32_t>(i));
-      continue;
-    }
-    if (!in_box) continue;
-    const bool is_near = rule.near_m > 0 && std::any_of(path.begin(), path.end(), [&](const Vec3& proxy) {
-                           return (p - proxy).squaredNorm() <= squared;
-                         });
-    (is_near ? shown.indices : others).push_back(static_cast<std::uint32_t>(i));
-  }
-  shown.others = others.size();
-  const std::uint32_t limit = rank_limit(others.size(), rule.wanted_others);
-  const std::vector<std::uint32_t> near = shown.indices;
-  for (const std::uint32_t i : others)
-    if (rank_of(i) < limit) shown.indices.push_back(i);
-  std::sort(shown.indices.begin(), shown.indices.end());
-  for (const std::uint32_t i : shown.indices)
-    shown.rank.push_back(std::binary_search(near.begin(), near.end(), i) ? 0 : rank_of(i));
-  return shown;
-}
-
-namespace {
 
 bool is_known(const ToolPose& pose) {
   return pose.p_W.allFinite() && pose.q_WT.coeffs().allFinite();
@@ -160,43 +75,6 @@ std::vector<std::uint32_t> candidates(const VoxelTool& tool, std::span<const Too
   }
   return found;
 }
-
-}  // namespace
-
-TouchingPoints touching_proxy(std::span<const Vec3> centres_W, double radius_m, const PointCloud& cloud) {
-  BoundingBox box;
-  for (const Vec3& centre : centres_W)
-    if (centre.allFinite()) box.extend(centre);
-  const auto region_m = [&](std::size_t i) {
-    return cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i];
-  };
-  std::vector<std::uint32_t> near;
-  for (std::size_t i = 0; i < cloud.size() && !box.isEmpty(); ++i)
-    if (cloud.is_measured(i) && box.exteriorDistance(cloud.point(i)) <= radius_m + region_m(i) + 1e-9)
-      near.push_back(static_cast<std::uint32_t>(i));
-  TouchingPoints touching;
-  for (const Vec3& centre : centres_W) {
-    std::vector<std::uint32_t>& now = touching.emplace_back();
-    for (const std::uint32_t i : near)
-      if ((centre - cloud.point(i)).norm() - region_m(i) <= radius_m) now.push_back(i);
-  }
-  return touching;
-}
-
-TouchingPoints touching_tool(const VoxelTool& tool, std::span<const ToolPose> poses,
-                             const PointCloud& cloud) {
-  const std::vector<std::uint32_t> near = candidates(tool, poses, cloud);
-  TouchingPoints touching;
-  for (const ToolPose& pose : poses) {
-    std::vector<std::uint32_t>& now = touching.emplace_back();
-    if (is_known(pose))
-      for (const std::uint32_t i : near)
-        if (distance_m(tool, pose, cloud.point(i)) <= kTouchingTool_m) now.push_back(i);
-  }
-  return touching;
-}
-
-namespace {
 
 constexpr double kMaxNumber = 65535;
 constexpr double kOutside_m = 0.15;  // points that touch may be this far outside the box, by their regions
@@ -278,6 +156,117 @@ ShownFrame shown_frame(const Frame& frame, const PointCloud& cloud, const RunPat
 }
 
 }  // namespace
+
+Experiment experiment_of_run(const TextAttributes& trace, const std::string& name) {
+  if (!recipe_of(trace) && attribute(trace, "command").find(" live ") != std::string::npos)
+    throw InputError(
+        name,
+        "is of a live run, without its frames: expected the trace that `remote-touch run` makes from its recording");
+  Experiment experiment = read_configuration(trace, name, [&] {
+    return Experiment::from_json(parse_json(attribute(trace, "config"), name));
+  });
+  for (const ChangedInput& input :
+       changed_inputs(attribute(trace, "input_digests"), input_hashes(experiment.inputs())))
+    throw InputError(name, "its recording " + input.path + " has changed: expected " + input.before +
+                               ", found " + input.now);
+  return experiment;
+}
+
+void replay_frames(const Experiment& experiment, std::span<const double> time_s, const Kernels& kernels,
+                   const std::atomic<bool>* stop, const std::function<void(const Frame&)>& on_frame) {
+  // A task switches fixtures on and off, at times that are known only from the run itself.
+  if (!experiment.sequence().empty()) {
+    SimulationOptions options;
+    options.kernels = &kernels;
+    options.stop = stop;
+    options.on_frame = on_frame;
+    simulate(experiment, options);
+    return;
+  }
+  FrameObserver observer(on_frame);
+  const auto scenario = experiment.build_scenario(kernels);
+  FrameProcessing processing = experiment.build_processing(kernels);
+  processing.needs = {};  // so that a run of an earlier version, which refused nothing, can be shown too
+  FrameStream stream(*scenario, std::move(processing), experiment.settings().transport,
+                     experiment.settings().key, false);
+  for (const double now_s : time_s) {
+    if (stop && *stop) throw Interrupted{};
+    stream.deliver_until(now_s, observer);
+  }
+}
+
+std::uint32_t rank_limit(std::size_t others, std::size_t wanted_others) {
+  constexpr std::uint32_t kAll = std::numeric_limits<std::uint32_t>::max();
+  if (others <= wanted_others) return kAll;
+  return static_cast<std::uint32_t>(static_cast<double>(wanted_others) / static_cast<double>(others) * kAll);
+}
+
+ShownPoints shown_points(const PointCloud& cloud, std::span<const std::uint32_t> always,
+                         std::span<const Vec3> proxies_W, const ShownPointsRule& rule) {
+  ShownPoints shown;
+  const double step_m = 0.1 * rule.near_m;
+  const std::vector<Vec3> path = thinned_path(proxies_W, step_m);
+  const double squared = (rule.near_m + step_m) * (rule.near_m + step_m);
+  std::vector<std::uint32_t> others;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_measured(i)) continue;
+    ++shown.measured;
+    const Vec3 p = cloud.point(i);
+    const bool in_box = rule.box_W.contains(p);
+    shown.in_box += in_box ? 1 : 0;
+    if (std::binary_search(always.begin(), always.end(), i)) {
+      shown.indices.push_back(static_cast<std::uint32_t>(i));
+      continue;
+    }
+    if (!in_box) continue;
+    const bool is_near = rule.near_m > 0 && std::any_of(path.begin(), path.end(), [&](const Vec3& proxy) {
+                           return (p - proxy).squaredNorm() <= squared;
+                         });
+    (is_near ? shown.indices : others).push_back(static_cast<std::uint32_t>(i));
+  }
+  shown.others = others.size();
+  const std::uint32_t limit = rank_limit(others.size(), rule.wanted_others);
+  const std::vector<std::uint32_t> near = shown.indices;
+  for (const std::uint32_t i : others)
+    if (rank_of(i) < limit) shown.indices.push_back(i);
+  std::sort(shown.indices.begin(), shown.indices.end());
+  for (const std::uint32_t i : shown.indices)
+    shown.rank.push_back(std::binary_search(near.begin(), near.end(), i) ? 0 : rank_of(i));
+  return shown;
+}
+
+TouchingPoints touching_proxy(std::span<const Vec3> centres_W, double radius_m, const PointCloud& cloud) {
+  BoundingBox box;
+  for (const Vec3& centre : centres_W)
+    if (centre.allFinite()) box.extend(centre);
+  const auto region_m = [&](std::size_t i) {
+    return cloud.fixture_radius_m.empty() ? 0 : cloud.fixture_radius_m[i];
+  };
+  std::vector<std::uint32_t> near;
+  for (std::size_t i = 0; i < cloud.size() && !box.isEmpty(); ++i)
+    if (cloud.is_measured(i) && box.exteriorDistance(cloud.point(i)) <= radius_m + region_m(i) + 1e-9)
+      near.push_back(static_cast<std::uint32_t>(i));
+  TouchingPoints touching;
+  for (const Vec3& centre : centres_W) {
+    std::vector<std::uint32_t>& now = touching.emplace_back();
+    for (const std::uint32_t i : near)
+      if ((centre - cloud.point(i)).norm() - region_m(i) <= radius_m) now.push_back(i);
+  }
+  return touching;
+}
+
+TouchingPoints touching_tool(const VoxelTool& tool, std::span<const ToolPose> poses,
+                             const PointCloud& cloud) {
+  const std::vector<std::uint32_t> near = candidates(tool, poses, cloud);
+  TouchingPoints touching;
+  for (const ToolPose& pose : poses) {
+    std::vector<std::uint32_t>& now = touching.emplace_back();
+    if (is_known(pose))
+      for (const std::uint32_t i : near)
+        if (distance_m(tool, pose, cloud.point(i)) <= kTouchingTool_m) now.push_back(i);
+  }
+  return touching;
+}
 
 PointScale point_scale(const BoundingBox& box_W) {
   const Vec3 outside = Vec3::Constant(kOutside_m);

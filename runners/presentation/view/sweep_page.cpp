@@ -77,23 +77,6 @@ std::vector<std::size_t> extremes(const SweepResult& result, const std::vector<d
   return both;
 }
 
-}  // namespace
-
-std::vector<std::size_t> default_runs(const SweepResult& result, const std::vector<double>& measure,
-                                      double threshold, std::size_t max) {
-  const FailedCells failed(result, measure, threshold);
-  std::vector<std::size_t> at_limit, any;
-  for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
-    if (!failed.has_failed_run(cell)) continue;
-    any.push_back(failed.failed_run(cell));
-    if (failed.at_limit(cell)) at_limit.push_back(failed.failed_run(cell));
-  }
-  if (any.empty()) return spread(extremes(result, measure), max);
-  return spread(at_limit.empty() ? any : at_limit, max);
-}
-
-namespace {
-
 // Reads a sweep. Throws InputError if it is not finished.
 StoredSweep finished_sweep(const std::filesystem::path& file) {
   StoredSweep stored = read_stored_sweep(file);
@@ -236,6 +219,19 @@ Json map_json(const std::string& file, const std::string& title, const SweepResu
 }
 
 }  // namespace
+
+std::vector<std::size_t> default_runs(const SweepResult& result, const std::vector<double>& measure,
+                                      double threshold, std::size_t max) {
+  const FailedCells failed(result, measure, threshold);
+  std::vector<std::size_t> at_limit, any;
+  for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
+    if (!failed.has_failed_run(cell)) continue;
+    any.push_back(failed.failed_run(cell));
+    if (failed.at_limit(cell)) at_limit.push_back(failed.failed_run(cell));
+  }
+  if (any.empty()) return spread(extremes(result, measure), max);
+  return spread(at_limit.empty() ? any : at_limit, max);
+}
 
 ViewPage sweep_page(const std::filesystem::path& file, const std::vector<std::string>& cells,
                     const ViewOptions& options) {

@@ -102,30 +102,6 @@ std::string in_script(const std::string& json) {
   return text;
 }
 
-}  // namespace
-
-std::string gzip_base64(const std::string& bytes) {
-  return base64(gzip(bytes));
-}
-
-std::string page_file(const std::string& title, const std::string& json, const std::string& bytes) {
-  if (viewer_script().empty())
-    throw InputError("this program",
-                     "was built without the viewer: expected a build by scripts/build, with Node");
-  std::string html =
-      "<!DOCTYPE html>\n<!-- remote-touch view -->\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-      escaped(title) + "</title>\n<style>\n";
-  html.append(viewer_style())
-      .append("</style></head>\n<body>\n<script type=\"application/json\" id=\"view\">");
-  html.append(in_script(json)).append("</script>\n<script type=\"text/plain\" id=\"numbers\">");
-  html.append(gzip_base64(bytes)).append("</script>\n<script type=\"module\">\n");
-  html.append(viewer_script()).append("</script>\n</body></html>\n");
-  return html;
-}
-
-namespace {
-
 constexpr const char* kPageSchema = "remote-touch-view/1";
 constexpr std::size_t kMaxPointsOfFrame = 30000;
 constexpr int kTrials = 8;
@@ -157,6 +133,26 @@ std::string joined(const std::vector<std::unique_ptr<ShownRun>>& runs) {
 }
 
 }  // namespace
+
+std::string gzip_base64(const std::string& bytes) {
+  return base64(gzip(bytes));
+}
+
+std::string page_file(const std::string& title, const std::string& json, const std::string& bytes) {
+  if (viewer_script().empty())
+    throw InputError("this program",
+                     "was built without the viewer: expected a build by scripts/build, with Node");
+  std::string html =
+      "<!DOCTYPE html>\n<!-- remote-touch view -->\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+      escaped(title) + "</title>\n<style>\n";
+  html.append(viewer_style())
+      .append("</style></head>\n<body>\n<script type=\"application/json\" id=\"view\">");
+  html.append(in_script(json)).append("</script>\n<script type=\"text/plain\" id=\"numbers\">");
+  html.append(gzip_base64(bytes)).append("</script>\n<script type=\"module\">\n");
+  html.append(viewer_script()).append("</script>\n</body></html>\n");
+  return html;
+}
 
 ViewPage view_page(const std::string& title, const std::vector<std::unique_ptr<ShownRun>>& runs,
                    const Json& page, const PackedArrays& numbers, const ViewOptions& options) {
