@@ -15,11 +15,11 @@ namespace remote_touch {
 
 template <class Number>
 Json PackedArrays::add(const std::vector<Number>& values) {
-  constexpr const char* kind = std::is_floating_point_v<Number> ? "f" : std::is_signed_v<Number> ? "i" : "u";
+  constexpr const char* kKind = std::is_floating_point_v<Number> ? "f" : std::is_signed_v<Number> ? "i" : "u";
   bytes_.resize((bytes_.size() + 7) / 8 * 8);
   const std::size_t at = bytes_.size();
   bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number));
-  return {{"at", at}, {"type", kind + std::to_string(8 * sizeof(Number))}, {"length", values.size()}};
+  return {{"at", at}, {"type", kKind + std::to_string(8 * sizeof(Number))}, {"length", values.size()}};
 }
 template Json PackedArrays::add(const std::vector<double>&);
 template Json PackedArrays::add(const std::vector<float>&);
