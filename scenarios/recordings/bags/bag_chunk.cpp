@@ -13,106 +13,85 @@
 namespace remote_touch {
 namespace {
 
-class Lz4Decompressor final : public Decompressor {
- public:
-  explicit Lz4Decompressor(const std::string& subject) : Decompressor(subject) {
-    if (LZ4F_isError(LZ4F_createDecompressionContext(&context_, LZ4F_VERSION))) throw std::bad_alloc();
-  }
-  ~Lz4Decompressor() override { LZ4F_freeDecompressionContext(context_); }
+constexpr std::size_t kPiece = 1u << 20;
 
-  std::size_t decode(std::string_view& from, char* to, std::size_t size) override {
-    std::size_t written = size, taken = from.size();
-    const std::size_t result = LZ4F_decompress(context_, to, &written, from.data(), &taken, nullptr);
-    if (LZ4F_isError(result)) refuse(subject_, "its LZ4 data are damaged: ", LZ4F_getErrorName(result));
+Decompress lz4(const std::string& subject) {
+  LZ4F_dctx* made = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&made, LZ4F_VERSION))) throw std::bad_alloc();
+  const std::shared_ptr<LZ4F_dctx> context(made, LZ4F_freeDecompressionContext);
+  return [subject, context](std::string_view& from, char* to, std::size_t size) {
+    std::size_t taken = from.size();
+    const std::size_t result = LZ4F_decompress(context.get(), to, &size, from.data(), &taken, nullptr);
+    if (LZ4F_isError(result)) refuse(subject, "its LZ4 data are damaged: ", LZ4F_getErrorName(result));
     from.remove_prefix(taken);
-    return written;
-  }
-
- private:
-  LZ4F_dctx* context_ = nullptr;
-};
-
-class ZstdDecompressor final : public Decompressor {
- public:
-  explicit ZstdDecompressor(const std::string& subject) : Decompressor(subject) {
-    if (!context_) throw std::bad_alloc();
-  }
-  ~ZstdDecompressor() override { ZSTD_freeDCtx(context_); }
-
-  std::size_t decode(std::string_view& from, char* to, std::size_t size) override {
-    ZSTD_inBuffer in{from.data(), from.size(), 0};
-    ZSTD_outBuffer out{to, size, 0};
-    const std::size_t result = ZSTD_decompressStream(context_, &out, &in);
-    if (ZSTD_isError(result)) refuse(subject_, "its Zstandard data are damaged: ", ZSTD_getErrorName(result));
-    from.remove_prefix(in.pos);
-    return out.pos;
-  }
-
- private:
-  ZSTD_DCtx* const context_ = ZSTD_createDCtx();
-};
-
-class Bz2Decompressor final : public Decompressor {
- public:
-  explicit Bz2Decompressor(const std::string& subject) : Decompressor(subject) {
-    if (BZ2_bzDecompressInit(&stream_, 0, 0) != BZ_OK) throw std::bad_alloc();
-  }
-  ~Bz2Decompressor() override { BZ2_bzDecompressEnd(&stream_); }
-
-  std::size_t decode(std::string_view& from, char* to, std::size_t size) override {
-    if (ended_) return 0;
-    stream_.next_in = const_cast<char*>(from.data()), stream_.avail_in = static_cast<unsigned>(from.size());
-    stream_.next_out = to, stream_.avail_out = static_cast<unsigned>(size);
-    const int result = BZ2_bzDecompress(&stream_);
-    if (result == BZ_MEM_ERROR) throw std::bad_alloc();
-    if (result != BZ_OK && result != BZ_STREAM_END)
-      refuse(subject_, "its bzip2 data are damaged: error ", result);
-    ended_ = result == BZ_STREAM_END;
-    from.remove_prefix(from.size() - stream_.avail_in);
-    return size - stream_.avail_out;
-  }
-
- private:
-  bz_stream stream_{};
-  bool ended_ = false;
-};
-
-}  // namespace
-
-std::unique_ptr<Decompressor> make_decompressor(const std::string& kind, const std::string& subject) {
-  if (kind == "lz4") return std::make_unique<Lz4Decompressor>(subject);
-  if (kind == "zstd") return std::make_unique<ZstdDecompressor>(subject);
-  if (kind == "bz2") return std::make_unique<Bz2Decompressor>(subject);
-  return nullptr;
+    return size;
+  };
 }
 
-namespace {
+Decompress zstd(const std::string& subject) {
+  const std::shared_ptr<ZSTD_DCtx> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+  if (!context) throw std::bad_alloc();
+  return [subject, context](std::string_view& from, char* to, std::size_t size) {
+    ZSTD_inBuffer in{from.data(), from.size(), 0};
+    ZSTD_outBuffer out{to, size, 0};
+    const std::size_t result = ZSTD_decompressStream(context.get(), &out, &in);
+    if (ZSTD_isError(result)) refuse(subject, "its Zstandard data are damaged: ", ZSTD_getErrorName(result));
+    from.remove_prefix(in.pos);
+    return out.pos;
+  };
+}
 
-constexpr std::size_t kPiece = 1u << 20;
+Decompress bz2(const std::string& subject) {
+  auto owned = std::make_unique<bz_stream>();
+  if (BZ2_bzDecompressInit(owned.get(), 0, 0) != BZ_OK) throw std::bad_alloc();
+  const std::shared_ptr<bz_stream> stream(owned.release(), [](bz_stream* ended) {
+    BZ2_bzDecompressEnd(ended);
+    delete ended;
+  });
+  return [subject, stream, ended = false](std::string_view& from, char* to, std::size_t size) mutable {
+    if (ended) return std::size_t{0};
+    stream->next_in = const_cast<char*>(from.data()), stream->avail_in = static_cast<unsigned>(from.size());
+    stream->next_out = to, stream->avail_out = static_cast<unsigned>(size);
+    const int result = BZ2_bzDecompress(stream.get());
+    if (result == BZ_MEM_ERROR) throw std::bad_alloc();
+    if (result != BZ_OK && result != BZ_STREAM_END)
+      refuse(subject, "its bzip2 data are damaged: error ", result);
+    ended = result == BZ_STREAM_END;
+    from.remove_prefix(from.size() - stream->avail_in);
+    return size - stream->avail_out;
+  };
+}
+
+Decompress decompress(const std::string& kind, const std::string& subject) {
+  return kind == "lz4"    ? lz4(subject)
+         : kind == "zstd" ? zstd(subject)
+         : kind == "bz2"  ? bz2(subject)
+                          : nullptr;
+}
 
 }  // namespace
 
 BagChunk::BagChunk(const ByteFile& file, const ChunkPlace& place) : file_(file), place_(place) {
   if (!file.has(place.stored_at, place.stored_size))
     refuse_chunk("claims ", place.stored_size, " bytes: more than the file has");
-  decompressor_ = make_decompressor(place.compression, file.name());
-  if (!decompressor_ && !place.compression.empty() && place.compression != "none")
+  decompress_ = decompress(place.compression, file.name());
+  if (!decompress_ && !place.compression.empty() && place.compression != "none")
     refuse_chunk("compression = \"", place.compression.substr(0, 32), "\": expected lz4, zstd, bz2 or none");
   if (place.is_open) {
     decode_open();
     return;
   }
-  if (!decompressor_ && place.size != place.stored_size)
+  if (!decompress_ && place.size != place.stored_size)
     refuse_chunk("is not compressed, but its stored size and its decoded size differ");
-  if (decompressor_ && place.size > kMaxBytes)
+  if (decompress_ && place.size > kMaxBytes)
     refuse_chunk("claims ", place.size, " bytes when decompressed: expected up to ", kMaxBytes);
 }
 
 // Decodes until the bytes end, or until they are no longer compressed data. Sets the size to what was
 // decoded.
 void BagChunk::decode_open() {
-  place_.size = decompressor_ ? kMaxBytes : place_.stored_size;
-  if (!decompressor_) return;
+  place_.size = decompress_ ? kMaxBytes : place_.stored_size;
+  if (!decompress_) return;
   try {
     decode_until(kMaxBytes);
   } catch (const InputError&) {
@@ -136,7 +115,7 @@ void BagChunk::decode_until(std::uint64_t end) {
     decoded_.resize(before + more);
     std::size_t got = 0;
     try {
-      got = decompressor_->decode(input_left_, decoded_.data() + before, more);
+      got = decompress_(input_left_, decoded_.data() + before, more);
     } catch (const InputError&) {
       decoded_.resize(before);
       throw;
@@ -152,7 +131,7 @@ void BagChunk::decode_until(std::uint64_t end) {
 std::string_view BagChunk::view(std::uint64_t at, std::uint64_t size) {
   if (at > place_.size || size > place_.size - at)
     refuse_chunk("has ", place_.size, " bytes: expected ", size, " at ", at);
-  if (decompressor_) {
+  if (decompress_) {
     decode_until(at + size);
     return std::string_view(decoded_).substr(at, size);
   }
@@ -162,7 +141,7 @@ std::string_view BagChunk::view(std::uint64_t at, std::uint64_t size) {
 
 void BagChunk::check() {
   if (checked_) return;
-  if (decompressor_) {
+  if (decompress_) {
     decode_until(place_.size);
   } else if (place_.crc != 0) {
     crc_so_far_ = file_.crc(place_.stored_at, place_.stored_at + place_.size);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -13,22 +14,10 @@
 namespace remote_touch {
 
 // Decodes compressed bytes piece by piece, as they are needed: frames of LZ4 and Zstandard, and bzip2.
-
-class Decompressor {
- public:
-  explicit Decompressor(const std::string& subject) : subject_(subject) {}
-  virtual ~Decompressor() = default;
-  // Removes bytes from the front of `from`, writes up to `size` decoded bytes and returns their number.
-  // Returns 0 only if it needs more bytes than `from` has, or if its frame has ended. Throws InputError about
-  // the subject for damaged bytes.
-  virtual std::size_t decode(std::string_view& from, char* to, std::size_t size) = 0;
-
- protected:
-  const std::string subject_;
-};
-
-// kind: lz4, zstd or bz2. Returns null for another kind.
-std::unique_ptr<Decompressor> make_decompressor(const std::string& kind, const std::string& subject);
+// Removes bytes from the front of `from`, writes up to `size` decoded bytes and returns their number. Returns
+// 0 only if it needs more bytes than `from` has, or if its frame has ended. Throws InputError for damaged
+// bytes.
+using Decompress = std::function<std::size_t(std::string_view& from, char* to, std::size_t size)>;
 
 // Position and properties of a chunk, from its record.
 struct ChunkPlace {
@@ -68,12 +57,16 @@ class BagChunk {
   const ByteFile& file_;
   ChunkPlace place_;
   std::uint32_t crc_so_far_ = 0;
-  std::unique_ptr<Decompressor> decompressor_;  // null: the records are stored as they are
-  std::string decoded_;                         // bytes decoded so far; if not compressed, those viewed last
-  std::string input_;                           // a piece of the compressed bytes
+  Decompress decompress_;  // none: the records are stored as they are
+  std::string decoded_;    // bytes decoded so far; if not compressed, those viewed last
+  std::string input_;      // a piece of the compressed bytes
   std::string_view input_left_;
   std::uint64_t input_at_ = 0;  // number of compressed bytes read so far
   bool checked_ = false;
 };
+
+// The kinds of files whose records are in chunks, see open_bag(): .mcap and .bag.
+std::unique_ptr<BagFile> open_mcap(const std::filesystem::path& file, const WantedTopic& wanted);
+std::unique_ptr<BagFile> open_ros1_bag(const std::filesystem::path& file, const WantedTopic& wanted);
 
 }  // namespace remote_touch

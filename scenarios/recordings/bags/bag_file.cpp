@@ -16,40 +16,15 @@
 #include <new>
 #include <utility>
 
-#include "scenarios/recordings/bags/mcap_file.h"
-#include "scenarios/recordings/bags/ros1_bag.h"
+#include "scenarios/recordings/bags/bag_chunk.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/text_file.h"
 
-// Bags of ROS 2 in databases of SQLite (.db3).
-
-struct sqlite3;
-
 namespace remote_touch {
+
+namespace fs = std::filesystem;
+
 namespace {
-
-// The tables `topics` and `messages` as rosbag2 makes them. The database is opened read-only and declared as
-// one that nobody changes. Only plain tables are read, so that no text of the file is run as a query.
-class Db3File final : public BagFile {
- public:
-  Db3File(const std::filesystem::path& file, const WantedTopic& wanted);
-  ~Db3File() override;
-  std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override;
-
- private:
-  void open(const std::filesystem::path& file);
-  void require_plain_tables();
-  // Calls visit(row) for each row of the query.
-  template <class Visit>
-  void for_rows(const char* query, const Visit& visit);
-  void list_topics();
-  void list_messages();
-  [[noreturn]] void throw_error() const;
-
-  sqlite3* database_ = nullptr;
-  std::map<std::int64_t, std::size_t> topic_of_id_;  // topic of each id in the database
-  mutable std::mutex mutex_;                         // guards the database
-};
 
 struct Close {
   void operator()(sqlite3_blob* blob) const { sqlite3_blob_close(blob); }
@@ -73,11 +48,7 @@ std::string immutable_uri(const std::filesystem::path& file) {
                        (byte >= 'A' && byte <= 'Z') || byte == '/' || byte == '.' || byte == '_' ||
                        byte == '-';
     constexpr const char* kDigits = "0123456789ABCDEF";
-    if (plain) {
-      uri += c;
-    } else {
-      uri += '%', uri += kDigits[byte >> 4], uri += kDigits[byte & 15];
-    }
+    uri += plain ? std::string(1, c) : std::string{'%', kDigits[byte >> 4], kDigits[byte & 15]};
   }
   return uri + "?immutable=1";
 }
@@ -88,117 +59,188 @@ Query prepared(sqlite3* database, const char* text) {
   return Query(query);
 }
 
-Db3File::Db3File(const std::filesystem::path& file, const WantedTopic& wanted)
-    : BagFile(file.string(), wanted) {
-  try {
-    open(file);
-    require_plain_tables();
-    list_topics();
-    list_messages();
-  } catch (...) {  // the destructor does not run for a constructor that throws
-    sqlite3_close(database_);
-    throw;
+// Bags of ROS 2 in databases of SQLite (.db3): the tables `topics` and `messages` as rosbag2 makes them. The
+// database is opened read-only and declared as one that nobody changes. Only plain tables are read, so that
+// no text of the file is run as a query.
+class Db3File final : public BagFile {
+ public:
+  Db3File(const std::filesystem::path& file, const WantedTopic& wanted) : BagFile(file.string(), wanted) {
+    try {
+      open(file);
+      require_plain_tables();
+      list_topics();
+      list_messages();
+    } catch (...) {  // the destructor does not run for a constructor that throws
+      sqlite3_close(database_);
+      throw;
+    }
+    sort_places();
   }
-  sort_places();
-}
 
-Db3File::~Db3File() {
-  sqlite3_close(database_);
-}
+  ~Db3File() override { sqlite3_close(database_); }
 
-void Db3File::throw_error() const {
-  if (sqlite3_errcode(database_) == SQLITE_NOMEM) throw std::bad_alloc();
-  refuse(name_, "cannot be read as a bag: ", sqlite3_errmsg(database_));
-}
-
-void Db3File::open(const std::filesystem::path& file) {
-  if (ByteFile(file).size() == 0) refuse(name_, "is empty: expected a bag");
-  std::error_code none;
-  const std::uintmax_t journal = std::filesystem::file_size(name_ + "-wal", none);
-  if (!none && journal > 0)
-    refuse(name_ + "-wal", "holds data that were not yet written to the bag: expected a closed bag");
-  const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE;
-  if (sqlite3_open_v2(immutable_uri(file).c_str(), &database_, flags, nullptr) != SQLITE_OK) {
-    if (!database_) throw std::bad_alloc();
-    throw_error();
+  std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override {
+    const std::lock_guard lock(mutex_);
+    sqlite3_blob* opened = nullptr;
+    const int status = sqlite3_blob_open(database_, "main", "messages", "data",
+                                         static_cast<sqlite3_int64>(place.at), 0, &opened);
+    const std::unique_ptr<sqlite3_blob, Close> blob(opened);
+    if (status != SQLITE_OK) throw_error();
+    const auto size = static_cast<std::uint64_t>(sqlite3_blob_bytes(blob.get()));
+    if (size > ByteFile(name_).size())
+      refuse(name_, "message ", place.at, " claims ", size, " bytes: more than the file has");
+    std::string bytes(std::min(size, max_bytes), '\0');
+    if (sqlite3_blob_read(blob.get(), bytes.data(), static_cast<int>(bytes.size()), 0) != SQLITE_OK)
+      throw_error();
+    return bytes;
   }
-  constexpr int kMaxText = 1 << 20;
-  sqlite3_limit(database_, SQLITE_LIMIT_LENGTH, static_cast<int>(kMaxMessageBytes));
-  sqlite3_limit(database_, SQLITE_LIMIT_SQL_LENGTH, kMaxText);
-  sqlite3_limit(database_, SQLITE_LIMIT_EXPR_DEPTH, 20);
-  sqlite3_limit(database_, SQLITE_LIMIT_TRIGGER_DEPTH, 1);
-  sqlite3_limit(database_, SQLITE_LIMIT_ATTACHED, 0);
-  sqlite3_db_config(database_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  sqlite3_db_config(database_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  sqlite3_db_config(database_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
-  sqlite3_db_config(database_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-  if (sqlite3_exec(database_, "PRAGMA cell_size_check=1; PRAGMA mmap_size=0; PRAGMA cache_size=-8192",
-                   nullptr, nullptr, nullptr) != SQLITE_OK)
-    throw_error();
-}
 
-// Throws InputError unless both tables are plain: a view or a virtual table could run any computation for any
-// time.
-void Db3File::require_plain_tables() {
-  for (const char* table : {"topics", "messages"}) {
-    const Query query = prepared(
-        database_,
-        "SELECT type, sql FROM sqlite_schema WHERE name = ?1 COLLATE NOCASE AND type IN ('table', 'view')");
+ private:
+  void open(const std::filesystem::path& file) {
+    if (ByteFile(file).size() == 0) refuse(name_, "is empty: expected a bag");
+    std::error_code none;
+    const std::uintmax_t journal = std::filesystem::file_size(name_ + "-wal", none);
+    if (!none && journal > 0)
+      refuse(name_ + "-wal", "holds data that were not yet written to the bag: expected a closed bag");
+    const int flags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_PRIVATECACHE;
+    if (sqlite3_open_v2(immutable_uri(file).c_str(), &database_, flags, nullptr) != SQLITE_OK) {
+      if (!database_) throw std::bad_alloc();
+      throw_error();
+    }
+    constexpr int kMaxText = 1 << 20;
+    sqlite3_limit(database_, SQLITE_LIMIT_LENGTH, static_cast<int>(kMaxMessageBytes));
+    sqlite3_limit(database_, SQLITE_LIMIT_SQL_LENGTH, kMaxText);
+    sqlite3_limit(database_, SQLITE_LIMIT_EXPR_DEPTH, 20);
+    sqlite3_limit(database_, SQLITE_LIMIT_TRIGGER_DEPTH, 1);
+    sqlite3_limit(database_, SQLITE_LIMIT_ATTACHED, 0);
+    sqlite3_db_config(database_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+    sqlite3_db_config(database_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+    sqlite3_db_config(database_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
+    sqlite3_db_config(database_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+    if (sqlite3_exec(database_, "PRAGMA cell_size_check=1; PRAGMA mmap_size=0; PRAGMA cache_size=-8192",
+                     nullptr, nullptr, nullptr) != SQLITE_OK)
+      throw_error();
+  }
+
+  // Throws InputError unless both tables are plain: a view or a virtual table could run any computation for
+  // any time.
+  void require_plain_tables() {
+    for (const char* table : {"topics", "messages"}) {
+      const Query query = prepared(
+          database_,
+          "SELECT type, sql FROM sqlite_schema WHERE name = ?1 COLLATE NOCASE AND type IN ('table', 'view')");
+      if (!query) throw_error();
+      sqlite3_bind_text(query.get(), 1, table, -1, SQLITE_STATIC);
+      const int step = sqlite3_step(query.get());
+      if (step != SQLITE_ROW && step != SQLITE_DONE) throw_error();
+      std::string sql = step == SQLITE_ROW ? text_in(query.get(), 1) : "";
+      std::transform(sql.begin(), sql.end(), sql.begin(), [](unsigned char c) { return std::toupper(c); });
+      const bool plain = step == SQLITE_ROW && text_in(query.get(), 0) == "table" &&
+                         sql.starts_with("CREATE TABLE") && sql.find("GENERATED") == std::string::npos &&
+                         sql.find(" AS ") == std::string::npos && sql.find("AS(") == std::string::npos;
+      if (!plain) refuse(name_, "has no plain table '", table, "': expected a bag of ROS 2");
+    }
+  }
+
+  // Calls visit(row) for each row of the query `text`.
+  template <class Visit>
+  void for_rows(const char* text, const Visit& visit) {
+    const Query query = prepared(database_, text);
     if (!query) throw_error();
-    sqlite3_bind_text(query.get(), 1, table, -1, SQLITE_STATIC);
-    const int step = sqlite3_step(query.get());
-    if (step != SQLITE_ROW && step != SQLITE_DONE) throw_error();
-    std::string sql = step == SQLITE_ROW ? text_in(query.get(), 1) : "";
-    std::transform(sql.begin(), sql.end(), sql.begin(), [](unsigned char c) { return std::toupper(c); });
-    const bool plain = step == SQLITE_ROW && text_in(query.get(), 0) == "table" &&
-                       sql.starts_with("CREATE TABLE") && sql.find("GENERATED") == std::string::npos &&
-                       sql.find(" AS ") == std::string::npos && sql.find("AS(") == std::string::npos;
-    if (!plain) refuse(name_, "has no plain table '", table, "': expected a bag of ROS 2");
+    int step = SQLITE_ROW;
+    while ((step = sqlite3_step(query.get())) == SQLITE_ROW) visit(query.get());
+    if (step != SQLITE_DONE) throw_error();
   }
+
+  void list_topics() {
+    for_rows("SELECT id, name, type, serialization_format FROM topics", [&](sqlite3_stmt* row) {
+      BagTopic topic;
+      topic.name = text_in(row, 1), topic.type = ros1_type(text_in(row, 2)), topic.encoding = text_in(row, 3);
+      if (topic_of_id_.size() == kMaxTopics) refuse(name_, "has more than ", kMaxTopics, " topics");
+      topic_of_id_.emplace(sqlite3_column_int64(row, 0), add_topic(topic));
+    });
+  }
+
+  // Lists the messages without reading their data, which SQLite stores in separate pages.
+  void list_messages() {
+    for_rows("SELECT rowid, topic_id, timestamp FROM messages ORDER BY rowid", [&](sqlite3_stmt* row) {
+      const auto topic = topic_of_id_.find(sqlite3_column_int64(row, 1));
+      if (topic == topic_of_id_.end()) return;
+      const auto number = static_cast<std::uint64_t>(sqlite3_column_int64(row, 0));
+      add_message(topic->second, {sqlite3_column_int64(row, 2), 0, number});
+    });
+  }
+
+  [[noreturn]] void throw_error() const {
+    if (sqlite3_errcode(database_) == SQLITE_NOMEM) throw std::bad_alloc();
+    refuse(name_, "cannot be read as a bag: ", sqlite3_errmsg(database_));
+  }
+
+  sqlite3* database_ = nullptr;
+  std::map<std::int64_t, std::size_t> topic_of_id_;  // topic of each id in the database
+  mutable std::mutex mutex_;                         // guards the database
+};
+
+// Reads the files into which one long recording was divided as one bag.
+class JoinedBags final : public BagFile {
+ public:
+  // name: path of the whole bag, for an InputError. part_names: names of the parts' files, for the remark.
+  JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts,
+             const std::vector<std::string>& part_names, const WantedTopic& wanted)
+      : BagFile(name, wanted), parts_(std::move(parts)) {
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      const auto& part = parts_[p];
+      if (!part->remark().empty())
+        remark_ += (remark_.empty() ? "" : "; ") + part_names[p] + " " + part->remark();
+      for (std::size_t t = 0; t < part->topics().size(); ++t) {
+        BagTopic topic = part->topics()[t];
+        const std::uint64_t messages = std::exchange(topic.messages, 0);
+        const std::size_t index = add_topic(topic);
+        if (!is_wanted_[index]) topics_[index].messages += messages;
+        for (const MessagePlace& place : part->places(t)) {  // empty unless the topic is wanted
+          add_message(index, {place.logged_ns, all_.size(), 0});
+          all_.push_back({part.get(), place});
+        }
+      }
+    }
+    sort_places();
+  }
+
+  std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override {
+    const PlaceInFile& found = all_[place.part];
+    return found.file->start(found.place, max_bytes);
+  }
+
+ private:
+  // MessagePlace::part of this bag is an index into all_.
+  struct PlaceInFile {
+    const BagFile* file;
+    MessagePlace place;
+  };
+  std::vector<std::unique_ptr<BagFile>> parts_;
+  std::vector<PlaceInFile> all_;
+};
+
+bool is_bag_file(const fs::path& file) {
+  return has_ending(file, ".mcap") || has_ending(file, ".db3") || has_ending(file, ".bag");
 }
 
-template <class Visit>
-void Db3File::for_rows(const char* text, const Visit& visit) {
-  const Query query = prepared(database_, text);
-  if (!query) throw_error();
-  int step = SQLITE_ROW;
-  while ((step = sqlite3_step(query.get())) == SQLITE_ROW) visit(query.get());
-  if (step != SQLITE_DONE) throw_error();
+// Returns the bag files of a folder: ROS 2 divides a long recording into several. Empty if the folder cannot
+// be read.
+std::vector<fs::path> parts_of(const fs::path& folder) {
+  std::vector<fs::path> parts;
+  std::error_code refused;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, refused))
+    if (!is_hidden(entry.path()) && (has_ending(entry.path(), ".mcap") || has_ending(entry.path(), ".db3")))
+      parts.push_back(entry.path());
+  sort_by_name(parts);
+  return parts;
 }
 
-void Db3File::list_topics() {
-  for_rows("SELECT id, name, type, serialization_format FROM topics", [&](sqlite3_stmt* row) {
-    BagTopic topic;
-    topic.name = text_in(row, 1), topic.type = ros1_type(text_in(row, 2)), topic.encoding = text_in(row, 3);
-    if (topic_of_id_.size() == kMaxTopics) refuse(name_, "has more than ", kMaxTopics, " topics");
-    topic_of_id_.emplace(sqlite3_column_int64(row, 0), add_topic(topic));
-  });
-}
-
-// Lists the messages without reading their data, which SQLite stores in separate pages.
-void Db3File::list_messages() {
-  for_rows("SELECT rowid, topic_id, timestamp FROM messages ORDER BY rowid", [&](sqlite3_stmt* row) {
-    const auto topic = topic_of_id_.find(sqlite3_column_int64(row, 1));
-    if (topic == topic_of_id_.end()) return;
-    const auto number = static_cast<std::uint64_t>(sqlite3_column_int64(row, 0));
-    add_message(topic->second, {sqlite3_column_int64(row, 2), 0, number});
-  });
-}
-
-std::string Db3File::start(const MessagePlace& place, std::uint64_t max_bytes) const {
-  const std::lock_guard lock(mutex_);
-  sqlite3_blob* opened = nullptr;
-  const int status = sqlite3_blob_open(database_, "main", "messages", "data",
-                                       static_cast<sqlite3_int64>(place.at), 0, &opened);
-  const std::unique_ptr<sqlite3_blob, Close> blob(opened);
-  if (status != SQLITE_OK) throw_error();
-  const auto size = static_cast<std::uint64_t>(sqlite3_blob_bytes(blob.get()));
-  if (size > ByteFile(name_).size())
-    refuse(name_, "message ", place.at, " claims ", size, " bytes: more than the file has");
-  std::string bytes(std::min(size, max_bytes), '\0');
-  if (sqlite3_blob_read(blob.get(), bytes.data(), static_cast<int>(bytes.size()), 0) != SQLITE_OK)
-    throw_error();
-  return bytes;
+std::unique_ptr<BagFile> open_file(const fs::path& file, const WantedTopic& wanted) {
+  if (has_ending(file, ".mcap")) return open_mcap(file, wanted);
+  if (has_ending(file, ".db3")) return std::make_unique<Db3File>(file, wanted);
+  return open_ros1_bag(file, wanted);
 }
 
 }  // namespace
@@ -248,64 +290,6 @@ std::uint32_t ByteFile::crc(std::uint64_t at, std::uint64_t end) const {
   return static_cast<std::uint32_t>(crc);
 }
 
-namespace {
-
-// Reads the files into which one long recording was divided as one bag.
-
-class JoinedBags final : public BagFile {
- public:
-  // name: path of the whole bag, for an InputError. part_names: names of the parts' files, for the remark.
-  JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts,
-             const std::vector<std::string>& part_names, const WantedTopic& wanted);
-  std::string start(const MessagePlace& place, std::uint64_t max_bytes) const override;
-
- private:
-  // Adds what is wrong with a part to the remark of the whole bag.
-  void add_remark(const std::string& part_name, const std::string& remark);
-
-  // MessagePlace::part of this bag is an index into all_.
-  struct PlaceInFile {
-    const BagFile* file;
-    MessagePlace place;
-  };
-  std::vector<std::unique_ptr<BagFile>> parts_;
-  std::vector<PlaceInFile> all_;
-};
-
-JoinedBags::JoinedBags(const std::string& name, std::vector<std::unique_ptr<BagFile>> parts,
-                       const std::vector<std::string>& part_names, const WantedTopic& wanted)
-    : BagFile(name, wanted), parts_(std::move(parts)) {
-  for (std::size_t p = 0; p < parts_.size(); ++p) {
-    const auto& part = parts_[p];
-    add_remark(part_names[p], part->remark());
-    for (std::size_t t = 0; t < part->topics().size(); ++t) {
-      BagTopic topic = part->topics()[t];
-      const std::uint64_t messages = std::exchange(topic.messages, 0);
-      const std::size_t index = add_topic(topic);
-      if (!is_wanted_[index]) topics_[index].messages += messages;
-      for (const MessagePlace& place : part->places(t)) {  // empty unless the topic is wanted
-        add_message(index, {place.logged_ns, all_.size(), 0});
-        all_.push_back({part.get(), place});
-      }
-    }
-  }
-  sort_places();
-}
-
-void JoinedBags::add_remark(const std::string& part_name, const std::string& remark) {
-  if (remark.empty()) return;
-  remark_ += (remark_.empty() ? "" : "; ") + part_name + " " + remark;
-}
-
-std::string JoinedBags::start(const MessagePlace& place, std::uint64_t max_bytes) const {
-  const PlaceInFile& found = all_[place.part];
-  return found.file->start(found.place, max_bytes);
-}
-
-}  // namespace
-
-namespace fs = std::filesystem;
-
 std::string ros1_type(const std::string& type) {
   const std::size_t at = type.find("/msg/");
   return at == std::string::npos ? type : type.substr(0, at) + type.substr(at + 4);
@@ -347,32 +331,6 @@ void BagFile::sort_places() {
     if (!places.empty()) topics_[t].messages = places.size();
   }
 }
-
-namespace {
-
-bool is_bag_file(const fs::path& file) {
-  return has_ending(file, ".mcap") || has_ending(file, ".db3") || has_ending(file, ".bag");
-}
-
-// Returns the bag files of a folder: ROS 2 divides a long recording into several. Empty if the folder cannot
-// be read.
-std::vector<fs::path> parts_of(const fs::path& folder) {
-  std::vector<fs::path> parts;
-  std::error_code refused;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, refused))
-    if (!is_hidden(entry.path()) && (has_ending(entry.path(), ".mcap") || has_ending(entry.path(), ".db3")))
-      parts.push_back(entry.path());
-  sort_by_name(parts);
-  return parts;
-}
-
-std::unique_ptr<BagFile> open_file(const fs::path& file, const WantedTopic& wanted) {
-  if (has_ending(file, ".mcap")) return std::make_unique<McapFile>(file, wanted);
-  if (has_ending(file, ".db3")) return std::make_unique<Db3File>(file, wanted);
-  return std::make_unique<Ros1Bag>(file, wanted);
-}
-
-}  // namespace
 
 bool is_bag(const fs::path& path) {
   std::error_code refused;
