@@ -35,18 +35,6 @@ std::vector<fs::path> files_with(const std::vector<std::string_view>& endings, c
   return files;
 }
 
-// Throws InputError unless the value is an object with these keys only. where: its place in the file, such as
-// "objects[0]: ", or empty.
-void require_keys(const fs::path& file, const std::string& where, const Json& value, const Json& keys) {
-  if (!value.is_object()) refuse(file, where, "is of type ", value.type_name(), ": expected object");
-  for (const auto& item : value.items()) {
-    const std::string& key = item.key();
-    const auto is_key = [&key](const Json& name) { return name.get_ref<const std::string&>() == key; };
-    if (std::none_of(keys.begin(), keys.end(), is_key))
-      refuse(file, where, "key ", shown(key), ": expected ", keys.dump());
-  }
-}
-
 // Returns the value of a required key, a text that is not empty.
 std::string text_of(const fs::path& file, const std::string& where, const Json& json, const char* key) {
   const auto found = json.find(key);
@@ -186,7 +174,7 @@ std::optional<TruthFolder> truth_of_bop(const fs::path& scene) {
   const fs::path file = scene / "scene_gt.json", models = models_of(scene);
   if (models.empty()) return {};
   const Json json = parse_json(read_input_text(file, "expected the poses of BOP"), file.string());
-  if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
+  require_object(file, "", json);
   std::map<std::pair<int, int>, TruthObjectFiles> objects;  // key: number, and count in an image
   for (const auto& image : json.items()) {
     std::map<int, int> counts;

@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "scenarios/recordings/images_and_clouds/depth_images.h"
@@ -96,13 +95,7 @@ Json parse_camera_file(const fs::path& file) {
       "width",      "height", "fx", "fy", "cx", "cy", "depth_scale_m", "frame_rate_hz", "colour_registered",
       "depth_along"};
   Json json = parse_json(read_input_text(file, "expected an object of plain values"), file.string());
-  if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
-  for (const auto& item : json.items()) {
-    const std::string& key = item.key();
-    const auto is_key = [&key](const Json& name) { return name.get_ref<const std::string&>() == key; };
-    if (std::any_of(kKeys.begin(), kKeys.end(), is_key)) continue;
-    refuse(file, "key ", shown(key), ": expected ", kKeys.dump());
-  }
+  require_keys(file, "", json, kKeys);
   return json;
 }
 
@@ -177,27 +170,21 @@ double read_stamp(const std::string& where, const std::string& stamp) {
 
 std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
   const std::string text = read_input_text(list, "expected lines 'timestamp filename'");
-  std::istringstream stream{std::string(without_byte_order_mark(text))};
-  stream.exceptions(std::ios::badbit);  // throws if memory runs out, which would otherwise pass for the end
   std::vector<StampedFile> files;
-  std::string line;
-  // Files from other systems may end their lines with CR LF; blank lines and comments are skipped.
-  for (int line_number = 1; std::getline(stream, line); ++line_number) {
-    if (line.ends_with('\r')) line.pop_back();
-    std::istringstream words(line);
-    words.exceptions(std::ios::badbit);
-    std::string stamp, name, surplus;
-    if (!(words >> stamp) || stamp.front() == '#') continue;
-    const std::string where = list.string() + ":" + std::to_string(line_number);
+  for_each_line(without_byte_order_mark(text), [&](std::size_t number, std::string_view line) {
+    if (line.ends_with('\r')) line.remove_suffix(1);  // files of other systems
+    const std::vector<std::string_view> words = words_of_line(line);
+    if (words.empty() || words[0].front() == '#') return;
+    const std::string where = list.string() + ":" + std::to_string(number), stamp(words[0]);
     const double stamp_s = read_stamp(where, stamp);
-    if (!(words >> name) || words >> surplus)
+    if (words.size() != 2)
       refuse(where, "'", line.substr(0, 64), "': expected one timestamp and one file name");
     if (!files.empty() && stamp_s <= files.back().stamp_s)
       refuse(where, "timestamp ", stamp, ": expected above that of the line before");
-    files.push_back({stamp_s, list.parent_path() / name});
+    files.push_back({stamp_s, list.parent_path() / words[1]});
     const std::filesystem::path& file = files.back().file;
     if (!std::filesystem::is_regular_file(file)) refuse(where, "no file ", file.string());
-  }
+  });
   if (files.empty()) refuse(list.string(), "lists no file: expected lines 'timestamp filename'");
   return files;
 }
@@ -308,7 +295,7 @@ ImageCamera camera_of_images(const std::vector<fs::path>& depth, const CameraInt
 // Returns the camera of all images of a scene of BOP.
 ImageCamera bop_camera(const fs::path& file, const std::vector<fs::path>& depth) {
   const Json json = parse_json(read_input_text(file, "expected the cameras of BOP"), file.string());
-  if (!json.is_object()) refuse(file, "is of type ", json.type_name(), ": expected object");
+  require_object(file, "", json);
   std::map<std::string, const Json*> of_number;
   for (const auto& item : json.items())
     for (const std::string& number : numbers_in_name(item.key())) of_number[number] = &item.value();

@@ -141,6 +141,20 @@ Json json_in_file(const std::filesystem::path& file) {
   }
 }
 
+void require_object(const std::string& subject, const std::string& where, const Json& value) {
+  if (!value.is_object()) refuse(subject, where, "is of type ", value.type_name(), ": expected object");
+}
+
+void require_keys(const std::string& subject, const std::string& where, const Json& value, const Json& keys) {
+  require_object(subject, where, value);
+  for (const auto& item : value.items()) {
+    const std::string& key = item.key();
+    const auto is_key = [&key](const Json& name) { return name.get_ref<const std::string&>() == key; };
+    if (std::none_of(keys.begin(), keys.end(), is_key))
+      refuse(subject, where, "key ", shown(key), ": expected ", keys.dump());
+  }
+}
+
 std::string shown(const Json& value) {
   constexpr std::size_t kMaxLength = 160;
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
@@ -178,27 +192,33 @@ const NamedUnit* unit_of(const ColumnQuantity& quantity, std::string_view name) 
   return nullptr;
 }
 
+template <class Number>
+std::optional<Number> whole_word(std::string_view word) {
+  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // refused by from_chars()
+  const char *const begin = word.data() + (has_plus ? 1 : 0), *const end = word.data() + word.size();
+  Number value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
 
-std::vector<std::string_view> words_of_line(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t\r\v\f";
+std::vector<std::string_view> words_of_line(std::string_view line, std::string_view separators) {
   std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(kBlanks); at != line.npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlanks, at), line.size());
+  for (std::size_t at = line.find_first_not_of(separators); at != line.npos;) {
+    const std::size_t end = std::min(line.find_first_of(separators, at), line.size());
     words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBlanks, end);
+    at = line.find_first_not_of(separators, end);
   }
   return words;
 }
 
 std::optional<double> number_of_word(std::string_view word) {
-  const bool has_plus =
-      word.size() > 1 && word[0] == '+' && word[1] != '-';  // a plus is refused by from_chars()
-  const std::string_view digits = has_plus ? word.substr(1) : word;
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) return {};
-  return value;
+  return whole_word<double>(word);
+}
+
+std::optional<std::int64_t> integer_of_word(std::string_view word) {
+  return whole_word<std::int64_t>(word);
 }
 
 std::string in_small_letters(std::string_view text) {

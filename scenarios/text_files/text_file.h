@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -73,11 +74,17 @@ Json json_in_file(const std::filesystem::path& file);
 // Returns the value as JSON, for a message: shortened, and always safe to print.
 std::string shown(const Json& value);
 
+// Throws InputError about the subject unless the value is an object. where: its place in the file, such as
+// "objects[0]: ", or empty.
+void require_object(const std::string& subject, const std::string& where, const Json& value);
+// Throws it also if the object has other keys than these.
+void require_keys(const std::string& subject, const std::string& where, const Json& value, const Json& keys);
+
 // Text files of numbers in columns: their lines, their words, and the columns whose names and units are
 // stated.
 
 // Returns the words of a line, which blanks and tabs separate. A carriage return counts as a blank.
-std::vector<std::string_view> words_of_line(std::string_view line);
+std::vector<std::string_view> words_of_line(std::string_view line, std::string_view separators = " \t\r\v\f");
 
 // Calls use(number, line) for each line of a text, without its end. The first line has the number 1.
 template <class Use>
@@ -92,6 +99,8 @@ void for_each_line(std::string_view text, Use&& use) {
 // Returns a number in the decimal notation of C, whatever the locale, or nothing if the word is anything
 // else. nan and inf are numbers.
 std::optional<double> number_of_word(std::string_view word);
+// The same for a decimal integer.
+std::optional<std::int64_t> integer_of_word(std::string_view word);
 
 std::string in_small_letters(std::string_view text);
 

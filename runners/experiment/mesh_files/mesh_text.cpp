@@ -3,64 +3,15 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <charconv>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
+#include <vector>
+
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
-namespace {
-
-// std::from_chars does not accept a plus sign.
-std::string_view without_plus(std::string_view word) {
-  const bool has_one = word.size() > 1 && word[0] == '+' && word[1] != '-';
-  return has_one ? word.substr(1) : word;
-}
-
-}  // namespace
-
-std::vector<std::string_view> words_of(std::string_view text, std::string_view also) {
-  const std::string separators = std::string(" \t\r\n\v\f").append(also);
-  std::vector<std::string_view> words;
-  for (std::size_t end = 0;;) {
-    const std::size_t begin = text.find_first_not_of(separators, end);
-    if (begin == std::string_view::npos) return words;
-    end = std::min(text.find_first_of(separators, begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-  }
-}
-
-bool is_number(std::string_view word) {
-  word = without_plus(word);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size();
-}
-
-std::optional<std::int64_t> integer_of(std::string_view word) {
-  word = without_plus(word);
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return {};
-  return value;
-}
-
-// Lines end in \n, \r\n or \r.
-void refuse_line(std::string_view text, std::size_t at, const std::string& problem) {
-  std::size_t line = 1;
-  for (std::size_t i = 0; i < std::min(at, text.size()); ++i)
-    if (text[i] == '\n' || (text[i] == '\r' && text.substr(i, 2) != "\r\n")) ++line;
-  throw std::runtime_error("line " + std::to_string(line) + ": " + problem);
-}
-
-std::string in_quotes(std::string_view word) {
-  constexpr std::size_t kMaxShown = 32;
-  std::string quoted = "'";
-  quoted += word.substr(0, kMaxShown);
-  quoted += word.size() > kMaxShown ? "...'" : "'";
-  return quoted;
-}
-
 namespace {
 
 bool is_blank(char c) {
@@ -88,7 +39,7 @@ bool has_corners(std::string_view line) {
 
 // Returns the words of a line and its continuations, up to a comment.
 std::vector<std::string_view> words_before_comment(std::string_view line) {
-  return words_of(line.substr(0, line.find('#')), "\\");
+  return words_of_line(line.substr(0, line.find('#')), " \t\r\n\v\f\\");
 }
 
 // Copies the lines that describe the shape, one by one.
@@ -121,7 +72,7 @@ class ShapeLines {
     text_ += line[0];
     for (const std::string_view corner : words_before_comment(line.substr(1))) {
       const std::string_view vertex = corner.substr(0, corner.find('/'));
-      const std::optional<std::int64_t> number = integer_of(vertex);
+      const std::optional<std::int64_t> number = integer_of_word(vertex);
       if (!number || *number == 0 || *number < -vertices_)
         refuse_line(obj_, at_, "corner " + in_quotes(corner) + ": expected the number of a vertex");
       if (*number > farthest_) farthest_ = *number, farthest_at_ = at_;
@@ -141,7 +92,8 @@ class ShapeLines {
                   "a vertex has " + std::to_string(numbers.size()) +
                       " numbers: expected x y z, then w, or a colour of 3 or 4");
     for (const std::string_view number : numbers)
-      if (!is_number(number)) refuse_line(obj_, at_, in_quotes(number) + " in a vertex: expected a number");
+      if (!number_of_word(number))
+        refuse_line(obj_, at_, in_quotes(number) + " in a vertex: expected a number");
     text_ += 'v';
     for (std::size_t i = 0; i < 3; ++i) text_.append(numbers[i][0] == '.' ? " 0" : " ").append(numbers[i]);
     text_ += '\n';
@@ -154,22 +106,6 @@ class ShapeLines {
   std::int64_t vertices_ = 0, farthest_ = 0;
   std::size_t farthest_at_ = 0;
 };
-
-}  // namespace
-
-std::string only_shape(const std::string& obj) {
-  ShapeLines shape(obj);
-  for (std::size_t at = 0, end = 0; at < obj.size(); at = end) {
-    end = end_of_line(obj, at);
-    std::string_view line(obj.data() + at, end - at);
-    line.remove_prefix(
-        static_cast<std::size_t>(std::find_if_not(line.begin(), line.end(), is_blank) - line.begin()));
-    shape.add(at, line);
-  }
-  return shape.take();
-}
-
-namespace {
 
 constexpr std::string_view kStlBlanks = " \t\r\n\v\f";
 
@@ -241,7 +177,7 @@ class Solids {
     plain_ += "vertex";
     for (int i = 0; i < 3; ++i) {
       const std::string_view number = word();
-      if (!is_number(number))
+      if (!number_of_word(number))
         refuse_line(text_, word_at_, in_quotes(number) + " in a vertex: expected a number");
       pass(number);
       plain_.append(" ").append(number);
@@ -255,6 +191,34 @@ class Solids {
 };
 
 }  // namespace
+
+// Lines end in \n, \r\n or \r.
+void refuse_line(std::string_view text, std::size_t at, const std::string& problem) {
+  std::size_t line = 1;
+  for (std::size_t i = 0; i < std::min(at, text.size()); ++i)
+    if (text[i] == '\n' || (text[i] == '\r' && text.substr(i, 2) != "\r\n")) ++line;
+  throw std::runtime_error("line " + std::to_string(line) + ": " + problem);
+}
+
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t kMaxShown = 32;
+  std::string quoted = "'";
+  quoted += word.substr(0, kMaxShown);
+  quoted += word.size() > kMaxShown ? "...'" : "'";
+  return quoted;
+}
+
+std::string only_shape(const std::string& obj) {
+  ShapeLines shape(obj);
+  for (std::size_t at = 0, end = 0; at < obj.size(); at = end) {
+    end = end_of_line(obj, at);
+    std::string_view line(obj.data() + at, end - at);
+    line.remove_prefix(
+        static_cast<std::size_t>(std::find_if_not(line.begin(), line.end(), is_blank) - line.begin()));
+    shape.add(at, line);
+  }
+  return shape.take();
+}
 
 bool is_stl_text(const std::string& bytes) {
   static_assert(std::endian::native == std::endian::little);

@@ -3,26 +3,14 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace remote_touch {
 
-// Words and numbers of mesh files that are text. They are checked here, because the library that reads these
-// files accepts a word that only begins with a number ("0x9" as 0, "9D-1" as 9), and reads numbers that are
-// missing in a line from the next line.
-
-// Returns the words of the text. Blanks, tabs, line ends, form feeds and the characters of `also` separate
-// them.
-std::vector<std::string_view> words_of(std::string_view text, std::string_view also = {});
-
-// True if the whole word is a decimal number, perhaps with an exponent and a sign; also nan and inf.
-bool is_number(std::string_view word);
-// Returns the value if the whole word is a decimal integer, perhaps with a sign; else nothing.
-std::optional<std::int64_t> integer_of(std::string_view word);
+// Words and numbers of mesh files that are text are checked here, because the library that reads these files
+// accepts a word that only begins with a number ("0x9" as 0, "9D-1" as 9), and reads numbers that are missing
+// in a line from the next line.
 
 // Throws std::runtime_error "line N: PROBLEM" for the line of the text that contains the byte `at`;
 // lines are counted from 1.
@@ -30,17 +18,13 @@ std::optional<std::int64_t> integer_of(std::string_view word);
 // Returns the word in quotes, shortened, for a message.
 std::string in_quotes(std::string_view word);
 
-// Converts OBJ files to a text that the library reads correctly.
-
-// Returns the same shape without parts that a tool does not use and the library may refuse: texture
-// coordinates, normals, the files of materials, colours, comments behind the values of a line, and the
-// references of faces and lines to these parts. Each line begins with its first word, because the library
-// skips lines that are indented. The weight w of `v x y z w` is left out, because only rational curves and
-// surfaces have it. Throws std::runtime_error, with the number of the line, for a vertex of 1, 2, 5 or more
-// than 7 numbers, for a word that is not a number, and for a corner that is not a vertex.
+// Converts an OBJ file: returns the same shape without parts that a tool does not use and the library may
+// refuse: texture coordinates, normals, the files of materials, colours, comments behind the values of a
+// line, and the references of faces and lines to these parts. Each line begins with its first word, because
+// the library skips lines that are indented. The weight w of `v x y z w` is left out, because only rational
+// curves and surfaces have it. Throws std::runtime_error, with the number of the line, for a vertex of 1, 2,
+// 5 or more than 7 numbers, for a word that is not a number, and for a corner that is not a vertex.
 std::string only_shape(const std::string& obj);
-
-// Converts STL files of text to a form that the library reads correctly.
 
 // True if the bytes are an STL file of text: they begin with "solid", in any case, have no byte 0, and do not
 // have the length that a binary file with their number of facets has.

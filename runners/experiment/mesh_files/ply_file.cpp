@@ -2,16 +2,53 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <fstream>
-#include <sstream>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include "runners/experiment/mesh_files/mesh_text.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
 
 constexpr std::size_t kMaxHeader = 1 << 20;
+
+// The property as written in the file: types may be unknown.
+struct PlyProperty {
+  std::string name, type;
+  std::string count;  // type of a list's length; empty: no list
+  bool is_list() const { return !count.empty(); }
+};
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+  std::string lines;  // lines of the header that describe it, without comments
+};
+struct PlyHeader {
+  std::string format;   // ascii, binary_little_endian, binary_big_endian
+  std::string opening;  // the lines before the first element, without comments
+  std::vector<PlyElement> elements;
+  std::size_t size = 0;  // number of bytes before the first element's data
+  bool ends = false;
+  std::optional<std::string> bad_count;  // count of an element if it is not a number
+  bool is_ascii() const { return format == "ascii" || format.empty(); }
+};
+
+// Returns the size in bytes of a value of this type in a binary file; 0 if the type is unknown.
+std::size_t size_of_ply(std::string_view type) {
+  for (const char* one : {"char", "uchar", "int8", "uint8"})
+    if (type == one) return 1;
+  for (const char* two : {"short", "ushort", "int16", "uint16"})
+    if (type == two) return 2;
+  for (const char* four : {"int", "uint", "int32", "uint32", "float", "float32"})
+    if (type == four) return 4;
+  return type == "double" || type == "float64" ? 8 : 0;
+}
 
 // Returns the least number of bytes of an element. Each value of a text is a digit and a separator. A list
 // may have no members. An unknown type counts as one byte.
@@ -24,40 +61,27 @@ std::uint64_t min_bytes(const PlyElement& element, bool is_ascii) {
   return bytes;
 }
 
-void take(const std::string& line, PlyHeader& header) {
-  std::istringstream words(line);
-  words.exceptions(std::ios::badbit);  // throws if memory runs out, which would look like the end
-  std::string word;
-  words >> word;
-  if (word == "format") {
-    words >> header.format;
-  } else if (word == "element") {
-    std::string count;
+void take(std::string_view line, PlyHeader& header) {
+  const std::vector<std::string_view> words = words_of_line(line);
+  const auto word = [&](std::size_t i) { return std::string(i < words.size() ? words[i] : ""); };
+  if (word(0) == "format" && words.size() > 1) {
+    header.format = words[1];
+  } else if (word(0) == "element") {
     PlyElement& added = header.elements.emplace_back();
-    words >> added.name >> count;
+    added.name = word(1);
+    const std::string count = word(2);
     const char* end = count.data() + count.size();
     const auto [at, error] = std::from_chars(count.data(), end, added.count);
     if (error != std::errc() || at != end) header.bad_count = count;
-  } else if (word == "property" && !header.elements.empty()) {
-    PlyProperty& added = header.elements.back().properties.emplace_back();
-    words >> added.type;
-    if (added.type == "list") words >> added.count >> added.type;
-    words >> added.name;
+  } else if (word(0) == "property" && !header.elements.empty()) {
+    const bool is_list = word(1) == "list";
+    header.elements.back().properties.push_back(is_list ? PlyProperty{word(4), word(3), word(2)}
+                                                        : PlyProperty{word(2), word(1), ""});
   }
 }
 
-}  // namespace
-
-std::size_t size_of_ply(std::string_view type) {
-  for (const char* one : {"char", "uchar", "int8", "uint8"})
-    if (type == one) return 1;
-  for (const char* two : {"short", "ushort", "int16", "uint16"})
-    if (type == two) return 2;
-  for (const char* four : {"int", "uint", "int32", "uint32", "float", "float32"})
-    if (type == four) return 4;
-  return type == "double" || type == "float64" ? 8 : 0;
-}
-
+// Returns the header that begins the bytes. Lines end in \n, \r\n or \r. If the header has no end, all lines
+// belong to it.
 PlyHeader ply_header_in(const std::string& bytes) {
   PlyHeader header;
   while (header.size < bytes.size() && !header.ends) {
@@ -76,41 +100,13 @@ PlyHeader ply_header_in(const std::string& bytes) {
   return header;
 }
 
-std::string ply_problem(const std::filesystem::path& file) {
-  const std::uint64_t whole = std::filesystem::file_size(file);
-  std::string bytes(std::min<std::uint64_t>(whole, kMaxHeader), '\0');
-  std::ifstream in(file, std::ios::binary);
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  const PlyHeader header = ply_header_in(bytes);
-  if (!header.ends) return "its header has no end";
-  if (header.bad_count) return "its header has a count that is not a number: " + *header.bad_count;
-  const std::uint64_t rest = whole - header.size;
-  std::uint64_t claimed = 0, elements = 0;
-  for (const PlyElement& element : header.elements) {
-    const std::uint64_t bytes_of_one = std::max<std::uint64_t>(1, min_bytes(element, header.is_ascii()));
-    std::uint64_t all = 0;
-    if (__builtin_mul_overflow(element.count, bytes_of_one, &all) ||
-        __builtin_add_overflow(claimed, all, &claimed) ||
-        __builtin_add_overflow(elements, element.count, &elements))
-      return "its header claims more than any file holds";
-  }
-  // The last number of a text needs no separator behind it.
-  if (claimed > rest + (header.is_ascii() ? 1 : 0))
-    return "its header claims " + std::to_string(elements) + " elements, more than its " +
-           std::to_string(rest) + " bytes hold";
-  return {};
-}
-
-namespace {
-
 bool is_float(std::string_view type) {
   return type == "float" || type == "float32" || type == "double" || type == "float64";
 }
 
 // True if the word is a value of this type.
 bool is_value(std::string_view word, std::string_view type) {
-  return is_float(type) ? is_number(word) : integer_of(word).has_value();
+  return is_float(type) ? number_of_word(word).has_value() : integer_of_word(word).has_value();
 }
 
 void require_known(const PlyHeader& header) {
@@ -158,7 +154,8 @@ class TextRows {
       line_at_ = at_;
       const std::size_t end = std::min(ply_.find_first_of("\r\n", at_), ply_.size());
       at_ = std::min(end + 1, ply_.size());
-      std::vector<std::string_view> words = words_of(std::string_view(ply_).substr(line_at_, end - line_at_));
+      std::vector<std::string_view> words =
+          words_of_line(std::string_view(ply_).substr(line_at_, end - line_at_));
       if (!words.empty()) return words;
     }
     return {};
@@ -177,7 +174,7 @@ class TextRows {
     };
     for (const PlyProperty& property : element.properties) {
       std::int64_t values = 1;
-      if (property.is_list()) values = integer_of(take(property.count)).value_or(0);
+      if (property.is_list()) values = integer_of_word(take(property.count)).value_or(0);
       if (values < 0) refuse_line(ply_, line_at_, "a list has " + std::to_string(values) + " values");
       for (std::int64_t i = 0; i < values; ++i) take(property.type);
     }
@@ -269,6 +266,32 @@ std::string in_order(const PlyHeader& header, Rows rows) {
 }
 
 }  // namespace
+
+std::string ply_problem(const std::filesystem::path& file) {
+  const std::uint64_t whole = std::filesystem::file_size(file);
+  std::string bytes(std::min<std::uint64_t>(whole, kMaxHeader), '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  const PlyHeader header = ply_header_in(bytes);
+  if (!header.ends) return "its header has no end";
+  if (header.bad_count) return "its header has a count that is not a number: " + *header.bad_count;
+  const std::uint64_t rest = whole - header.size;
+  std::uint64_t claimed = 0, elements = 0;
+  for (const PlyElement& element : header.elements) {
+    const std::uint64_t bytes_of_one = std::max<std::uint64_t>(1, min_bytes(element, header.is_ascii()));
+    std::uint64_t all = 0;
+    if (__builtin_mul_overflow(element.count, bytes_of_one, &all) ||
+        __builtin_add_overflow(claimed, all, &claimed) ||
+        __builtin_add_overflow(elements, element.count, &elements))
+      return "its header claims more than any file holds";
+  }
+  // The last number of a text needs no separator behind it.
+  if (claimed > rest + (header.is_ascii() ? 1 : 0))
+    return "its header claims " + std::to_string(elements) + " elements, more than its " +
+           std::to_string(rest) + " bytes hold";
+  return {};
+}
 
 std::string with_vertices_first(const std::string& ply) {
   const PlyHeader header = ply_header_in(ply);

@@ -35,7 +35,12 @@ struct PcdText {
   std::size_t line = 0;
 
   // Returns the words of the next line and removes the line from text.
-  std::vector<std::string_view> take_line();
+  std::vector<std::string_view> take_line() {
+    const std::string_view taken = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(taken.size() + 1, text.size()));
+    ++line;
+    return words_of_line(taken, " \t\r");
+  }
 };
 
 // One field of the point layout: count values of size bytes each.
@@ -46,7 +51,10 @@ struct PcdField {
   std::size_t first_byte = 0, first_value = 0;  // start of this field within a point
 
   // Returns TYPE, SIZE and COUNT as the header spells them, for messages.
-  std::string text() const;
+  std::string text() const {
+    return "TYPE " + std::string(1, type) + " SIZE " + std::to_string(size) + " COUNT " +
+           std::to_string(count);
+  }
 };
 
 // Content of the header that is needed to decode DATA. All lengths are checked: points = width * height, and
@@ -64,7 +72,11 @@ struct PcdHeader {
 };
 
 // Returns a word of the file for a message: quoted, short and printable, even if the file is not text at all.
-std::string shown(std::string_view word);
+std::string shown(std::string_view word) {
+  std::string text(word.substr(0, 32));
+  for (char& c : text) c = c >= ' ' && c <= '~' ? c : '?';
+  return "'" + text + (word.size() > 32 ? "...'" : "'");
+}
 
 using Words = std::vector<std::string_view>;
 using Entries = std::map<std::string_view, Words>;
@@ -192,24 +204,6 @@ std::optional<RigidTransform> read_viewpoint(const std::string& file, const Entr
   return Eigen::Translation3d(position) * turn.normalized();
 }
 
-std::vector<std::string_view> PcdText::take_line() {
-  const std::size_t length = std::min(text.find('\n'), text.size());
-  const std::string_view taken = text.substr(0, length);
-  text.remove_prefix(std::min(length + 1, text.size()));
-  ++line;
-  Words words;
-  for (std::size_t at = taken.find_first_not_of(" \t\r"); at != taken.npos;) {
-    const std::size_t end = std::min(taken.find_first_of(" \t\r", at), taken.size());
-    words.push_back(taken.substr(at, end - at));
-    at = taken.find_first_not_of(" \t\r", end);
-  }
-  return words;
-}
-
-std::string PcdField::text() const {
-  return "TYPE " + std::string(1, type) + " SIZE " + std::to_string(size) + " COUNT " + std::to_string(count);
-}
-
 // Removes the header from rest, which then starts after the DATA line. The header's names are views into the
 // text. Older versions have no VIEWPOINT, may say COLUMNS for FIELDS, and have no WIDTH and HEIGHT for points
 // in no order. Throws InputError about file (with ":line" for a line that is not a valid entry) if an entry
@@ -231,12 +225,6 @@ PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   if (header.encoding != "ascii" && header.encoding != "binary" && header.encoding != "binary_compressed")
     refuse(file, "DATA = ", shown(header.encoding), ": expected ascii, binary, binary_compressed");
   return header;
-}
-
-std::string shown(std::string_view word) {
-  std::string text(word.substr(0, 32));
-  for (char& c : text) c = c >= ' ' && c <= '~' ? c : '?';
-  return "'" + text + (word.size() > 32 ? "...'" : "'");
 }
 
 static_assert(std::endian::native == std::endian::little, "PCD data are little-endian");
@@ -274,13 +262,9 @@ void check_claimed_size(const std::string& file, const PcdHeader& header, std::s
 // Reads a number; also nan and inf, which from_chars reads in every spelling of printf. Throws InputError
 // about where for any other word.
 double real_number(const std::string& where, std::string_view word) {
-  double value = 0;
-  const char* end = word.data() + word.size();
-  const bool has_two_signs = word.starts_with("+-");
-  const auto [stop, error] = std::from_chars(word.data() + (word.front() == '+'), end, value);
-  if (has_two_signs || error != std::errc() || stop != end)
-    refuse(where, shown(word), ": expected a number or nan");
-  return value;
+  const std::optional<double> value = number_of_word(word);
+  if (!value) refuse(where, shown(word), ": expected a number or nan");
+  return *value;
 }
 
 // Returns the colour in a word of text. The word is an integer or, for TYPE F, the float that has the bits of
