@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "core/geometry/colour.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
@@ -352,10 +352,9 @@ std::vector<Note> MeshScene::input_notes() const {
     };
     if (samples_seen([](const RigidTransform& X) { return X; }) > 0) continue;
     const Vec3 p_C = camera_.path().at(0).inverse() * (mesh.path.at(0) * samples.front().point);
-    char place[96];
-    std::snprintf(place, sizeof place, "at x %.3g, y %.3g, z %.3g m in the frame of the camera", p_C.x(),
-                  p_C.y(), p_C.z());
-    std::string text = mesh.object.name + " is at no time in the image: at the start it is " + place;
+    std::string text =
+        mesh.object.name + " is at no time in the image: at the start it is " +
+        formatted("at x %.3g, y %.3g, z %.3g m in the frame of the camera", p_C.x(), p_C.y(), p_C.z());
     std::string others;
     std::size_t most = 0;
     for (const OtherMeaning& meaning : other_meanings())

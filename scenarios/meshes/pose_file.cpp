@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <string_view>
 #include <utility>
@@ -42,12 +41,6 @@ std::vector<ColumnQuantity> made_quantities() {
 const std::vector<ColumnQuantity>& quantities() {
   static const std::vector<ColumnQuantity> all = made_quantities();
   return all;
-}
-
-std::string text_of(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
 }
 
 bool has_all(const NumberColumns& columns, std::size_t first, std::size_t count) {
@@ -260,7 +253,7 @@ class PoseReader {
   void require_frame(const std::string& where, const Words& words) const {
     const double frame = columns_.value(where, words, kFrame);
     if (frame != static_cast<double>(result_.poses.size()))
-      refuse(where, text_of("is for frame %g: ", frame), "expected frame ", result_.poses.size(),
+      refuse(where, formatted("is for frame %g: ", frame), "expected frame ", result_.poses.size(),
              ", one line for each frame in order");
   }
 
@@ -401,11 +394,11 @@ std::vector<double> origins_of_clocks(std::span<const PoseFile* const> files, st
   double end_s = ranges.front().second;
   for (const auto& [first_s, last_s] : ranges) {
     if (first_s > end_s) {
-      notes.push_back({"unusual poses", "the times of the files of poses do not overlap: " +
-                                            text_of("one begins at %.6g s, ", ranges.front().first) +
-                                            text_of("another at %.6g s, ", first_s) +
-                                            text_of("after the end at %.6g s, ", end_s) +
-                                            "so that each file counts from its own first line"});
+      notes.push_back(
+          {"unusual poses", "the times of the files of poses do not overlap: " +
+                                formatted("one begins at %.6g s, another at %.6g s, after the end "
+                                          "at %.6g s, so that each file counts from its own first line",
+                                          ranges.front().first, first_s, end_s)});
       return origins;
     }
     end_s = std::max(end_s, last_s);
@@ -419,10 +412,9 @@ std::string motion_text(std::span<const StampedPose> poses) {
   double way_m = 0;
   for (std::size_t i = 1; i < poses.size(); ++i)
     way_m += (poses[i].X.translation() - poses[i - 1].X.translation()).norm();
-  return std::to_string(poses.size()) +
-         text_of(" poses over %.3g s", poses.back().time_s - poses.front().time_s) +
-         text_of(" at %.3g Hz", rate_hz(poses)) + text_of(", %.3g m long", way_m) +
-         text_of(", at most %.3g m/s", fastest(poses).speed_m_per_s);
+  return formatted("%zu poses over %.3g s at %.3g Hz, %.3g m long, at most %.3g m/s", poses.size(),
+                   poses.back().time_s - poses.front().time_s, rate_hz(poses), way_m,
+                   fastest(poses).speed_m_per_s);
 }
 
 std::vector<Note> unusual_poses(const std::string& subject, std::span<const StampedPose> poses,
@@ -435,17 +427,17 @@ std::vector<Note> unusual_poses(const std::string& subject, std::span<const Stam
     notes.push_back({"unusual poses", subject + ": " + text});
   };
   if (const Fastest most = fastest(poses); most.speed_m_per_s > kFastest_m_per_s)
-    add("pose " + std::to_string(most.pose) + text_of(" is reached at %.3g m/s: ", most.speed_m_per_s) +
+    add("pose " + std::to_string(most.pose) + formatted(" is reached at %.3g m/s: ", most.speed_m_per_s) +
         "positions may be millimetres instead of metres, or the poses in another order");
   const auto far = std::find_if(poses.begin(), poses.end(), [&](const StampedPose& pose) {
     return pose.X.translation().norm() > kFarthest_m;
   });
   if (far != poses.end())
     add("pose " + std::to_string(far - poses.begin()) +
-        text_of(" is %.4g m from the origin: ", far->X.translation().norm()) +
+        formatted(" is %.4g m from the origin: ", far->X.translation().norm()) +
         "positions may be millimetres instead of metres");
   if (poses.size() >= kSeries && !(rate_hz(poses) >= kSlowest_hz && rate_hz(poses) <= kMostPoses_hz))
-    add("its poses have a rate of" + text_of(" %.3g Hz: ", rate_hz(poses)) +
+    add("its poses have a rate of" + formatted(" %.3g Hz: ", rate_hz(poses)) +
         "times are read as seconds, these may be milliseconds");
   const auto is_half_turn = [&](const StampedPose& pose) {
     return std::abs(Eigen::Quaterniond(pose.X.linear()).x()) > kHalfTurn;

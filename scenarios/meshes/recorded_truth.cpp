@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
@@ -164,12 +163,6 @@ fs::path models_of(const fs::path& scene) {
   return {};
 }
 
-fs::path model_file(const fs::path& models, int number) {
-  char name[32];
-  std::snprintf(name, sizeof name, "obj_%06d.ply", number);
-  return models / name;
-}
-
 std::optional<TruthFolder> truth_of_bop(const fs::path& scene) {
   const fs::path file = scene / "scene_gt.json", models = models_of(scene);
   if (models.empty()) return {};
@@ -186,7 +179,8 @@ std::optional<TruthFolder> truth_of_bop(const fs::path& scene) {
       const int id = number->get<int>(), count = ++counts[id];
       TruthObjectFiles& object = objects[{id, count}];
       object.name = "obj_" + std::to_string(id) + (count > 1 ? "_" + std::to_string(count) : "");
-      object.mesh = model_file(models, id), object.poses = file, object.metres_per_unit = 1e-3;
+      object.mesh = models / formatted("obj_%06d.ply", id), object.poses = file,
+      object.metres_per_unit = 1e-3;
       const std::vector<std::string> frame = numbers_in_name(image.key());
       if (frame.size() != 1) refuse(file, "image ", image.key(), ": expected the number of an image");
       object.X_CO.emplace(frame.front(), pose_of_bop(file, where, entry));
@@ -373,12 +367,11 @@ void RecordedTruth::require_view(const CameraIntrinsics& camera, const std::stri
     if (count_in_image(samples_[i % objects_.size()], *X_CO_[i], camera) > 0) return;
     first = i;
   }
-  char place[128];
   const Vec3& p_C = X_CO_[first]->translation();
-  std::snprintf(place, sizeof place, " is at x %.3g, y %.3g, z %.3g m in frame %zu", p_C.x(), p_C.y(),
-                p_C.z(), first / objects_.size());
   refuse(poses_file_, "no object is in the image of any frame: ", objects_[first % objects_.size()].name,
-         place, cause, ": expected object frame to camera frame, x right, y down, z forward, metres");
+         formatted(" is at x %.3g, y %.3g, z %.3g m in frame %zu", p_C.x(), p_C.y(), p_C.z(),
+                   first / objects_.size()),
+         cause, ": expected object frame to camera frame, x right, y down, z forward, metres");
 }
 
 NearestOnObjects RecordedTruth::at(std::size_t frame, const Vec3& p_C) const {

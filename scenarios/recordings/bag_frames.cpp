@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/parameters/input_error.h"
@@ -65,20 +64,13 @@ constexpr const char* kImageType = "sensor_msgs/Image";
 constexpr const char* kCompressedType = "sensor_msgs/CompressedImage";
 constexpr const char* kCameraType = "sensor_msgs/CameraInfo";
 
-bool is_readable(const BagTopic& topic);  // plain CDR, or ROS 1
-WireFormat wire_format(const BagTopic& topic);
-// Returns true for the topics whose messages are read: frames, cameras, fixed transforms, units of depth.
-bool is_wanted_topic(const BagTopic& topic);
-
 std::vector<std::string> parts_of_name(const std::string& name) {
   std::vector<std::string> parts(1);
-  for (const char c : name) {
-    if (c == '/') {
+  for (const char c : name)
+    if (c == '/')
       parts.emplace_back();
-    } else {
+    else
       parts.back() += c;
-    }
-  }
   return parts;
 }
 
@@ -86,6 +78,29 @@ std::string joined(std::vector<std::string> parts, std::size_t count, const std:
   std::string name;
   for (std::size_t i = 0; i < count; ++i) name += parts[i] + "/";
   return name + end;
+}
+
+// Plain CDR, or ROS 1.
+bool is_readable(const BagTopic& topic) {
+  return topic.encoding == "cdr" || topic.encoding == "ros1";
+}
+
+WireFormat wire_format(const BagTopic& topic) {
+  return topic.encoding == "ros1" ? WireFormat::ros1 : WireFormat::cdr;
+}
+
+bool is_tf_static(const BagTopic& topic) {
+  return parts_of_name(topic.name).back() == "tf_static" &&
+         (topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage");
+}
+
+// Returns true for the topics whose messages are read: frames, cameras, fixed transforms, units of depth.
+bool is_wanted_topic(const BagTopic& topic) {
+  const std::string& type = topic.type;
+  const bool is_unit = type == "std_msgs/Float32" && topic.name.find("Depth") != std::string::npos;
+  const bool is_known = type == kCloudType || type == kImageType || type == kCompressedType ||
+                        type == kCameraType || is_tf_static(topic) || is_unit;
+  return is_known && is_readable(topic);
 }
 
 // A transport adds its name to that of the images: image_rect/compressedDepth.
@@ -153,27 +168,6 @@ std::vector<std::size_t> topics_that(const BagFile& bag, Fits fits) {
   for (std::size_t t = 0; t < bag.topics().size(); ++t)
     if (fits(t)) found.push_back(t);
   return found;
-}
-
-bool is_readable(const BagTopic& topic) {
-  return topic.encoding == "cdr" || topic.encoding == "ros1";
-}
-
-WireFormat wire_format(const BagTopic& topic) {
-  return topic.encoding == "ros1" ? WireFormat::ros1 : WireFormat::cdr;
-}
-
-bool is_tf_static(const BagTopic& topic) {
-  return parts_of_name(topic.name).back() == "tf_static" &&
-         (topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage");
-}
-
-bool is_wanted_topic(const BagTopic& topic) {
-  const std::string& type = topic.type;
-  const bool is_unit = type == "std_msgs/Float32" && topic.name.find("Depth") != std::string::npos;
-  const bool is_known = type == kCloudType || type == kImageType || type == kCompressedType ||
-                        type == kCameraType || is_tf_static(topic) || is_unit;
-  return is_known && is_readable(topic);
 }
 
 // Returns the topic of that name, or, if the name is empty, the only topic that has frames. Throws InputError
@@ -356,11 +350,8 @@ void BagFrames::choose_unit(double chosen_m) {
   const double unit_m = read_float32({message, wire_format(bag_->topics()[unit]), name});
   // The 32-bit float nearest to 0.001 would make 1000 units 1.00000005 m, so the unit is rounded to 1e-9 m.
   const double rounded_m = std::round(unit_m * 1e9) / 1e9;
-  if (!(rounded_m > 0 && unit_m <= 1)) {
-    char unit_text[40];
-    std::snprintf(unit_text, sizeof unit_text, "%g", unit_m);
-    refuse(name, "depth unit = ", unit_text, " m: expected 1e-9 to 1");
-  }
+  if (!(rounded_m > 0 && unit_m <= 1))
+    refuse(name, formatted("depth unit = %g m: expected 1e-9 to 1", unit_m));
   units_.of_integers_m = rounded_m;
   note_changes(unit, [&](const MessageCursor& from) { return read_float32(from) == unit_m; });
 }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <sstream>
 #include <utility>
 
+#include "core/numeric/order_statistic.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/image_folders.h"
@@ -149,10 +149,7 @@ constexpr double kMuchLess = 0.5;
 constexpr double kSmallGap_m = 0.005;  // errors of cameras and poses reach this size
 
 double median(std::vector<double> values) {
-  if (values.empty()) return kInfinite;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? kInfinite : median_in_place(values);
 }
 
 // Returns the median, or infinity if fewer than `least` values are known.
@@ -162,12 +159,7 @@ double known_median(std::vector<double> values, double least) {
 
 // Distance with its unit: "31.2 mm", "400 m".
 std::string length(double distance_m) {
-  char text[32];
-  if (distance_m < 1)
-    std::snprintf(text, sizeof text, "%.3g mm", 1e3 * distance_m);
-  else
-    std::snprintf(text, sizeof text, "%.4g m", distance_m);
-  return text;
+  return distance_m < 1 ? formatted("%.3g mm", 1e3 * distance_m) : formatted("%.4g m", distance_m);
 }
 
 // The meaning with the smallest gap, and that gap. Meaning 0 is that of the poses as they are read.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "core/geometry/colour.h"
+#include "core/numeric/order_statistic.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
@@ -21,9 +21,7 @@ std::vector<double> periods_s(const std::vector<double>& times_s) {
 }
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  return formatted("%.6g", value);
 }
 
 }  // namespace
@@ -77,9 +75,7 @@ double FrameTimes::captured_s(int frame) const {
 
 double FrameTimes::usual_rate_hz() const {
   std::vector<double> periods = periods_s(since_first_s_);
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return 1 / *middle;
+  return 1 / median_in_place(periods);
 }
 
 std::string FrameTimes::text() const {
@@ -149,9 +145,7 @@ std::vector<std::uint64_t> occupied_cells(const PointCloud& cloud, double max_de
 }
 
 std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100 * share);
-  return text;
+  return formatted("%.3g %%", 100 * share);
 }
 
 double share(std::size_t part, std::size_t whole) {
@@ -210,13 +204,9 @@ void FrameStatistics::compare_with_last(std::size_t frame, const PointCloud& clo
 
 std::string FrameStatistics::range() const {
   const Vec3 &low = lowest_m_, &high = highest_m_;
-  char text[160];
-  if (are_images_)
-    std::snprintf(text, sizeof text, ", depth %.3g to %.3g m", low.z(), high.z());
-  else
-    std::snprintf(text, sizeof text, ", x %.3g to %.3g m, y %.3g to %.3g m, z %.3g to %.3g m", low.x(),
-                  high.x(), low.y(), high.y(), low.z(), high.z());
-  return text;
+  if (are_images_) return formatted(", depth %.3g to %.3g m", low.z(), high.z());
+  return formatted(", x %.3g to %.3g m, y %.3g to %.3g m, z %.3g to %.3g m", low.x(), high.x(), low.y(),
+                   high.y(), low.z(), high.z());
 }
 
 std::string FrameStatistics::text() const {
@@ -228,14 +218,11 @@ std::string FrameStatistics::text() const {
 
 std::vector<Note> FrameStatistics::notes(double max_depth_m) const {
   std::vector<Note> notes;
-  if (const double dropped = share(beyond_limit_, measured_); dropped > kDroppedShare) {
-    char limit[32];
-    std::snprintf(limit, sizeof limit, "%g", max_depth_m);
-    notes.push_back({"points dropped", percent(dropped) +
-                                           " of the measured points were dropped: they are beyond "
-                                           "scenario.max_depth_m = " +
-                                           limit + " along the camera's axis"});
-  }
+  if (const double dropped = share(beyond_limit_, measured_); dropped > kDroppedShare)
+    notes.push_back({"points dropped",
+                     percent(dropped) + formatted(" of the measured points were dropped: they are beyond "
+                                                  "scenario.max_depth_m = %g along the camera's axis",
+                                                  max_depth_m)});
   if (colourless_ > 0)
     notes.push_back(
         {"colours missing", percent(share(colourless_, measured_)) +

@@ -1,7 +1,6 @@
 #include "scenarios/recordings/recorded_scene.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
 #include "core/geometry/rotation.h"
@@ -60,8 +59,6 @@ double distance_to_measured(const PointCloud& cloud, const Vec3& p_W, double rad
 }
 
 namespace {
-
-constexpr std::size_t kMaxCached = 8;  // 12 MB each
 
 // Returns the pose of the camera in the base frame: the transform of tf_static is applied first, then the
 // registration. If no frame_id is chosen, the former is the identity and the registration keeps its bits.
@@ -191,9 +188,7 @@ std::string RecordedScene::truth_text() const {
   if (!truth_) return "the measured surface";
   const std::string text = "meshes of " + truth_->name() + ", uncertainty ";
   if (std::isnan(truth_->uncertainty_m())) return text + "not stated";
-  char uncertainty[32];
-  std::snprintf(uncertainty, sizeof uncertainty, "%.3g mm", 1e3 * truth_->uncertainty_m());
-  return text + uncertainty;
+  return text + formatted("%.3g mm", 1e3 * truth_->uncertainty_m());
 }
 
 // The truth is stated if the recording has another one than the measured surface, or if that was chosen.
@@ -211,12 +206,10 @@ std::vector<Note> RecordedScene::unusual_rate() const {
   if (!times_.follows_stamps()) return {};
   const double rate_hz = times_.usual_rate_hz();
   if (rate_hz >= kSlowest_Hz && rate_hz <= kFastest_Hz) return {};
-  char rate[32];
-  std::snprintf(rate, sizeof rate, "%.3g Hz: ", rate_hz);
   const char* reason = recording_.bag          ? "this is the rate of the stamps in the messages"
                        : rate_hz < kSlowest_Hz ? "stamps are read as seconds, these may be milliseconds"
                                                : "stamps are read as seconds, these may not be";
-  return {{"unusual rate", std::string(rate) + reason}};
+  return {{"unusual rate", formatted("%.3g Hz: ", rate_hz) + reason}};
 }
 
 std::vector<Note> RecordedScene::input_notes() const {
@@ -286,15 +279,7 @@ void RecordedScene::compare(std::size_t source, const PointCloud& cloud) const {
 
 std::shared_ptr<const NeighbourSearch> RecordedScene::points(int frame) const {
   const std::size_t source = times_.source(frame);
-  const auto found =
-      std::find_if(cache_.begin(), cache_.end(), [&](const CachedFrame& k) { return k.source == source; });
-  if (found != cache_.end()) {
-    std::rotate(cache_.begin(), found, found + 1);
-  } else {
-    if (cache_.size() == kMaxCached) cache_.pop_back();
-    cache_.insert(cache_.begin(), {source, make_search(registered(source))});
-  }
-  return cache_.front().points;
+  return cache_.get(source, [&] { return make_search(registered(source)); });
 }
 
 // A grid search stores the points in another order than the file, so that the file is read again.

@@ -105,13 +105,8 @@ class RecordedScene : public Scenario {
   const CameraPath camera_;
   const FrameTimes times_;
   std::unique_ptr<const RecordedTruth> truth_;
-  // The frames that were used last, the newest in front. Renderer, trajectory and truth use them in turn, and
-  // a short part is played many times.
-  struct CachedFrame {
-    std::size_t source;
-    std::shared_ptr<const NeighbourSearch> points;
-  };
-  mutable std::vector<CachedFrame> cache_;
+  // 12 MB each. Renderer, trajectory and truth use frames in turn, and a short part is played many times.
+  mutable KeptFrames cache_{8};
   mutable FrameStatistics statistics_;
   mutable PoseFit fit_;
   mutable std::set<std::size_t> is_compared_;  // the frames in fit_

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -301,10 +300,9 @@ std::string description(const RecordingIndex& index, const std::string& rate) {
       index.name + ": " + std::to_string(index.frames.size()) + " frame(s) from " + kind + " at " + rate;
   const CameraIntrinsics& camera = index.camera;
   if (camera.width == 0) return text;
-  char intrinsics[96];
-  std::snprintf(intrinsics, sizeof intrinsics, ", f = %.6g, %.6g, c = %.6g, %.6g (", camera.fx, camera.fy,
-                camera.cx, camera.cy);
-  return text + ", " + size_text(camera) + intrinsics + index.camera_source + ")";
+  return text + ", " + size_text(camera) +
+         formatted(", f = %.6g, %.6g, c = %.6g, %.6g (", camera.fx, camera.fy, camera.cx, camera.cy) +
+         index.camera_source + ")";
 }
 
 std::string frame_name(const RecordingIndex& index, std::size_t frame) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <string_view>
 
 #include "core/geometry/point_cloud.h"
@@ -224,9 +223,7 @@ std::string validate(const ContactReplay::Settings& s) {
 
 std::vector<InputPart> input_files(const ContactReplay::Settings& s) {
   if (s.file.empty()) return {};
-  InputPart file;
-  file.path = s.file;
-  return {file};
+  return {{s.file}};
 }
 
 namespace {
@@ -240,7 +237,7 @@ void add_normals(const std::string& file, const Scenario& scenario, std::vector<
   const auto touches = [](const Contact& contact) { return !contact.force_N.isZero(0); };
   const auto first = std::find_if(contacts.begin(), contacts.end(), touches);
   if (first == contacts.end())
-    throw InputError(file, "has no force above trajectory.contact_force_N: expected the forces of a contact");
+    refuse(file, "has no force above trajectory.contact_force_N: expected the forces of a contact");
   Vec3 last_W = first->force_N.normalized();
   for (Contact& contact : contacts) {
     const Vec3 true_normal_W = scenario.true_normal(contact.position_W, contact.time_s);
@@ -273,8 +270,7 @@ void add_unusual_size(const Settings& s, const ForceTrace& trace, std::vector<No
   }
   const double size_m = box.diagonal().norm();
   if (!(size_m > kLargest_m) && !(speed > kFastest_m_per_s)) return;
-  char text[160];
-  std::snprintf(text, sizeof text, ": the contact moves through %.3g m at up to %.3g m/s: ", size_m, speed);
+  const std::string text = formatted(": the contact moves through %.3g m at up to %.3g m/s: ", size_m, speed);
   notes.push_back({"unusual poses",
                    s.file + text +
                        (trace.states_length ? "times may be in another unit than the columns say"
@@ -289,13 +285,12 @@ std::vector<Contact> contacts_in_file(const Settings& s, const Scenario& scenari
   const auto first = std::find_if(trace.rows.begin(), trace.rows.end(),
                                   [&](const ForceTraceRow& row) { return row.time_s >= start_s; });
   if (trace.rows.end() - first < 2)
-    throw InputError("trajectory.start_s = " + std::to_string(s.start_s),
-                     "fewer than two rows of the file are left: expected a smaller value");
+    refuse("trajectory.start_s = " + std::to_string(s.start_s),
+           "fewer than two rows of the file are left: expected a smaller value");
   const double duration_s = trace.rows.back().time_s - first->time_s;
   if (!(duration_s <= kMaxFileDuration_s))
-    throw InputError(file, "lasts " + std::to_string(duration_s) + " s: expected at most " +
-                               std::to_string(kMaxFileDuration_s) +
-                               " s; times in milliseconds need a column time_ms");
+    refuse(file, "lasts ", duration_s, " s: expected at most ", kMaxFileDuration_s,
+           " s; times in milliseconds need a column time_ms");
   std::vector<Contact> contacts;
   for (auto row = first; row != trace.rows.end(); ++row)
     contacts.push_back(contact_of(*row, first->time_s, s));
@@ -382,9 +377,8 @@ class GeneratedContact {
 
   [[noreturn]] void refuse_surface(double time_s) const {
     const Vec3 p = on_line(time_s);
-    throw InputError(kReplaySubject, "no true surface is known at " + std::to_string(p.x()) + ", " +
-                                         std::to_string(p.y()) + ", " + std::to_string(p.z()) +
-                                         ": expected a line from_m to to_m over a surface, or a file");
+    refuse(kReplaySubject, "no true surface is known at ", p.x(), ", ", p.y(), ", ", p.z(),
+           ": expected a line from_m to to_m over a surface, or a file");
   }
 
   const Settings& s_;

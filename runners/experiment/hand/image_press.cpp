@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <utility>
 
-#include "core/parameters/input_error.h"
 #include "runners/experiment/hand/image_surface.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 
@@ -48,17 +47,13 @@ ImagePress::ImagePress(const Settings& settings, const Scenario& scenario)
   FrameImage first = first_image(scenario, kSubject);
   image_ = first.layout;
   if (settings.row >= image_.camera.height || settings.column >= image_.camera.width)
-    throw InputError("trajectory.row, column", "expected below " + std::to_string(image_.camera.height) +
-                                                   " and " + std::to_string(image_.camera.width));
+    refuse("trajectory.row, column", "expected below ", image_.camera.height, " and ", image_.camera.width);
   BridgeableImage image(std::move(first.depth), image_.camera, settings.bridge_m);
   const NearestObject object = choose_pixel(image);
   const double surface_m = seen(0).supported_m;
   if (std::isnan(surface_m)) refuse_pixel(image);
   if (!object.pixels.empty()) note_missed_object(object, image.measured());
-  if (!(settings.clearance_m < surface_m && -settings.depth_m < surface_m))
-    throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
-                                                            millimetres(surface_m) +
-                                                            " from the surface: expected smaller values");
+  if (!(settings.clearance_m < surface_m && -settings.depth_m < surface_m)) refuse_behind_camera(surface_m);
 }
 
 bool ImagePress::has_support(const DepthImage& image, int pixel) const {
@@ -119,10 +114,10 @@ void ImagePress::refuse_pixel(BridgeableImage& image) const {
       expected = "-1 for both (the nearest object), " + expected;
     break;
   }
-  throw InputError("trajectory.row = " + std::to_string(row_) + ", column = " + std::to_string(column_),
-                   "the first frame has no surface that can be touched at this pixel (without edges, without "
-                   "holes above " +
-                       millimetres(settings_.bridge_m) + "): expected " + expected);
+  refuse(
+      "trajectory.row = " + std::to_string(row_) + ", column = " + std::to_string(column_),
+      "the first frame has no surface that can be touched at this pixel (without edges, without holes above ",
+      millimetres(settings_.bridge_m), "): expected ", expected);
 }
 
 // Sets missed_object_ if a pixel that was chosen from the image presses something other than the nearest
@@ -201,17 +196,14 @@ std::optional<SurfacePlan> ImagePress::surface_plan(double time_s) const {
 }
 
 std::string ImagePress::aim() const {
-  char depth[40];
-  std::snprintf(depth, sizeof depth, " at depth %.3f m", seen(0).supported_m);
-  return "image-press, " + pixel_text(row_, column_) + depth;
+  return "image-press, " + pixel_text(row_, column_) + formatted(" at depth %.3f m", seen(0).supported_m);
 }
 
 std::vector<Note> ImagePress::notes() const {
   std::vector<Note> notes;
   if (bridges_holes_)
-    notes.push_back({"holes bridged", "pixel " + std::to_string(column_) + ", " + std::to_string(row_) +
-                                          ": holes up to trajectory.bridge_m = " +
-                                          millimetres(settings_.bridge_m) + " wide are taken as closed"});
+    notes.push_back(
+        holes_bridged("pixel " + std::to_string(column_) + ", " + std::to_string(row_), settings_.bridge_m));
   if (!missed_object_.empty()) notes.push_back({"object not pressed", missed_object_});
   return notes;
 }

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <optional>
 
-#include "core/parameters/input_error.h"
 #include "runners/experiment/hand/image_surface.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
@@ -156,9 +155,8 @@ ImageScan::ImageScan(const Settings& s, const Scenario& scenario) : settings_(s)
   const FrameImage first = first_image(scenario, "trajectory.name = image-scan");
   const CameraIntrinsics& camera = first.layout.camera;
   if (s.row >= camera.height || s.first_column >= camera.width || s.last_column >= camera.width)
-    throw InputError(
-        "trajectory.row, first_column, last_column",
-        "expected below " + std::to_string(camera.height) + " and " + std::to_string(camera.width));
+    refuse("trajectory.row, first_column, last_column", "expected below ", camera.height, " and ",
+           camera.width);
   scan_ = find_scan_row(first.depth, camera, s);
   if (scan_.patches.empty()) refuse_row(first.depth, camera);
   if (s.row < 0) note_missed_object(first.depth, camera);
@@ -178,11 +176,10 @@ void ImageScan::refuse_row(const DepthImage& image, const CameraIntrinsics& came
                                       : "-1 (the nearest object: row " + std::to_string(other.row) + "), ") +
                expected;
   }
-  throw InputError("trajectory.row = " + std::to_string(scan_.row),
-                   std::string("the first frame has no surface that can be touched in this row") +
-                       (settings_.row < 0 ? " or another of the nearest object" : "") +
-                       " (without edges, without holes above " + millimetres(settings_.bridge_m) +
-                       "): expected " + expected);
+  refuse("trajectory.row = " + std::to_string(scan_.row),
+         "the first frame has no surface that can be touched in this row",
+         settings_.row < 0 ? " or another of the nearest object" : "",
+         " (without edges, without holes above ", millimetres(settings_.bridge_m), "): expected ", expected);
 }
 
 // Sets missed_object_ for a row that was chosen from the image, in two cases. The row touches other surfaces
@@ -214,10 +211,7 @@ void ImageScan::plan_path(const DepthImage& image, const ImageLayout& layout) {
   const auto depth_at = [&](int u) { return scan_.depth_m[static_cast<std::size_t>(u)]; };
   const auto position = [&](int u, double offset) {
     const double z = depth_at(u) + offset;
-    if (!(z > 0))
-      throw InputError("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is " +
-                                                              millimetres(depth_at(u)) +
-                                                              " from the surface: expected smaller values");
+    if (!(z > 0)) refuse_behind_camera(depth_at(u));
     return Vec3(layout.X_WC * unproject(camera, u, scan_.row, z));
   };
   // Returns the offset from the surface at column u, which is `from` or `to`, for a flight between these two
@@ -266,10 +260,8 @@ std::string ImageScan::aim() const {
     const ScanPatch& patch = scan_.patches[i];
     const auto begin = scan_.depth_m.begin();
     const auto [least, most] = std::minmax_element(begin + patch.first_column, begin + patch.last_column + 1);
-    char columns[100];
-    std::snprintf(columns, sizeof columns, ", columns %d to %d at depth %.3f to %.3f m", patch.first_column,
-                  patch.last_column, *least, *most);
-    text += columns;
+    text += formatted(", columns %d to %d at depth %.3f to %.3f m", patch.first_column, patch.last_column,
+                      *least, *most);
   }
   if (scan_.patches.size() > kMostPatches)
     text += ", and " + std::to_string(scan_.patches.size() - kMostPatches) + " more parts of the row";
@@ -279,9 +271,7 @@ std::string ImageScan::aim() const {
 std::vector<Note> ImageScan::notes() const {
   std::vector<Note> notes;
   const std::string row = "row " + std::to_string(scan_.row);
-  if (scan_.bridges_holes)
-    notes.push_back({"holes bridged", row + ": holes up to trajectory.bridge_m = " +
-                                          millimetres(settings_.bridge_m) + " wide are taken as closed"});
+  if (scan_.bridges_holes) notes.push_back(holes_bridged(row, settings_.bridge_m));
   if (scan_.edge_jump_m > settings_.edge_jump_m)
     notes.push_back({"edges bridged", row + ": depth jumps up to " + millimetres(scan_.edge_jump_m) +
                                           " between neighbouring pixels are taken as surface, more than "

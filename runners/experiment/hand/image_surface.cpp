@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/numeric/order_statistic.h"
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
@@ -52,41 +51,39 @@ std::string no_image_text(const Scenario& scenario, const PointCloud& cloud) {
 
 FrameImage first_image(const Scenario& scenario, const std::string& subject) {
   const PointCloud cloud = scenario.cloud(0);
-  if (!cloud.image) throw InputError(subject, no_image_text(scenario, cloud));
+  if (!cloud.image) refuse(subject, no_image_text(scenario, cloud));
   if (cloud.size() != cloud.image->camera.pixels())
-    throw InputError(subject, "frame 0 has " + std::to_string(cloud.size()) + " points: expected " +
-                                  size_text(cloud.image->camera));
+    refuse(subject, "frame 0 has ", cloud.size(), " points: expected ", size_text(cloud.image->camera));
   if (!cloud.has_measured_point())
-    throw InputError(subject,
-                     "no pixel of the first frame has a depth: expected a camera that sees a surface");
+    refuse(subject, "no pixel of the first frame has a depth: expected a camera that sees a surface");
   return {*cloud.image, depth_of(cloud, *cloud.image)};
 }
 
 void require_image_of(const ImageLayout& first, const PointCloud& frame, int number,
                       const std::string& subject) {
   constexpr double kFits_px = 1;
-  const auto refuse = [&](const std::string& problem) {
-    throw InputError(subject, "frame " + std::to_string(number) + " " + problem);
+  const auto refuse_frame = [&](const std::string& problem) {
+    refuse(subject, "frame ", number, " ", problem);
   };
   const CameraIntrinsics& camera = first.camera;
   if (!frame.has_measured_point()) return;
   const bool has_size = !frame.image || (frame.image->camera.width == camera.width &&
                                          frame.image->camera.height == camera.height);
   if (!has_size || frame.size() != camera.pixels())
-    refuse("has " + (has_size ? std::to_string(frame.size()) + " points" : size_text(frame.image->camera)) +
-           ": expected " + size_text(camera) + ", as frame 0 has");
+    refuse_frame("has " +
+                 (has_size ? std::to_string(frame.size()) + " points" : size_text(frame.image->camera)) +
+                 ": expected " + size_text(camera) + ", as frame 0 has");
   if (frame.image && frame.image->camera == camera) return;  // the layout promises that the points fit
   const RigidTransform& X_WC = frame.image ? frame.image->X_WC : first.X_WC;
   const double error_px = largest_error_px(frame, X_WC.inverse(), camera);
   if (error_px <= kFits_px + first.pixel_slack + (frame.image ? frame.image->pixel_slack : 0)) return;
-  if (!frame.image) refuse("is not an image: expected an image of the camera of frame 0 in every frame");
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "has another camera (f = %.6g, %.6g, c = %.6g, %.6g): expected that of frame 0 (f = %.6g, "
-                "%.6g, c = %.6g, %.6g)",
-                frame.image->camera.fx, frame.image->camera.fy, frame.image->camera.cx,
-                frame.image->camera.cy, camera.fx, camera.fy, camera.cx, camera.cy);
-  refuse(text);
+  if (!frame.image)
+    refuse_frame("is not an image: expected an image of the camera of frame 0 in every frame");
+  refuse_frame(formatted(
+      "has another camera (f = %.6g, %.6g, c = %.6g, %.6g): expected that of frame 0 (f = %.6g, %.6g, "
+      "c = %.6g, %.6g)",
+      frame.image->camera.fx, frame.image->camera.fy, frame.image->camera.cx, frame.image->camera.cy,
+      camera.fx, camera.fy, camera.cx, camera.cy));
 }
 
 FrameImage image_of(const Scenario& scenario, int frame, const ImageLayout& first,
@@ -146,6 +143,16 @@ bool is_measured(const DepthImage& image, int u, int v) {
   return std::isfinite(image.z_m[static_cast<std::size_t>(v) * image.width + u]);
 }
 
+// Returns the finite depths in the part of the window that is in the image.
+std::vector<double> depths_in(const DepthImage& image, const PixelWindow& window) {
+  std::vector<double> depths;
+  for (int v = std::max(0, window.first_row); v <= std::min(image.height - 1, window.last_row); ++v)
+    for (int u = std::max(0, window.first_column); u <= std::min(image.width - 1, window.last_column); ++u)
+      if (is_measured(image, u, v))
+        depths.push_back(image.z_m[static_cast<std::size_t>(v) * image.width + u]);
+  return depths;
+}
+
 // Returns true if a hole in the image is at most one pixel away, also diagonally.
 bool is_rim(const DepthImage& image, int u, int v) {
   for (int y = std::max(0, v - 1); y <= std::min(image.height - 1, v + 1); ++y)
@@ -189,20 +196,12 @@ const DepthImage& BridgeableImage::closed() {
 
 double nearest_depth(const DepthImage& image, const PixelWindow& window) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (int v = std::max(0, window.first_row); v <= std::min(image.height - 1, window.last_row); ++v)
-    for (int u = std::max(0, window.first_column); u <= std::min(image.width - 1, window.last_column); ++u) {
-      const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
-      if (z < nearest) nearest = z;  // not if NaN
-    }
+  for (const double z : depths_in(image, window)) nearest = std::min(nearest, z);
   return nearest;
 }
 
 double median_depth(const DepthImage& image, const PixelWindow& window) {
-  std::vector<double> depths;
-  for (int v = std::max(0, window.first_row); v <= std::min(image.height - 1, window.last_row); ++v)
-    for (int u = std::max(0, window.first_column); u <= std::min(image.width - 1, window.last_column); ++u)
-      if (is_measured(image, u, v))
-        depths.push_back(image.z_m[static_cast<std::size_t>(v) * image.width + u]);
+  std::vector<double> depths = depths_in(image, window);
   return depths.empty() ? std::nan("") : median_in_place(depths);
 }
 
@@ -211,9 +210,17 @@ double in_front_of(double depth_m, double clearance_m) {
 }
 
 std::string millimetres(double length_m) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g mm", 1e3 * length_m);
-  return text;
+  return formatted("%.4g mm", 1e3 * length_m);
+}
+
+void refuse_behind_camera(double surface_m) {
+  refuse("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is ",
+         millimetres(surface_m), " from the surface: expected smaller values");
+}
+
+Note holes_bridged(const std::string& where, double bridge_m) {
+  return {"holes bridged", where + ": holes up to trajectory.bridge_m = " + millimetres(bridge_m) +
+                               " wide are taken as closed"};
 }
 
 namespace {

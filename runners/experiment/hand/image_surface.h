@@ -108,6 +108,11 @@ double in_front_of(double depth_m, double clearance_m);
 // Returns a text such as "8 mm", for messages.
 std::string millimetres(double length_m);
 
+// Throws InputError about a clearance or a depth that is too large for a camera at this distance.
+[[noreturn]] void refuse_behind_camera(double surface_m);
+// where: the pixel or the row, "row 310".
+Note holes_bridged(const std::string& where, double bridge_m);
+
 // The nearest large object in a depth image: the default target of a scan.
 
 struct NearestObject {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/geometry/rotation.h"
 #include "core/numeric/noise.h"
-#include "core/parameters/input_error.h"
+#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 
@@ -21,14 +22,28 @@ void PolylinePath::wait(double duration_s) {
   points_.push_back(points_.back());
 }
 
+namespace {
+
+// The place of a time among others: the index of the next one, and the fraction of the way to it.
+struct TimePlace {
+  std::size_t next = 0;
+  std::optional<double> fraction;  // none before the first time and after the last one
+};
+
+// At a jump, whose times are equal, it is the end of the jump.
+TimePlace place_in(const std::vector<double>& times_s, double time_s) {
+  const auto next = std::upper_bound(times_s.begin(), times_s.end(), time_s);
+  if (next == times_s.end()) return {times_s.size() - 1, {}};
+  if (next == times_s.begin()) return {};
+  return {static_cast<std::size_t>(next - times_s.begin()), (time_s - *(next - 1)) / (*next - *(next - 1))};
+}
+
+}  // namespace
+
 Vec3 PolylinePath::at(double time_s) const {
-  // The first point that is reached after time_s. At the time of a jump the device is at the end of the jump.
-  const auto next = std::upper_bound(arrival_s_.begin(), arrival_s_.end(), time_s);
-  if (next == arrival_s_.end()) return points_.back();
-  if (next == arrival_s_.begin()) return points_.front();
-  const auto i = static_cast<std::size_t>(next - arrival_s_.begin());
-  const double fraction = (time_s - arrival_s_[i - 1]) / (arrival_s_[i] - arrival_s_[i - 1]);
-  return points_[i - 1] + fraction * (points_[i] - points_[i - 1]);
+  const auto [i, fraction] = place_in(arrival_s_, time_s);
+  if (!fraction) return points_[i];
+  return points_[i - 1] + *fraction * (points_[i] - points_[i - 1]);
 }
 
 Parameters parameters(Waypoints::Settings& s) {
@@ -98,15 +113,11 @@ Poses::Poses(const Settings& settings, const Scenario&)
 }
 
 DeviceState Poses::at(double time_s) const {
-  // The first pose that is reached after time_s. At the time of a jump the device is at the end of the jump.
-  const auto next = std::upper_bound(arrival_s_.begin(), arrival_s_.end(), time_s);
-  if (next == arrival_s_.end()) return poses_.back();
-  if (next == arrival_s_.begin()) return poses_.front();
-  const auto i = static_cast<std::size_t>(next - arrival_s_.begin());
-  const double fraction = (time_s - arrival_s_[i - 1]) / (arrival_s_[i] - arrival_s_[i - 1]);
+  const auto [i, fraction] = place_in(arrival_s_, time_s);
+  if (!fraction) return poses_[i];
   const DeviceState &from = poses_[i - 1], &to = poses_[i];
-  return {from.position_W + fraction * (to.position_W - from.position_W),
-          (rotation(fraction * rotation_W_[i]) * from.orientation_W).normalized()};
+  return {from.position_W + *fraction * (to.position_W - from.position_W),
+          (rotation(*fraction * rotation_W_[i]) * from.orientation_W).normalized()};
 }
 
 Parameters parameters(Press::Settings& s) {
@@ -121,8 +132,7 @@ Parameters parameters(Press::Settings& s) {
 
 Press::Press(const Settings& settings, const Scenario& scenario) : settings_(settings), scenario_(scenario) {
   if (!std::isfinite(scenario.surface_height(settings.start_m.x(), settings.start_m.z(), 0)))
-    throw InputError("trajectory.name = press",
-                     "the scenario has no surface height: expected a height field");
+    refuse("trajectory.name = press", "the scenario has no surface height: expected a height field");
 }
 
 DeviceState Press::at(double time_s) const {
@@ -138,6 +148,8 @@ namespace {
 
 // Spacing of the samples of the surface. A vertical step becomes a slope of this width.
 constexpr double kSampling_m = 1e-4;
+
+constexpr const char* kFollowSubject = "trajectory.name = follow-surface";
 
 // Returns the line from start to end, without its height.
 Vec3 level_line_m(const FollowSurface::Settings& s) {
@@ -210,8 +222,7 @@ FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario)
     heights.push_back(scenario.surface_height(positions.back().x(), positions.back().z(), 0));
   }
   if (!std::isfinite(heights.front()))
-    throw InputError("trajectory.name = follow-surface",
-                     "the scenario has no surface height: expected a height field");
+    refuse(kFollowSubject, "the scenario has no surface height: expected a height field");
   const std::vector<double> depths = inside(heights, path.norm() / pieces, s.depth_m);
   const std::vector<double> tops = step_tops(heights, path.norm() / pieces, s);
   const auto at_height = [&](std::size_t i, double y) { return Vec3(positions[i].x(), y, positions[i].z()); };
@@ -239,10 +250,8 @@ void FollowSurface::follow(const Settings& s) {
     moves_ |= std::abs(first_m) > kSame_m;
     for (double piece = 1; piece <= pieces; ++piece)
       if (std::abs(risen_m(s.from_m + piece / pieces * line_m, time_s) - first_m) > kSame_m)
-        throw InputError("trajectory.name = follow-surface",
-                         "the surface changes its shape or place along the line at " +
-                             std::to_string(time_s) +
-                             " s: expected a surface that is at rest, or rises and sinks as a whole");
+        refuse(kFollowSubject, "the surface changes its shape or place along the line at ", time_s,
+               " s: expected a surface that is at rest, or rises and sinks as a whole");
   }
 }
 

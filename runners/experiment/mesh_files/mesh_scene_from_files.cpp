@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -222,18 +221,14 @@ void fit(const BoundingBox& box, DepthSensorSettings& sensor) {
 
 std::string text_of(const SceneMesh& mesh) {
   const Vec3 sides_m = box_of(mesh).sizes();
-  char sides[96];
-  std::snprintf(sides, sizeof sides, ": %zu triangles, %.3f x %.3f x %.3f m",
-                mesh.object.shape->triangles().size(), sides_m.x(), sides_m.y(), sides_m.z());
-  return mesh.object.name + sides +
+  return mesh.object.name +
+         formatted(": %zu triangles, %.3f x %.3f x %.3f m", mesh.object.shape->triangles().size(),
+                   sides_m.x(), sides_m.y(), sides_m.z()) +
          (mesh.object.shape->crosses_itself() ? ", its faces cross each other" : "");
 }
 
 std::string text_of(const Vec3& camera_W) {
-  char text[96];
-  std::snprintf(text, sizeof text, "camera at (%.3f, %.3f, %.3f) m", camera_W.x(), camera_W.y(),
-                camera_W.z());
-  return text;
+  return formatted("camera at (%.3f, %.3f, %.3f) m", camera_W.x(), camera_W.y(), camera_W.z());
 }
 
 }  // namespace
