@@ -21,18 +21,14 @@ int root_of(std::vector<int>& parent, int triangle) {
 }
 
 void count_edges(const std::vector<MeshEdge>& edges, MeshCheck& check) {
-  for (std::size_t first = 0, last; first < edges.size(); first = last) {
-    for (last = first + 1;
-         last < edges.size() && edges[last].low == edges[first].low && edges[last].high == edges[first].high;)
-      ++last;
-    const std::size_t triangles = last - first;
-    if (triangles == 1)
+  for_each_edge(edges, [&](std::span<const MeshEdge> triangles) {
+    if (triangles.size() == 1)
       ++check.boundary_edges;
-    else if (triangles > 2)
+    else if (triangles.size() > 2)
       ++check.non_manifold_edges;
-    else if (edges[first].forward == edges[first + 1].forward)
+    else if (triangles[0].forward == triangles[1].forward)
       ++check.inconsistent_edges;
-  }
+  });
 }
 
 }  // namespace
@@ -189,15 +185,12 @@ std::vector<int> orient(TriangleMesh& mesh, std::vector<char>& flipped) {
     bool opposed;
   };
   std::vector<std::vector<Neighbour>> neighbours(mesh.triangles.size());
-  for (std::size_t first = 0, last; first < edges.size(); first = last) {
-    for (last = first + 1;
-         last < edges.size() && edges[last].low == edges[first].low && edges[last].high == edges[first].high;)
-      ++last;
-    if (last - first != 2) continue;
-    const MeshEdge &a = edges[first], &b = edges[first + 1];
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
+    if (sides.size() != 2) return;
+    const MeshEdge &a = sides[0], &b = sides[1];
     neighbours[a.triangle].push_back({b.triangle, a.forward == b.forward});
     neighbours[b.triangle].push_back({a.triangle, a.forward == b.forward});
-  }
+  });
   std::vector<int> component(mesh.triangles.size(), -1);
   flipped.assign(mesh.triangles.size(), 0);
   for (std::size_t start = 0; start < component.size(); ++start) {
@@ -225,15 +218,11 @@ void fill_holes(TriangleMesh& mesh, std::vector<int>& component, MeshRepair& don
   };
   std::multimap<int, Way> directions;  // edges along holes, opposite to the direction of their triangles
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto same = [&](std::size_t other) {
-      return other < edges.size() && edges[other].low == edges[e].low && edges[other].high == edges[e].high;
-    };
-    if (same(e - 1) || same(e + 1)) continue;  // e - 1 of 0 is no edge
-    const int from = edges[e].forward ? edges[e].high : edges[e].low;
-    const int to = edges[e].forward ? edges[e].low : edges[e].high;
-    directions.emplace(from, Way{to, component[edges[e].triangle]});
-  }
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
+    if (sides.size() > 1) return;
+    const auto [low, high, triangle, forward] = sides[0];
+    directions.emplace(forward ? high : low, Way{forward ? low : high, component[triangle]});
+  });
   while (!directions.empty()) {
     const int start = directions.begin()->first, part = directions.begin()->second.component;
     std::vector<int> loop;

@@ -1,7 +1,10 @@
 // Checks whether a mesh encloses a solid, so that inside and outside are defined.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/mesh/triangle_mesh.h"
 
@@ -42,6 +45,19 @@ struct MeshEdge {
   bool forward;  // the triangle runs from low to high
 };
 std::vector<MeshEdge> edges_by_vertices(const TriangleMesh& mesh);
+
+// Calls use(edges) for each pair of vertices, with the edges of its triangles. pre: the order of
+// edges_by_vertices().
+template <class Use>
+void for_each_edge(std::span<const MeshEdge> edges, const Use& use) {
+  while (!edges.empty()) {
+    std::size_t count = 1;
+    while (count < edges.size() && edges[count].low == edges[0].low && edges[count].high == edges[0].high)
+      ++count;
+    use(edges.first(count));
+    edges = edges.subspan(count);
+  }
+}
 
 // Returns the number of the part of each triangle. Parts are counted from 0 in the order of their first
 // triangles.

@@ -143,13 +143,12 @@ void leave_out_small_fins(TriangleMesh& mesh) {
     for (const int corner : triangle) box.extend(mesh.vertices[corner]);
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   std::vector<int> fins;
-  for (std::size_t first = 0, last; first < edges.size(); first = last) {
-    const int low = edges[first].low, high = edges[first].high;
-    for (last = first; last < edges.size() && edges[last].low == low && edges[last].high == high;) ++last;
-    for (std::size_t e = first; last - first >= 3 && e < last; ++e)
-      if (is_fin(mesh, edges, mesh.triangles[edges[e].triangle], low, high, kFin * box.sizes().maxCoeff()))
-        fins.push_back(edges[e].triangle);
-  }
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
+    for (const MeshEdge& side : sides)
+      if (sides.size() >= 3 && is_fin(mesh, edges, mesh.triangles[side.triangle], side.low, side.high,
+                                      kFin * box.sizes().maxCoeff()))
+        fins.push_back(side.triangle);
+  });
   std::sort(fins.begin(), fins.end(), std::greater<>());
   for (const int fin : fins) mesh.triangles.erase(mesh.triangles.begin() + fin);
 }
@@ -184,14 +183,6 @@ TriangleMesh welded_mesh(const TriangleMesh& mesh) {
   leave_out_unused_vertices(welded);
   return welded;
 }
-
-// The surface that is measured, and the whole mesh for its winding number if faces cross.
-struct MeshDistance::Surface {
-  TriangleMesh mesh;
-  bool is_closed = false, has_inverted_part = false;
-  std::vector<char> is_doubtful;
-  std::shared_ptr<const TriangleTree> winding;
-};
 
 MeshDistance::Surface MeshDistance::surface_of(const TriangleMesh& mesh) {
   Surface surface;
@@ -237,16 +228,8 @@ struct MeshDistance::OnFace {
   }
 };
 
-MeshDistance::MeshDistance(const TriangleMesh& mesh) : MeshDistance(surface_of(mesh)) {}
-
-MeshDistance::MeshDistance(Surface surface)
-    : mesh_(std::move(surface.mesh)),
-      normals_(pseudonormals(mesh_)),
-      tree_(mesh_),
-      is_closed_(surface.is_closed),
-      has_inverted_part_(surface.has_inverted_part),
-      is_doubtful_(std::move(surface.is_doubtful)),
-      winding_(std::move(surface.winding)) {}
+MeshDistance::MeshDistance(const TriangleMesh& mesh)
+    : surface_(surface_of(mesh)), normals_(pseudonormals(surface_.mesh)), tree_(surface_.mesh) {}
 
 // Each side has a plane that contains it and is normal to the face. If p is beyond the planes of some sides,
 // the nearest point is on one of these sides, because it can be seen from the foot of p in the plane of the
@@ -256,10 +239,10 @@ MeshDistance::OnFace MeshDistance::nearest_on_face(int face, const Vec3& p) cons
   OnFace nearest;
   nearest.face = face;
   const Vec3& normal = normals_.of_face[face];
-  const auto& corners = mesh_.triangles[face];
+  const auto& corners = surface_.mesh.triangles[face];
   for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3;
-    const Vec3 &from = mesh_.vertices[corners[i]], &to = mesh_.vertices[corners[next]];
+    const Vec3 &from = surface_.mesh.vertices[corners[i]], &to = surface_.mesh.vertices[corners[next]];
     const Vec3 side = to - from, v = p - from;
     if (side.cross(v).dot(normal) > 0) continue;
     const double along = v.dot(side), whole = side.squaredNorm();
@@ -273,7 +256,7 @@ MeshDistance::OnFace MeshDistance::nearest_on_face(int face, const Vec3& p) cons
     }
   }
   if (nearest.squared_m2 < std::numeric_limits<double>::infinity()) return nearest;
-  const double height_m = (p - mesh_.vertices[corners[0]]).dot(normal);
+  const double height_m = (p - surface_.mesh.vertices[corners[0]]).dot(normal);
   nearest.take_if_nearer(height_m * height_m, p - height_m * normal, OnFace::Part::face, 0);
   return nearest;
 }
@@ -288,15 +271,15 @@ NearestOnMesh MeshDistance::with_normal(const OnFace& nearest, const Vec3& p) co
     result.normal = normals_.of_edge[edge];
     result.on_border = normals_.edge_on_border[edge] != 0;
   } else {
-    const int vertex = mesh_.triangles[nearest.face][nearest.number];
+    const int vertex = surface_.mesh.triangles[nearest.face][nearest.number];
     result.normal = normals_.of_vertex[vertex];
     result.on_border = normals_.vertex_on_border[vertex] != 0;
   }
-  if (is_closed_) result.on_border = false;  // faces inside of the solid are left out beside others
+  if (surface_.is_closed) result.on_border = false;  // faces inside of the solid are left out beside others
   const double distance_m = std::sqrt(nearest.squared_m2);
   bool is_inside = (p - nearest.point).dot(result.normal) < 0;
-  if (winding_ && is_doubtful_[nearest.face] != 0) {
-    const double turns = winding_->winding_number(p);
+  if (surface_.winding && surface_.is_doubtful[nearest.face] != 0) {
+    const double turns = surface_.winding->winding_number(p);
     // The number is about 1/2 on a face, and says nothing there.
     if (std::abs(turns - 0.5) > 0.1 && (turns > 0.5) != is_inside) {
       is_inside = !is_inside;

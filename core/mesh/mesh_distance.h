@@ -67,30 +67,31 @@ class MeshDistance {
   // True if the surface has no border: it bounds solids, and the sign is known everywhere. As many triangles
   // run along every edge in one direction as in the other; unlike for check_mesh(), they may be more than
   // two.
-  bool is_closed() const { return is_closed_; }
+  bool is_closed() const { return surface_.is_closed; }
   // True if a part of a closed surface has the solid on neither side: its triangles run clockwise.
-  bool has_inverted_part() const { return has_inverted_part_; }
+  bool has_inverted_part() const { return surface_.has_inverted_part; }
   // True if faces of a closed surface cross each other.
-  bool crosses_itself() const { return winding_ != nullptr; }
+  bool crosses_itself() const { return surface_.winding != nullptr; }
 
   // The surface that is measured: welded_mesh() of the mesh, without faces inside of its solid.
-  const std::vector<Vec3>& vertices() const { return mesh_.vertices; }
-  const std::vector<std::array<int, 3>>& triangles() const { return mesh_.triangles; }
+  const std::vector<Vec3>& vertices() const { return surface_.mesh.vertices; }
+  const std::vector<std::array<int, 3>>& triangles() const { return surface_.mesh.triangles; }
 
  private:
   struct OnFace;
-  struct Surface;
-  explicit MeshDistance(Surface surface);
+  struct Surface {
+    TriangleMesh mesh;
+    bool is_closed = false, has_inverted_part = false;
+    std::vector<char> is_doubtful;  // faces whose normals may give the wrong sign: crossed ones, neighbours
+    std::shared_ptr<const TriangleTree> winding;  // of the whole mesh; null: no face is crossed
+  };
   static Surface surface_of(const TriangleMesh& mesh);
   OnFace nearest_on_face(int face, const Vec3& p) const;
   NearestOnMesh with_normal(const OnFace& nearest, const Vec3& p) const;
 
-  TriangleMesh mesh_;
+  Surface surface_;
   Pseudonormals normals_;
   FaceTree tree_;
-  bool is_closed_, has_inverted_part_;
-  std::vector<char> is_doubtful_;  // faces whose normals may give the wrong sign: crossed ones, neighbours
-  std::shared_ptr<const TriangleTree> winding_;  // null: no face is crossed
 };
 
 }  // namespace remote_touch

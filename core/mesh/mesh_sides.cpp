@@ -48,26 +48,29 @@ int side_between(const std::array<int, 3>& triangle, int v, int w) {
   return 2;
 }
 
+int forward_minus_back(std::span<const MeshEdge> sides) {
+  int difference = 0;
+  for (const MeshEdge& side : sides) difference += side.forward ? 1 : -1;
+  return difference;
+}
+
 void add_edges(const TriangleMesh& mesh, Pseudonormals& normals) {
   normals.edges_of_face.resize(mesh.triangles.size());
   normals.vertex_on_border.assign(mesh.vertices.size(), 0);
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
-  for (std::size_t first = 0, last; first < edges.size(); first = last) {
-    const int low = edges[first].low, high = edges[first].high;
-    const int number = static_cast<int>(normals.of_edge.size());
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
+    const int low = sides[0].low, high = sides[0].high;
     NormalSum sum;
-    int forward_minus_back = 0;
-    for (last = first; last < edges.size() && edges[last].low == low && edges[last].high == high; ++last) {
-      const int t = edges[last].triangle;
-      sum.add(1, normals.of_face[t]);
-      forward_minus_back += edges[last].forward ? 1 : -1;
-      normals.edges_of_face[t][side_between(mesh.triangles[t], low, high)] = number;
+    for (const MeshEdge& side : sides) {
+      sum.add(1, normals.of_face[side.triangle]);
+      normals.edges_of_face[side.triangle][side_between(mesh.triangles[side.triangle], low, high)] =
+          static_cast<int>(normals.of_edge.size());
     }
     normals.of_edge.push_back(sum.mean());
-    const bool on_border = forward_minus_back != 0;
+    const bool on_border = forward_minus_back(sides) != 0;
     normals.edge_on_border.push_back(on_border);
     if (on_border) normals.vertex_on_border[low] = normals.vertex_on_border[high] = 1;
-  }
+  });
 }
 
 void add_vertices(const TriangleMesh& mesh, Pseudonormals& normals) {
@@ -200,26 +203,14 @@ class CrossingSearch {
   double rounding_m_ = 0;
 };
 
-// Calls use(first, last) for the edges of each pair of vertices. pre: edges of edges_by_vertices().
-template <class Use>
-void for_each_edge(const std::vector<MeshEdge>& edges, const Use& use) {
-  for (std::size_t first = 0, last; first < edges.size(); first = last) {
-    for (last = first + 1;
-         last < edges.size() && edges[last].low == edges[first].low && edges[last].high == edges[first].high;)
-      ++last;
-    use(first, last);
-  }
-}
-
 // Returns the number of the part of each face. A part is connected by edges of two faces, neither of which is
 // crossed. So the side is the same on the whole part.
 std::vector<int> uncrossed_parts(const TriangleMesh& mesh, const std::vector<char>& is_crossed, int& count) {
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   std::vector<MeshEdge> joining;
-  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
-    if (last - first != 2) return;
-    if (is_crossed[edges[first].triangle] || is_crossed[edges[first + 1].triangle]) return;
-    joining.push_back(edges[first]), joining.push_back(edges[first + 1]);
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
+    if (sides.size() != 2 || is_crossed[sides[0].triangle] || is_crossed[sides[1].triangle]) return;
+    joining.insert(joining.end(), sides.begin(), sides.end());
   });
   return parts_of(mesh, joining, count);
 }
@@ -230,15 +221,15 @@ std::vector<int> uncrossed_parts(const TriangleMesh& mesh, const std::vector<cha
 std::vector<int> closed_parts(const TriangleMesh& mesh, const std::vector<int>& sheet_of, int& count) {
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   std::vector<MeshEdge> joining;
-  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
     const auto ends_here = [&](int sheet) {
-      int forward_minus_back = 0;
-      for (std::size_t e = first; e < last; ++e)
-        if (sheet_of[edges[e].triangle] == sheet) forward_minus_back += edges[e].forward ? 1 : -1;
-      return forward_minus_back != 0;
+      int difference = 0;
+      for (const MeshEdge& side : sides)
+        if (sheet_of[side.triangle] == sheet) difference += side.forward ? 1 : -1;
+      return difference != 0;
     };
-    for (std::size_t e = first; e < last; ++e)
-      if (last - first == 2 || ends_here(sheet_of[edges[e].triangle])) joining.push_back(edges[e]);
+    for (const MeshEdge& side : sides)
+      if (sides.size() == 2 || ends_here(sheet_of[side.triangle])) joining.push_back(side);
   });
   return parts_of(mesh, joining, count);
 }
@@ -307,10 +298,8 @@ FaceSide side_of(const TriangleMesh& mesh, const TriangleTree& tree, int face) {
 bool is_closed_surface(const TriangleMesh& mesh) {
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
   bool is_closed = true;
-  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
-    int forward_minus_back = 0;
-    for (std::size_t e = first; e < last; ++e) forward_minus_back += edges[e].forward ? 1 : -1;
-    is_closed = is_closed && forward_minus_back == 0;
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
+    is_closed = is_closed && forward_minus_back(sides) == 0;
   });
   return is_closed;
 }
