@@ -32,29 +32,43 @@ struct ExactVector {
   ExactSum x, y, z;
 };
 
+// A sum of w e e^T, for vectors e of magnitude up to 1.
+struct ExactSquares {
+  explicit ExactSquares(double grid) : squares(grid), products(grid) {}
+  void add(double weight, const Vec3& e) {
+    squares.add(weight * e.cwiseProduct(e));
+    products.add(weight * Vec3(e.y() * e.z(), e.z() * e.x(), e.x() * e.y()));
+  }
+  // Returns the sum divided by a number.
+  Eigen::Matrix3d over(double divisor) const {
+    const Vec3 xx = squares.value() / divisor, yz = products.value() / divisor;
+    Eigen::Matrix3d c;
+    c << xx.x(), yz.z(), yz.y(), yz.z(), xx.y(), yz.x(), yz.y(), yz.x(), xx.z();
+    return c;
+  }
+  ExactVector squares, products;  // xx, yy, zz; yz, zx, xy
+};
+
 // First and second moments of weighted positions of magnitude up to 1: their mean and covariance.
 class ExactMoments {
  public:
-  explicit ExactMoments(double grid) : weights_(grid), first_(grid), squares_(grid), products_(grid) {}
+  explicit ExactMoments(double grid) : weights_(grid), first_(grid), second_(grid) {}
   void add(double weight, const Vec3& e) {
     weights_.add(weight);
     first_.add(weight * e);
-    squares_.add(weight * e.cwiseProduct(e));
-    products_.add(weight * Vec3(e.y() * e.z(), e.z() * e.x(), e.x() * e.y()));
+    second_.add(weight, e);
   }
   double weight() const { return weights_.value(); }
   Vec3 mean() const { return first_.value() / weight(); }
   Eigen::Matrix3d covariance() const {
-    const Vec3 xx = squares_.value() / weight(), yz = products_.value() / weight(), m = mean();
-    Eigen::Matrix3d c;
-    c << xx.x(), yz.z(), yz.y(), yz.z(), xx.y(), yz.x(), yz.y(), yz.x(), xx.z();
-    c -= m * m.transpose();
-    return c;
+    const Vec3 m = mean();
+    return second_.over(weight()) - m * m.transpose();
   }
 
  private:
   ExactSum weights_;
-  ExactVector first_, squares_, products_;  // squares: xx, yy, zz; products: yz, zx, xy
+  ExactVector first_;
+  ExactSquares second_;
 };
 
 }  // namespace remote_touch

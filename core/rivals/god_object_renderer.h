@@ -127,22 +127,15 @@ struct GodObjectParameters {
 
 Parameters parameters(GodObjectParameters& p);
 std::string validate(const GodObjectParameters& p);
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const GodObjectParameters& p) {
-  return p.stiffness_N_per_m;
-}
 inline RenderedContact rendered_contact(const GodObjectParameters& p) {
   return {p.surface_offset_m};
 }
 
-class GodObjectRenderer final : public RivalRenderer {
+class GodObjectRenderer final : public RivalOf<GodObjectParameters> {
  public:
   // haptic_rate_hz has no effect: the method does not depend on time.
   GodObjectRenderer(const GodObjectParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   void reserve(std::size_t points) override;
-  Parameters live_parameters() override { return live_ones(parameters(p_)); }
-  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   bool set_points(const NeighbourSearch& points) override;
@@ -152,7 +145,6 @@ class GodObjectRenderer final : public RivalRenderer {
   bool go(const Vec3& goal);
   void report(const Vec3& hip_W, RenderOutput& out);
 
-  GodObjectParameters p_;
   GridMesh mesh_;
   Vec3 meshed_W_ = Vec3::Zero();  // centre of the ball in which mesh_ is valid, if is_meshed_
   bool is_meshed_ = false;

@@ -69,8 +69,7 @@ Parameters parameters(ImplicitSurfaceParameters& p) {
 
 ImplicitSurfaceRenderer::ImplicitSurfaceRenderer(const ImplicitSurfaceParameters& parameters, double,
                                                  const Kernels& kernels)
-    : RivalRenderer(parameters.support_radius_m, parameters.stiffness_N_per_m, kernels),
-      p_(parameters),
+    : RivalOf(parameters, parameters.support_radius_m, kernels),
       surface_(parameters.surface, parameters.weight, parameters.support_radius_m, parameters.threshold) {}
 
 ImplicitSurfaceRenderer::Place ImplicitSurfaceRenderer::place(const Vec3& p_W, const Vec3& side) {

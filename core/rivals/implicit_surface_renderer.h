@@ -36,11 +36,6 @@ struct ImplicitSurfaceParameters {
 };
 
 Parameters parameters(ImplicitSurfaceParameters& p);
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const ImplicitSurfaceParameters& p) {
-  return p.stiffness_N_per_m;
-}
 // Spacing of the points of most scenes (Grid). The surface of metaballs depends on the spacing, and their
 // rest distance is computed for this one. If the points of a scene are closer or wider apart, the difference
 // counts as an error of the method.
@@ -54,13 +49,11 @@ inline std::string validate(const ImplicitSurfaceParameters&) {
   return {};
 }
 
-class ImplicitSurfaceRenderer final : public RivalRenderer {
+class ImplicitSurfaceRenderer final : public RivalOf<ImplicitSurfaceParameters> {
  public:
   // haptic_rate_hz has no effect: the method does not depend on time.
   ImplicitSurfaceRenderer(const ImplicitSurfaceParameters& parameters, double haptic_rate_hz,
                           const Kernels& kernels);
-  Parameters live_parameters() override { return live_ones(parameters(p_)); }
-  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   struct Place {
@@ -76,7 +69,6 @@ class ImplicitSurfaceRenderer final : public RivalRenderer {
   void stop_at_surface(Place& outside, Place inside);
   void report(const Place& here, const Vec3& hip_W, RenderOutput& out);
 
-  ImplicitSurfaceParameters p_;
   const PointSurface surface_;
   Vec3 side_ = Vec3::Zero();  // normal at the proxy, which defines the side of surfels; zero away from them
   int steps_ = 0;             // evaluations of f in this tick

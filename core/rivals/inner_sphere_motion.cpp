@@ -35,12 +35,11 @@ BallCap cap_behind(double radius_m, double height_m) {
 void PenetrationQuery::PointSums::add(const Vec3& offset_of_point, const Vec3& n_T) {
   const double w = 1 - offset_of_point.squaredNorm();
   const BallCap cap = cap_behind(1, -n_T.dot(offset_of_point));
-  const double share = w * cap.volume_m3 / kUnitBall, cut = w * cap.disk_m2 / std::numbers::pi;
+  const double share = w * cap.volume_m3 / kUnitBall;
   weight.add(w), volume.add(share);
   offset.add(w * offset_of_point), normal.add(w * n_T);
   push.add(share * n_T);
-  squares.add(cut * n_T.cwiseProduct(n_T));
-  products.add(cut * Vec3(n_T.y() * n_T.z(), n_T.z() * n_T.x(), n_T.x() * n_T.y()));
+  cut.add(w * cap.disk_m2 / std::numbers::pi, n_T);
 }
 
 PenetrationQuery::PenetrationQuery(std::shared_ptr<const InnerSpheres> spheres)
@@ -147,12 +146,7 @@ PenetrationQuery::Effect PenetrationQuery::effect_of_points(std::uint32_t i) con
   const PointSums& sums = sums_[i];
   const double r = made_->spheres[i].radius_m, weight = sums.weight.value();
   const double volume_m3 = kUnitBall * r * r * r / weight, area_m2 = std::numbers::pi * r * r / weight;
-  const Vec3 squares = sums.squares.value(), products = sums.products.value();
-  Eigen::Matrix3d cut;
-  cut << squares.x(), products.z(), products.y(),  //
-      products.z(), squares.y(), products.x(),     //
-      products.y(), products.x(), squares.z();
-  return {volume_m3 * sums.volume.value(), volume_m3 * sums.push.value(), area_m2 * cut};
+  return {volume_m3 * sums.volume.value(), volume_m3 * sums.push.value(), area_m2 * sums.cut.over(1)};
 }
 
 PenetrationQuery::Effect PenetrationQuery::effect_of_plane(std::uint32_t i) const {

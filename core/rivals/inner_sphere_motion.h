@@ -98,14 +98,14 @@ class PenetrationQuery {
   // largest cut, so that no term is larger than 1.
   struct PointSums {
     explicit PointSums(double grid)
-        : weight(grid), volume(grid), offset(grid), normal(grid), push(grid), squares(grid), products(grid) {}
+        : weight(grid), volume(grid), offset(grid), normal(grid), push(grid), cut(grid) {}
     void add(const Vec3& offset_of_point, const Vec3& n_T);
 
-    ExactSum weight, volume;        // w, w V
-    ExactVector offset, normal;     // w (p - c) / r, w n
-    ExactVector push;               // w V n
-    ExactVector squares, products;  // w A n n^T: xx, yy, zz, and yz, zx, xy
-    double spacing_m = 0;           // largest spacing of the points
+    ExactSum weight, volume;     // w, w V
+    ExactVector offset, normal;  // w (p - c) / r, w n
+    ExactVector push;            // w V n
+    ExactSquares cut;            // w A n n^T
+    double spacing_m = 0;        // largest spacing of the points
   };
   // The contribution of a sphere.
   struct Effect {

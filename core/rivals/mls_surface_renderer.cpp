@@ -54,10 +54,10 @@ std::string validate(const MlsSurfaceParameters& p) {
 }
 
 MlsSurfaceRenderer::MlsSurfaceRenderer(const MlsSurfaceParameters& parameters, double, const Kernels& kernels)
-    : RivalRenderer(MlsProjection::kSupportInWidths *
-                        (parameters.weight_width_m > 0 ? parameters.weight_width_m : kUsualWidth_m),
-                    parameters.stiffness_N_per_m, kernels),
-      p_(parameters),
+    : RivalOf(parameters,
+              MlsProjection::kSupportInWidths *
+                  (parameters.weight_width_m > 0 ? parameters.weight_width_m : kUsualWidth_m),
+              kernels),
       surface_(parameters.weight_width_m > 0 ? parameters.weight_width_m : kUsualWidth_m, parameters.degree),
       has_width_(parameters.weight_width_m > 0),
       nearest_(kernels) {

@@ -46,22 +46,15 @@ struct MlsSurfaceParameters {
 
 Parameters parameters(MlsSurfaceParameters& p);
 std::string validate(const MlsSurfaceParameters& p);
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const MlsSurfaceParameters& p) {
-  return p.stiffness_N_per_m;
-}
 inline RenderedContact rendered_contact(const MlsSurfaceParameters&) {
   return {};
 }
 
-class MlsSurfaceRenderer final : public RivalRenderer {
+class MlsSurfaceRenderer final : public RivalOf<MlsSurfaceParameters> {
  public:
   // haptic_rate_hz has no effect: the method does not depend on time.
   MlsSurfaceRenderer(const MlsSurfaceParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   void reserve(std::size_t points) override;
-  Parameters live_parameters() override { return live_ones(parameters(p_)); }
-  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   bool set_points(const NeighbourSearch& points) override;
@@ -79,7 +72,6 @@ class MlsSurfaceRenderer final : public RivalRenderer {
   bool may_step() const { return steps_ < p_.steps_per_tick; }
   void report(const Vec3& hip_W, RenderOutput& out);
 
-  MlsSurfaceParameters p_;
   MlsProjection surface_;
   bool has_width_;  // h is known
   NearestPoints nearest_;

@@ -30,9 +30,7 @@ std::string validate(const PenaltyParameters& p) {
 
 PenaltyRenderer::PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz,
                                  const Kernels& kernels)
-    : RivalRenderer(parameters.r3_m, parameters.stiffness_N_per_m, kernels),
-      p_(parameters),
-      haptic_rate_hz_(haptic_rate_hz) {}
+    : RivalOf(parameters, parameters.r3_m, kernels), haptic_rate_hz_(haptic_rate_hz) {}
 
 void PenaltyRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
   const double ticks = elapsed_ticks(std::exchange(previous_time_s_, time_s_), time_s_, haptic_rate_hz_);

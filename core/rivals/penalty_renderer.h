@@ -32,27 +32,19 @@ struct PenaltyParameters {
 
 Parameters parameters(PenaltyParameters& p);
 std::string validate(const PenaltyParameters& p);
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover the damper, nor points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const PenaltyParameters& p) {
-  return p.stiffness_N_per_m;
-}
 inline RenderedContact rendered_contact(const PenaltyParameters& p) {
   return {p.contact_radius_m, p.stiffness_N_per_m};
 }
 
-class PenaltyRenderer final : public RivalRenderer {
+class PenaltyRenderer final : public RivalOf<PenaltyParameters> {
  public:
   // haptic_rate_hz: the rate at which step() is called.
   PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
-  Parameters live_parameters() override { return live_ones(parameters(p_)); }
-  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   void touch(const Vec3& hip_W, RenderOutput& out) override;
   void reset_motion() override { has_previous_ = false; }
 
-  PenaltyParameters p_;
   double haptic_rate_hz_;
   Vec3 previous_hip_W_ = Vec3::Zero();
   double previous_time_s_ = 0;

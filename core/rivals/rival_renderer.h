@@ -7,6 +7,7 @@
 
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
+#include "core/parameters/parameter.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "core/search/neighbourhood.h"
@@ -56,5 +57,30 @@ class RivalRenderer : public Renderer {
   bool usable_ = false;  // the method can use the newest frame
   bool placed_ = false;  // the proxy has a position
 };
+
+// A method with these settings, whose stiffness is a live one.
+template <class Settings>
+class RivalOf : public RivalRenderer {
+ public:
+  Parameters live_parameters() override { return live_ones(parameters(p_)); }
+  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
+
+ protected:
+  RivalOf(const Settings& settings, double reach_m, const Kernels& kernels)
+      : RivalRenderer(reach_m, settings.stiffness_N_per_m, kernels), p_(settings) {}
+
+  Settings p_;
+};
+
+// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m, for
+// the settings of a method with one spring. It covers neither a damper nor points that have a stiffness of
+// their own.
+template <class Settings>
+requires requires(const Settings& s) {
+  s.stiffness_N_per_m;
+}
+double max_stiffness_N_per_m(const Settings& s) {
+  return s.stiffness_N_per_m;
+}
 
 }  // namespace remote_touch

@@ -45,9 +45,7 @@ std::string validate(const SurfelParameters& p) {
 }
 
 SurfelRenderer::SurfelRenderer(const SurfelParameters& parameters, double, const Kernels& kernels)
-    : RivalRenderer(kRadiusWithoutSpacing_m, parameters.stiffness_N_per_m, kernels),
-      p_(parameters),
-      radius_m_(parameters.support_radius_m) {
+    : RivalOf(parameters, kRadiusWithoutSpacing_m, kernels), radius_m_(parameters.support_radius_m) {
   for (int frame = 0; frame < p_.fused_frames; ++frame)
     frames_.push_back({nullptr, PointNormals(p_.normal_neighbours, kernels)});
 }

@@ -41,22 +41,15 @@ struct SurfelParameters {
 
 Parameters parameters(SurfelParameters& p);
 std::string validate(const SurfelParameters& p);
-// Returns an upper bound, over all poses, of the increase of |force| per displacement of the HIP, N/m.
-// It does not cover points that have a stiffness of their own.
-inline double max_stiffness_N_per_m(const SurfelParameters& p) {
-  return p.stiffness_N_per_m;
-}
 inline RenderedContact rendered_contact(const SurfelParameters&) {
   return {};
 }
 
-class SurfelRenderer final : public RivalRenderer {
+class SurfelRenderer final : public RivalOf<SurfelParameters> {
  public:
   // haptic_rate_hz has no effect: the method does not depend on time.
   SurfelRenderer(const SurfelParameters& parameters, double haptic_rate_hz, const Kernels& kernels);
   void reserve(std::size_t points) override;
-  Parameters live_parameters() override { return live_ones(parameters(p_)); }
-  void parameters_changed() override { stiffness_N_per_m_ = p_.stiffness_N_per_m; }
 
  private:
   std::shared_ptr<const NeighbourSearch> shown(const Frame& frame) override;
@@ -72,7 +65,6 @@ class SurfelRenderer final : public RivalRenderer {
   void release(const Vec3& hip_W);
   void report(const Vec3& hip_W, RenderOutput& out);
 
-  SurfelParameters p_;
   double radius_m_;  // R; 0 until it is known
   // One of the newest frames, which are joined. Its normals come from its own points and its own sensor.
   struct FusedFrame {
