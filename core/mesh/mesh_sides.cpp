@@ -87,18 +87,6 @@ void add_vertices(const TriangleMesh& mesh, Pseudonormals& normals) {
   for (const NormalSum& sum : sums) normals.of_vertex.push_back(sum.mean());
 }
 
-}  // namespace
-
-Pseudonormals pseudonormals(const TriangleMesh& mesh) {
-  Pseudonormals normals;
-  add_faces(mesh, normals);
-  add_edges(mesh, normals);
-  add_vertices(mesh, normals);
-  return normals;
-}
-
-namespace {
-
 using Corners = std::array<Vec3, 3>;
 
 // Finds the pairs of faces that cross, some of them several times. Compares the faces whose boxes overlap. A
@@ -294,6 +282,14 @@ FaceSide side_of(const TriangleMesh& mesh, const TriangleTree& tree, int face) {
 }
 
 }  // namespace
+
+Pseudonormals pseudonormals(const TriangleMesh& mesh) {
+  Pseudonormals normals;
+  add_faces(mesh, normals);
+  add_edges(mesh, normals);
+  add_vertices(mesh, normals);
+  return normals;
+}
 
 bool is_closed_surface(const TriangleMesh& mesh) {
   const std::vector<MeshEdge> edges = edges_by_vertices(mesh);

@@ -24,6 +24,17 @@ bool contains(const Triangle& t, const Vec3& p) {
          beside_edge(t.c, t.a, p, t.normal, doubled) >= -kSeam;
 }
 
+// Planes whose normals span less than this (squared sine, or volume) are not combined, because their
+// intersection is far away or does not exist. The choices without one of them remain.
+constexpr double kParallel = 1e-9;
+
+// Radius of the ball in which the mesh is computed, and longest motion of one round, in units of the edge
+// limit.
+constexpr double kMeshed = 0.5, kMaxStride = 0.25;
+// Tolerance in units of the surface offset: a shorter motion counts as none, and a plane may be violated by
+// it.
+constexpr double kRestTolerance = 1e-6;
+
 }  // namespace
 
 void GridMesh::reserve(std::size_t points) {
@@ -91,14 +102,6 @@ std::optional<Crossing> GridMesh::first_crossing(const Vec3& from, const Vec3& t
   return first;
 }
 
-namespace {
-
-// Planes whose normals span less than this (squared sine, or volume) are not combined, because their
-// intersection is far away or does not exist. The choices without one of them remain.
-constexpr double kParallel = 1e-9;
-
-}  // namespace
-
 bool PlaneConstraints::add(const Vec3& normal, const Vec3& point, double offset_m) {
   if (count_ == kMaxCount) return false;
   planes_[count_++] = {normal, point, offset_m};
@@ -141,17 +144,6 @@ PlaneConstraints::Nearest PlaneConstraints::nearest(const Vec3& goal) const {
   }
   return best;
 }
-
-namespace {
-
-// Radius of the ball in which the mesh is computed, and longest motion of one round, in units of the edge
-// limit.
-constexpr double kMeshed = 0.5, kMaxStride = 0.25;
-// Tolerance in units of the surface offset: a shorter motion counts as none, and a plane may be violated by
-// it.
-constexpr double kRestTolerance = 1e-6;
-
-}  // namespace
 
 Parameters parameters(GodObjectParameters& p) {
   return {

@@ -24,6 +24,9 @@ Eigen::Matrix3d cross_matrix(const Vec3& v) {
   return m;
 }
 
+// Weight of the earlier steps in the sum to which the next step is compared.
+constexpr double kTrend = 0.5;
+
 }  // namespace
 
 BallCap cap_behind(double radius_m, double height_m) {
@@ -183,13 +186,6 @@ SpherePenetration PenetrationQuery::penetration(const ToolPose& pose, const Touc
   reset();
   return all;
 }
-
-namespace {
-
-// Weight of the earlier steps in the sum to which the next step is compared.
-constexpr double kTrend = 0.5;
-
-}  // namespace
 
 Parameters parameters(InnerSphereParameters& p) {
   const Parameters own = {

@@ -306,6 +306,11 @@ void link_neighbours(InnerSpheres& made, double near_m) {
               made.neighbour.begin() + made.first_neighbour[i + 1]);
 }
 
+constexpr double kCellsAlong = 96;
+// A sphere is entered in every cell that it reaches if it is larger by this fraction of a cell. So rounding
+// at the boundary of a cell cannot lose it.
+constexpr double kSlack = 1e-6;
+
 }  // namespace
 
 InnerSpheres make_inner_spheres(const VoxelTool& tool, int max_spheres) {
@@ -326,15 +331,6 @@ std::string text(const InnerSpheres& made) {
   return std::to_string(made.spheres.size()) + " inner spheres fill " + std::to_string(tenths / 10) + "." +
          std::to_string(tenths % 10) + " % of the tool";
 }
-
-namespace {
-
-constexpr double kCellsAlong = 96;
-// A sphere is entered in every cell that it reaches if it is larger by this fraction of a cell. So rounding
-// at the boundary of a cell cannot lose it.
-constexpr double kSlack = 1e-6;
-
-}  // namespace
 
 SphereLocator::SphereLocator(std::span<const Sphere> spheres) : spheres_(spheres) {
   BoundingBox box;

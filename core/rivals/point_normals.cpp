@@ -34,6 +34,62 @@ bool rotate(Eigen::Matrix3d& a, Eigen::Matrix3d& axes, int p, int q, double noth
   return true;
 }
 
+constexpr double kMaxRadius_m = 0.5;
+// The factor covers rounding, by which squares of equal distances differ.
+constexpr double kSameDistance = 1 + 1e-9;
+constexpr int kNeighbours = 3;
+constexpr std::size_t kMaxSample = 20000;  // more points would delay the tick in which a frame arrives
+
+// Returns true for about one of `stride` points. The choice depends on the position alone, so that the order
+// of the points has no effect.
+bool is_sampled(const Vec3& p, std::size_t stride) {
+  constexpr std::uint64_t kMix = 0xbf58476d1ce4e5b9;  // the multiplier of splitmix64
+  std::uint64_t bits = 0;
+  for (const double x : p) bits = (bits ^ std::bit_cast<std::uint64_t>(x)) * kMix, bits ^= bits >> 31;
+  return bits % stride == 0;
+}
+
+// If the middle variance is below this, in units of the squared distance of the last neighbour, there is no
+// plane.
+constexpr double kMinPlaneWidth = 1e-6;
+
+// A gradient shorter than this has no direction, because it is only rounding.
+constexpr double kNoDirection = 1e-10;
+// Smaller sums of weights are mostly rounding: the position counts as outside of all support.
+constexpr double kMinWeight = 1e-6;
+// If the middle variance is below this, in units of R^2, the points do not span a plane.
+constexpr double kMinWidth = 1e-6;
+// An upper bound of the length of a term of the gradient, with which the terms are scaled to magnitude 1.
+constexpr double kMaxTerm = 4;
+
+// weight: w at a distance; slope: the factor of (x - p) / R in the gradient of w with respect to p / R.
+struct Bell {
+  double weight, slope;
+};
+
+// The polynomial is factored, so that rounding near the rim makes no weight negative.
+Bell wyvill(double squared) {
+  const double rest = 1 - squared;
+  return {rest * rest * (1 - squared * (4.0 / 9)), 2 * rest * (22.0 / 9 - squared * (12.0 / 9))};
+}
+
+Bell wendland(double squared) {
+  const double q = std::sqrt(squared), rest = 1 - q, cubed = rest * rest * rest;
+  return {cubed * rest * (4 * q + 1), 20 * cubed};
+}
+
+// Calls act(bell, e, i) for every point i within R, e = (x - p) / R.
+template <class Act>
+void for_each_near(const PointsView& points, const Vec3& p_W, double radius_m, SurfaceWeight weight,
+                   const Act& act) {
+  for (std::size_t i = 0; i < points.padded_count; ++i) {
+    const Vec3 e = (Vec3(points.x[i], points.y[i], points.z[i]) - p_W) / radius_m;
+    const double squared = e.squaredNorm();
+    if (!(squared < 1)) continue;
+    act(weight == SurfaceWeight::wyvill ? wyvill(squared) : wendland(squared), e, i);
+  }
+}
+
 }  // namespace
 
 ThinnestAxis thinnest_axis(const Eigen::Matrix3d& symmetric) {
@@ -51,25 +107,6 @@ ThinnestAxis thinnest_axis(const Eigen::Matrix3d& symmetric) {
   const double others[] = {a((min + 1) % 3, (min + 1) % 3), a((min + 2) % 3, (min + 2) % 3)};
   return {axes.col(min), a(min, min), std::min(others[0], others[1])};
 }
-
-namespace {
-
-constexpr double kMaxRadius_m = 0.5;
-// The factor covers rounding, by which squares of equal distances differ.
-constexpr double kSameDistance = 1 + 1e-9;
-constexpr int kNeighbours = 3;
-constexpr std::size_t kMaxSample = 20000;  // more points would delay the tick in which a frame arrives
-
-// Returns true for about one of `stride` points. The choice depends on the position alone, so that the order
-// of the points has no effect.
-bool is_sampled(const Vec3& p, std::size_t stride) {
-  constexpr std::uint64_t kMix = 0xbf58476d1ce4e5b9;  // the multiplier of splitmix64
-  std::uint64_t bits = 0;
-  for (const double x : p) bits = (bits ^ std::bit_cast<std::uint64_t>(x)) * kMix, bits ^= bits >> 31;
-  return bits % stride == 0;
-}
-
-}  // namespace
 
 void NearestPoints::reserve(std::size_t points) {
   near_.reserve(points, true, true);
@@ -137,14 +174,6 @@ double mean_spacing_m(const NeighbourSearch& points, NearestPoints& nearest, con
   return terms > 0 ? kUnit_m * static_cast<double>(sum) / static_cast<double>(terms) : 0;
 }
 
-namespace {
-
-// If the middle variance is below this, in units of the squared distance of the last neighbour, there is no
-// plane.
-constexpr double kMinPlaneWidth = 1e-6;
-
-}  // namespace
-
 ViewPoint view_point(const NeighbourSearch& points, const Vec3& direction_W) {
   ViewPoint view;
   view.direction_W = direction_W;
@@ -187,47 +216,6 @@ Vec3 PointNormals::compute(const Vec3& x_W) {
   if (thin.middle < kMinPlaneWidth) return Vec3::Zero();
   return thin.axis.dot(view_.ray_to(x_W)) > 0 ? Vec3(-thin.axis) : thin.axis;
 }
-
-namespace {
-
-// A gradient shorter than this has no direction, because it is only rounding.
-constexpr double kNoDirection = 1e-10;
-// Smaller sums of weights are mostly rounding: the position counts as outside of all support.
-constexpr double kMinWeight = 1e-6;
-// If the middle variance is below this, in units of R^2, the points do not span a plane.
-constexpr double kMinWidth = 1e-6;
-// An upper bound of the length of a term of the gradient, with which the terms are scaled to magnitude 1.
-constexpr double kMaxTerm = 4;
-
-// weight: w at a distance; slope: the factor of (x - p) / R in the gradient of w with respect to p / R.
-struct Bell {
-  double weight, slope;
-};
-
-// The polynomial is factored, so that rounding near the rim makes no weight negative.
-Bell wyvill(double squared) {
-  const double rest = 1 - squared;
-  return {rest * rest * (1 - squared * (4.0 / 9)), 2 * rest * (22.0 / 9 - squared * (12.0 / 9))};
-}
-
-Bell wendland(double squared) {
-  const double q = std::sqrt(squared), rest = 1 - q, cubed = rest * rest * rest;
-  return {cubed * rest * (4 * q + 1), 20 * cubed};
-}
-
-// Calls act(bell, e, i) for every point i within R, e = (x - p) / R.
-template <class Act>
-void for_each_near(const PointsView& points, const Vec3& p_W, double radius_m, SurfaceWeight weight,
-                   const Act& act) {
-  for (std::size_t i = 0; i < points.padded_count; ++i) {
-    const Vec3 e = (Vec3(points.x[i], points.y[i], points.z[i]) - p_W) / radius_m;
-    const double squared = e.squaredNorm();
-    if (!(squared < 1)) continue;
-    act(weight == SurfaceWeight::wyvill ? wyvill(squared) : wendland(squared), e, i);
-  }
-}
-
-}  // namespace
 
 Vec3 SurfaceSample::normal() const {
   const double length = gradient.norm();

@@ -11,6 +11,19 @@ namespace {
 
 constexpr std::size_t kBlock = 128;
 
+const Vec3 kNotMeasured = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+
+// Returns the gradient of the distance as a unit vector; zero if it is not known.
+Vec3 true_normal(const TrueSurface& truth, const Vec3& p_W, double time_s) {
+  constexpr double kStep_m = 1e-6;
+  Vec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = kStep_m * Vec3::Unit(axis);
+    gradient[axis] = truth.signed_distance(p_W + step, time_s) - truth.signed_distance(p_W - step, time_s);
+  }
+  return gradient.allFinite() ? Vec3(gradient.normalized()) : Vec3::Zero();  // 0 stays 0
+}
+
 }  // namespace
 
 void BlockSearch::reserve(std::size_t points) {
@@ -51,12 +64,6 @@ void BlockSearch::gather(const Ball& ball, const Kernels& kernels, GatheredPoint
             ball, kernels);
   }
 }
-
-namespace {
-
-const Vec3 kNotMeasured = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-
-}  // namespace
 
 Parameters parameters(FrameAverageSettings& s) {
   return {
@@ -257,21 +264,6 @@ RenderOutput DensityProxyRenderer::step(const DeviceState& device, double time_s
     out.proxy_W += (p_.proxy.contact_radius_m() - radius_m_) * out.normal_W;
   return out;
 }
-
-namespace {
-
-// Returns the gradient of the distance as a unit vector; zero if it is not known.
-Vec3 true_normal(const TrueSurface& truth, const Vec3& p_W, double time_s) {
-  constexpr double kStep_m = 1e-6;
-  Vec3 gradient;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 step = kStep_m * Vec3::Unit(axis);
-    gradient[axis] = truth.signed_distance(p_W + step, time_s) - truth.signed_distance(p_W - step, time_s);
-  }
-  return gradient.allFinite() ? Vec3(gradient.normalized()) : Vec3::Zero();  // 0 stays 0
-}
-
-}  // namespace
 
 // The true motion is given, so there is no estimate.
 Parameters parameters(OracleProxyParameters& p) {

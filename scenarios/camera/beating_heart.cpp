@@ -45,6 +45,34 @@ double ClosestPoint::root(double low) const {
   return tau;
 }
 
+// Ends of the phases of a ventricle, as fractions of a beat: it contracts, stays contracted, relaxes, and
+// rests until the beat ends. The atrium is ahead of the ventricles by kAtriumLeads.
+constexpr double kContracted = 0.3, kRelaxes = 0.35, kRelaxed = 0.75;
+constexpr double kAtriumLeads = 0.18;
+
+// Vertical semi-axis of the left ventricle, which ends at the organ's top. amplitude_m is the largest
+// decrease of this semi-axis.
+constexpr double kTopSemiAxis_m = 0.032;
+
+// Reds that differ a little (hues 3 to 11 degrees) for the organ, and hue 190 for the drape on the table.
+constexpr std::uint32_t kLeftVentricle = 0xB23A30, kRightVentricle = 0xC4553C, kAtrium = 0x9A2F2A;
+constexpr std::uint32_t kTable = 0x3A6E78;
+
+// Rises from 0 to 1 with zero velocity and zero acceleration at both ends.
+double smooth_step(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * u * (10 - u * (15 - 6 * u));
+}
+
+// A turn of 16.3 degrees about y.
+Eigen::Matrix3d turned() {
+  Eigen::Matrix3d axes;
+  axes << 0.96, 0, 0.28,  //
+      0, 1, 0,            //
+      -0.28, 0, 0.96;
+  return axes;
+}
+
 }  // namespace
 
 Ellipsoid::Ellipsoid(const Vec3& centre_m, const Vec3& semi_axes_m, const Eigen::Matrix3d& axes)
@@ -107,38 +135,6 @@ double Ellipsoid::height(double x, double z) const {
   return std::isnan(line.half) ? -std::numeric_limits<double>::infinity()
                                : centre_.y() + line.middle + line.half;
 }
-
-namespace {
-
-// Ends of the phases of a ventricle, as fractions of a beat: it contracts, stays contracted, relaxes, and
-// rests until the beat ends. The atrium is ahead of the ventricles by kAtriumLeads.
-constexpr double kContracted = 0.3, kRelaxes = 0.35, kRelaxed = 0.75;
-constexpr double kAtriumLeads = 0.18;
-
-// Vertical semi-axis of the left ventricle, which ends at the organ's top. amplitude_m is the largest
-// decrease of this semi-axis.
-constexpr double kTopSemiAxis_m = 0.032;
-
-// Reds that differ a little (hues 3 to 11 degrees) for the organ, and hue 190 for the drape on the table.
-constexpr std::uint32_t kLeftVentricle = 0xB23A30, kRightVentricle = 0xC4553C, kAtrium = 0x9A2F2A;
-constexpr std::uint32_t kTable = 0x3A6E78;
-
-// Rises from 0 to 1 with zero velocity and zero acceleration at both ends.
-double smooth_step(double u) {
-  u = std::clamp(u, 0.0, 1.0);
-  return u * u * u * (10 - u * (15 - 6 * u));
-}
-
-// A turn of 16.3 degrees about y.
-Eigen::Matrix3d turned() {
-  Eigen::Matrix3d axes;
-  axes << 0.96, 0, 0.28,  //
-      0, 1, 0,            //
-      -0.28, 0, 0.96;
-  return axes;
-}
-
-}  // namespace
 
 Parameters parameters(BeatingHeart::Settings& s) {
   const Parameters own = {

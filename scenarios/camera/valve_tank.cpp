@@ -44,6 +44,27 @@ double to_cylinder(const Vec3& q, double radius, double z_low, double z_high) {
   return std::max(beside, beyond);
 }
 
+constexpr double kNoLightLeft = 64;  // exp(-64) = 1.6e-28
+constexpr int kSquarings = 10;
+constexpr double kDepthLoss = 0.25;  // factor on beta
+constexpr double kFar_m = 1e6;       // replaces infinity, because 0 times infinity is NaN
+
+constexpr double kPaintSaturation = 0.85, kPaintLightness = 0.45;
+constexpr HueSaturationLightness kWall{195, 0.3, 0.45};
+constexpr double kAmbient = 0.3;  // share of the light that is ambient
+
+// Scales the three channels by `light`: the lightness changes; hue and saturation do not, up to rounding.
+std::uint32_t dimmed(std::uint32_t rgb, double light) {
+  std::uint32_t result = 0;
+  for (int shift = 16; shift >= 0; shift -= 8)
+    result |= static_cast<std::uint32_t>(std::floor((rgb >> shift & 0xFF) * light + 0.5)) << shift;
+  return result;
+}
+
+std::uint32_t channel(double value) {
+  return static_cast<std::uint32_t>(std::clamp(std::floor(value + 0.5), 0.0, 255.0));
+}
+
 }  // namespace
 
 Handwheel::Handwheel(const Vec3& centre_m, double ring_radius_m)
@@ -90,15 +111,6 @@ Vec3 Handwheel::normal(const Vec3& p) const {
   return slope.normalized();
 }
 
-namespace {
-
-constexpr double kNoLightLeft = 64;  // exp(-64) = 1.6e-28
-constexpr int kSquarings = 10;
-constexpr double kDepthLoss = 0.25;  // factor on beta
-constexpr double kFar_m = 1e6;       // replaces infinity, because 0 times infinity is NaN
-
-}  // namespace
-
 // exp(-x) = exp(-x / 1024)^1024, whose inner argument is small enough for eight terms of the series.
 double decay(double x) {
   if (x >= kNoLightLeft) return 0;
@@ -126,26 +138,6 @@ double Water::lost(double dropout_probability, double distance_m) const {
 double Water::depth_noise_factor(double distance_m) const {
   return 1 + turbidity_per_m_ * std::min(distance_m, kFar_m);
 }
-
-namespace {
-
-constexpr double kPaintSaturation = 0.85, kPaintLightness = 0.45;
-constexpr HueSaturationLightness kWall{195, 0.3, 0.45};
-constexpr double kAmbient = 0.3;  // share of the light that is ambient
-
-// Scales the three channels by `light`: the lightness changes; hue and saturation do not, up to rounding.
-std::uint32_t dimmed(std::uint32_t rgb, double light) {
-  std::uint32_t result = 0;
-  for (int shift = 16; shift >= 0; shift -= 8)
-    result |= static_cast<std::uint32_t>(std::floor((rgb >> shift & 0xFF) * light + 0.5)) << shift;
-  return result;
-}
-
-std::uint32_t channel(double value) {
-  return static_cast<std::uint32_t>(std::clamp(std::floor(value + 0.5), 0.0, 255.0));
-}
-
-}  // namespace
 
 Parameters parameters(ValveTank::Settings& s) {
   const Parameters own = {

@@ -21,6 +21,25 @@ void require_increasing_times(const std::vector<StampedPose>& poses) {
                                   ": expected finite times, each above the one before");
 }
 
+void require_metres(const MeshSubject& names, const TriangleMesh& mesh) {
+  constexpr double kMaxSize_m = 10;
+  BoundingBox box;
+  for (const auto& triangle : mesh.triangles)
+    for (const int corner : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(corner)]);
+  const double size_m = box.diagonal().norm();
+  if (!(size_m <= kMaxSize_m))
+    refuse(names.subject, "its bounding box has a diagonal of ", size_m,
+           " m: metres expected, these may be millimetres", names.if_large);
+}
+
+std::shared_ptr<const MeshDistance> distance_to(const std::string& subject, const TriangleMesh& mesh) {
+  try {
+    return std::make_shared<const MeshDistance>(mesh);
+  } catch (const std::invalid_argument&) {
+    refuse(subject, "no triangle has an area: expected a surface");
+  }
+}
+
 }  // namespace
 
 PosePath::PosePath(const RigidTransform& X) : PosePath(std::vector<StampedPose>{{0, X}}) {}
@@ -74,29 +93,6 @@ std::vector<PosedMesh> posed_meshes(std::span<const MeshObject> objects,
     meshes.push_back({objects[i].name, objects[i].shape->vertices(), objects[i].shape->triangles(), X_WO[i]});
   return meshes;
 }
-
-namespace {
-
-void require_metres(const MeshSubject& names, const TriangleMesh& mesh) {
-  constexpr double kMaxSize_m = 10;
-  BoundingBox box;
-  for (const auto& triangle : mesh.triangles)
-    for (const int corner : triangle) box.extend(mesh.vertices[static_cast<std::size_t>(corner)]);
-  const double size_m = box.diagonal().norm();
-  if (!(size_m <= kMaxSize_m))
-    refuse(names.subject, "its bounding box has a diagonal of ", size_m,
-           " m: metres expected, these may be millimetres", names.if_large);
-}
-
-std::shared_ptr<const MeshDistance> distance_to(const std::string& subject, const TriangleMesh& mesh) {
-  try {
-    return std::make_shared<const MeshDistance>(mesh);
-  } catch (const std::invalid_argument&) {
-    refuse(subject, "no triangle has an area: expected a surface");
-  }
-}
-
-}  // namespace
 
 MeshObject checked_object(const std::string& name, const TriangleMesh& mesh, std::optional<bool> closed,
                           const MeshSubject& names) {

@@ -188,32 +188,6 @@ void sort_into_bands(int mesh, const SeenMesh& seen, const CameraIntrinsics& cam
   }
 }
 
-}  // namespace
-
-RasterImage depth_raster(const CameraIntrinsics& camera, std::span<const RasterMesh> meshes) {
-  const std::size_t pixels = camera.pixels();
-  RasterImage image{{camera.width, camera.height, {}}, {}, {}};
-  image.depth.z_m.assign(pixels, std::numeric_limits<double>::quiet_NaN());
-  image.mesh.assign(pixels, -1), image.triangle.assign(pixels, -1);
-  const Rays rays(camera);
-  const int band_count = (camera.height + kBandRows - 1) / kBandRows;
-  std::vector<std::vector<VisibleTriangle>> bands(static_cast<std::size_t>(band_count));
-  std::vector<SeenMesh> seen;
-  seen.reserve(meshes.size());
-  for (const RasterMesh& mesh : meshes) {
-    seen.emplace_back(mesh, camera, rays.max_sum);
-    sort_into_bands(static_cast<int>(seen.size()) - 1, seen.back(), camera, bands);
-  }
-#pragma omp parallel for schedule(dynamic)
-  for (int band = 0; band < band_count; ++band)
-    for (const VisibleTriangle& visible : bands[static_cast<std::size_t>(band)])
-      draw(visible, seen[static_cast<std::size_t>(visible.mesh)], rays, band * kBandRows,
-           std::min((band + 1) * kBandRows, camera.height) - 1, image);
-  return image;
-}
-
-namespace {
-
 std::vector<RasterMesh> posed(std::span<const SceneMesh> meshes, const RigidTransform& X_CW, double time_s) {
   std::vector<RasterMesh> seen;
   for (const SceneMesh& mesh : meshes) {
@@ -255,7 +229,42 @@ std::vector<std::uint32_t> colours(const RasterImage& image, std::span<const Sce
   return colour;
 }
 
+constexpr double kReach_m = 1;
+
+// Returns the time from which all bodies rest; 0 if none of them moves.
+double end_of_motion(const std::vector<SceneMesh>& meshes, const PosePath& camera) {
+  double end_s = 0;
+  const auto add = [&end_s](const PosePath& path) {
+    if (path.poses().size() > 1) end_s = std::max(end_s, path.duration_s());
+  };
+  for (const SceneMesh& mesh : meshes) add(mesh.path);
+  add(camera);
+  return end_s;
+}
+
 }  // namespace
+
+RasterImage depth_raster(const CameraIntrinsics& camera, std::span<const RasterMesh> meshes) {
+  const std::size_t pixels = camera.pixels();
+  RasterImage image{{camera.width, camera.height, {}}, {}, {}};
+  image.depth.z_m.assign(pixels, std::numeric_limits<double>::quiet_NaN());
+  image.mesh.assign(pixels, -1), image.triangle.assign(pixels, -1);
+  const Rays rays(camera);
+  const int band_count = (camera.height + kBandRows - 1) / kBandRows;
+  std::vector<std::vector<VisibleTriangle>> bands(static_cast<std::size_t>(band_count));
+  std::vector<SeenMesh> seen;
+  seen.reserve(meshes.size());
+  for (const RasterMesh& mesh : meshes) {
+    seen.emplace_back(mesh, camera, rays.max_sum);
+    sort_into_bands(static_cast<int>(seen.size()) - 1, seen.back(), camera, bands);
+  }
+#pragma omp parallel for schedule(dynamic)
+  for (int band = 0; band < band_count; ++band)
+    for (const VisibleTriangle& visible : bands[static_cast<std::size_t>(band)])
+      draw(visible, seen[static_cast<std::size_t>(visible.mesh)], rays, band * kBandRows,
+           std::min((band + 1) * kBandRows, camera.height) - 1, image);
+  return image;
+}
 
 MeshCamera::MeshCamera(const DepthSensorSettings& settings, std::optional<PosePath> X_WC, const NoiseKey& key,
                        const Kernels& kernels)
@@ -277,23 +286,6 @@ PointCloud MeshCamera::cloud(const SceneView& view, int frame, double time_s) co
   cloud.colour = view.ideal.colour;
   return cloud;
 }
-
-namespace {
-
-constexpr double kReach_m = 1;
-
-// Returns the time from which all bodies rest; 0 if none of them moves.
-double end_of_motion(const std::vector<SceneMesh>& meshes, const PosePath& camera) {
-  double end_s = 0;
-  const auto add = [&end_s](const PosePath& path) {
-    if (path.poses().size() > 1) end_s = std::max(end_s, path.duration_s());
-  };
-  for (const SceneMesh& mesh : meshes) add(mesh.path);
-  add(camera);
-  return end_s;
-}
-
-}  // namespace
 
 Parameters parameters(MeshScene::Settings& s) {
   const Parameters own = {

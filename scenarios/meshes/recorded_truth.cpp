@@ -18,9 +18,10 @@
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
-namespace {
 
 namespace fs = std::filesystem;
+
+namespace {
 
 // Returns the files with one of these endings in the order of sort_by_name(). Hidden files are ignored.
 std::vector<fs::path> files_with(const std::vector<std::string_view>& endings, const fs::path& folder) {
@@ -194,37 +195,6 @@ std::optional<TruthFolder> truth_of_bop(const fs::path& scene) {
   return truth;
 }
 
-}  // namespace
-
-std::optional<TruthFolder> find_truth(const fs::path& recording) {
-  try {
-    const fs::path folder = recording / "truth";
-    if (fs::is_directory(folder)) return truth_in(folder);
-    return fs::exists(recording / "scene_gt.json") ? truth_of_bop(recording) : std::nullopt;
-  } catch (const fs::filesystem_error& error) {  // a folder that may not be entered
-    refuse(error.path1(), "cannot be read: ", error.code().message());
-  }
-}
-
-std::vector<fs::path> mask_files(const TruthFolder& truth) {
-  if (truth.masks.empty()) return {};
-  return files_with({".png"}, truth.masks);
-}
-
-std::vector<fs::path> files_of(const TruthFolder& truth) {
-  std::vector<fs::path> files;
-  const auto add = [&files](const fs::path& file) {
-    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
-  };
-  add(truth.description);
-  for (const TruthObjectFiles& object : truth.objects) add(object.mesh), add(object.poses);
-  const std::vector<fs::path> masks = mask_files(truth);
-  files.insert(files.end(), masks.begin(), masks.end());
-  return files;
-}
-
-namespace {
-
 constexpr std::size_t kMaxCached = 8;  // the number that RecordedScene keeps frames
 
 // Returns the masks of each frame.
@@ -254,51 +224,6 @@ std::vector<std::vector<fs::path>> masks_of_frames(const TruthFolder& truth,
   }
   return of_frames;
 }
-
-}  // namespace
-
-TruthMasks::TruthMasks(const TruthFolder& truth, const std::vector<std::string>& frames,
-                       const CameraIntrinsics& camera)
-    : camera_(camera) {
-  if (truth.masks.empty()) return;
-  if (camera.pixels() == 0) refuse(truth.masks, "the frames are not images: expected no masks");
-  files_ = masks_of_frames(truth, frames);
-}
-
-bool TruthMasks::holds_at(std::size_t frame, const Vec3& p_C) const {
-  if (files_.empty()) return true;
-  const std::optional<std::size_t> pixel = pixel_of(camera_, p_C);
-  return pixel && !files_[frame].empty() && mask_of(frame)[*pixel];
-}
-
-const std::vector<bool>& TruthMasks::mask_of(std::size_t frame) const {
-  const auto found =
-      std::find_if(cache_.begin(), cache_.end(), [&](const Mask& mask) { return mask.frame == frame; });
-  if (found != cache_.end()) {
-    std::rotate(cache_.begin(), found, found + 1);
-  } else {
-    std::vector<bool> mask = read(frame);
-    if (cache_.size() == kMaxCached) cache_.pop_back();
-    cache_.insert(cache_.begin(), {frame, std::move(mask)});
-  }
-  return cache_.front().holds;
-}
-
-std::vector<bool> TruthMasks::read(std::size_t frame) const {
-  std::vector<bool> holds(camera_.pixels(), false);
-  for (const fs::path& file : files_[frame]) {
-    int width = 0, height = 0;
-    const std::vector<std::uint32_t> colours = read_colour_png(file, width, height);
-    if (width != camera_.width || height != camera_.height)
-      refuse(file, "has ", width, " x ", height, " pixels: expected ", size_text(camera_),
-             ", as the camera has");
-    for (std::size_t i = 0; i < colours.size(); ++i)
-      if (colours[i] != kNoColour && (colours[i] & 0xFFFFFF) != 0) holds[i] = true;
-  }
-  return holds;
-}
-
-namespace {
 
 using Poses = std::vector<std::optional<RigidTransform>>;
 
@@ -341,6 +266,74 @@ Poses poses_of(const TruthFolder& folder, const std::vector<std::string>& frames
 }
 
 }  // namespace
+
+std::optional<TruthFolder> find_truth(const fs::path& recording) {
+  try {
+    const fs::path folder = recording / "truth";
+    if (fs::is_directory(folder)) return truth_in(folder);
+    return fs::exists(recording / "scene_gt.json") ? truth_of_bop(recording) : std::nullopt;
+  } catch (const fs::filesystem_error& error) {  // a folder that may not be entered
+    refuse(error.path1(), "cannot be read: ", error.code().message());
+  }
+}
+
+std::vector<fs::path> mask_files(const TruthFolder& truth) {
+  if (truth.masks.empty()) return {};
+  return files_with({".png"}, truth.masks);
+}
+
+std::vector<fs::path> files_of(const TruthFolder& truth) {
+  std::vector<fs::path> files;
+  const auto add = [&files](const fs::path& file) {
+    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  };
+  add(truth.description);
+  for (const TruthObjectFiles& object : truth.objects) add(object.mesh), add(object.poses);
+  const std::vector<fs::path> masks = mask_files(truth);
+  files.insert(files.end(), masks.begin(), masks.end());
+  return files;
+}
+
+TruthMasks::TruthMasks(const TruthFolder& truth, const std::vector<std::string>& frames,
+                       const CameraIntrinsics& camera)
+    : camera_(camera) {
+  if (truth.masks.empty()) return;
+  if (camera.pixels() == 0) refuse(truth.masks, "the frames are not images: expected no masks");
+  files_ = masks_of_frames(truth, frames);
+}
+
+bool TruthMasks::holds_at(std::size_t frame, const Vec3& p_C) const {
+  if (files_.empty()) return true;
+  const std::optional<std::size_t> pixel = pixel_of(camera_, p_C);
+  return pixel && !files_[frame].empty() && mask_of(frame)[*pixel];
+}
+
+const std::vector<bool>& TruthMasks::mask_of(std::size_t frame) const {
+  const auto found =
+      std::find_if(cache_.begin(), cache_.end(), [&](const Mask& mask) { return mask.frame == frame; });
+  if (found != cache_.end()) {
+    std::rotate(cache_.begin(), found, found + 1);
+  } else {
+    std::vector<bool> mask = read(frame);
+    if (cache_.size() == kMaxCached) cache_.pop_back();
+    cache_.insert(cache_.begin(), {frame, std::move(mask)});
+  }
+  return cache_.front().holds;
+}
+
+std::vector<bool> TruthMasks::read(std::size_t frame) const {
+  std::vector<bool> holds(camera_.pixels(), false);
+  for (const fs::path& file : files_[frame]) {
+    int width = 0, height = 0;
+    const std::vector<std::uint32_t> colours = read_colour_png(file, width, height);
+    if (width != camera_.width || height != camera_.height)
+      refuse(file, "has ", width, " x ", height, " pixels: expected ", size_text(camera_),
+             ", as the camera has");
+    for (std::size_t i = 0; i < colours.size(); ++i)
+      if (colours[i] != kNoColour && (colours[i] & 0xFFFFFF) != 0) holds[i] = true;
+  }
+  return holds;
+}
 
 RecordedTruth::RecordedTruth(const TruthFolder& folder, const std::vector<std::string>& frames,
                              double reach_m, const MeshReader& read_mesh, const CameraIntrinsics& camera)

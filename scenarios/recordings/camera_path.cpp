@@ -66,80 +66,6 @@ PoseFile poses_of(const std::filesystem::path& file, const RecordingIndex& recor
   return poses;
 }
 
-}  // namespace
-
-CameraPath::CameraPath(const RigidTransform& X_WB, const std::string& poses, PoseDirection direction,
-                       const RecordingIndex& recording, const std::filesystem::path& folder)
-    : X_WB_(X_WB), direction_(direction) {
-  if (poses.empty()) return;
-  // A path that ends in a slash has no file name, so that messages would not name the folder ".".
-  poses_ = poses_of((folder / poses / "").lexically_normal().parent_path(), recording);
-  for (const RecordedFrame& frame : recording.frames) time_s_.push_back(frame.captured_s);
-}
-
-std::optional<RigidTransform> CameraPath::pose_if(const OtherMeaning* meaning, std::size_t source) const {
-  const std::optional<RigidTransform>& X = poses_.poses[source];
-  if (!X) return {};
-  const RigidTransform meant = meaning ? meaning->of(*X) : *X;
-  return direction_ == PoseDirection::camera_to_world ? meant : meant.inverse();
-}
-
-RigidTransform CameraPath::pose(std::size_t source) const {
-  if (!moves()) return X_WB_;
-  const std::optional<RigidTransform> X_BC = pose_if(nullptr, source);
-  if (!X_BC)
-    refuse(poses_.file, "has no pose for frame ", source, ": expected one for every frame that is used");
-  const RigidTransform X_WC = X_WB_ * *X_BC;
-  if (!is_near_origin(X_WC.translation()))
-    refuse(poses_.file, far_from_origin("frame " + std::to_string(source) + " has its camera"));
-  return X_WC;
-}
-
-std::vector<StampedPose> CameraPath::stamped() const {
-  std::vector<StampedPose> poses;
-  for (std::size_t i = 0; i < poses_.poses.size(); ++i)
-    if (const auto X_BC = pose_if(nullptr, i)) poses.push_back({time_s_[i], *X_BC});
-  return poses;
-}
-
-std::string CameraPath::text() const {
-  const std::vector<StampedPose> poses = stamped();
-  if (poses.empty()) return {};
-  return "camera_poses: " + poses_.file.filename().string() + ", " + motion_text(poses);
-}
-
-std::vector<Note> CameraPath::notes() const {
-  std::vector<Note> notes = poses_.notes;
-  const std::vector<StampedPose> poses = stamped();
-  if (poses.empty()) return notes;
-  for (Note& note : unusual_poses(poses_.file.filename().string(), poses, false))
-    notes.push_back(std::move(note));
-  return notes;
-}
-
-std::vector<std::filesystem::path> pose_files(const std::filesystem::path& folder,
-                                              const RecordingIndex& recording) {
-  const auto frame_of = frames_by_numbers(folder, frame_names(recording));
-  std::vector<std::filesystem::path> files(recording.frames.size());
-  bool any = false;
-  for (const std::filesystem::path& file : files_in_order(folder, ".txt")) {
-    const auto frame = frame_of.find(numbers_in_name(file.stem().string()));
-    if (frame == frame_of.end()) continue;
-    if (!files[frame->second].empty())
-      refuse(file, "frame ", frame->second, " has another file, ", files[frame->second].string(),
-             ": expected one");
-    files[frame->second] = file, any = true;
-  }
-  if (!any)
-    refuse(folder,
-           "has no .txt file with the numbers of a depth image in its name: expected one pose for each, "
-           "such as that of ",
-           frame_names(recording).front());
-  return files;
-}
-
-namespace {
-
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t kComparedPixels = 2000;
 
@@ -248,6 +174,76 @@ std::vector<double> gaps_of(const std::vector<Vec3>& points, const RigidTransfor
 }
 
 }  // namespace
+
+CameraPath::CameraPath(const RigidTransform& X_WB, const std::string& poses, PoseDirection direction,
+                       const RecordingIndex& recording, const std::filesystem::path& folder)
+    : X_WB_(X_WB), direction_(direction) {
+  if (poses.empty()) return;
+  // A path that ends in a slash has no file name, so that messages would not name the folder ".".
+  poses_ = poses_of((folder / poses / "").lexically_normal().parent_path(), recording);
+  for (const RecordedFrame& frame : recording.frames) time_s_.push_back(frame.captured_s);
+}
+
+std::optional<RigidTransform> CameraPath::pose_if(const OtherMeaning* meaning, std::size_t source) const {
+  const std::optional<RigidTransform>& X = poses_.poses[source];
+  if (!X) return {};
+  const RigidTransform meant = meaning ? meaning->of(*X) : *X;
+  return direction_ == PoseDirection::camera_to_world ? meant : meant.inverse();
+}
+
+RigidTransform CameraPath::pose(std::size_t source) const {
+  if (!moves()) return X_WB_;
+  const std::optional<RigidTransform> X_BC = pose_if(nullptr, source);
+  if (!X_BC)
+    refuse(poses_.file, "has no pose for frame ", source, ": expected one for every frame that is used");
+  const RigidTransform X_WC = X_WB_ * *X_BC;
+  if (!is_near_origin(X_WC.translation()))
+    refuse(poses_.file, far_from_origin("frame " + std::to_string(source) + " has its camera"));
+  return X_WC;
+}
+
+std::vector<StampedPose> CameraPath::stamped() const {
+  std::vector<StampedPose> poses;
+  for (std::size_t i = 0; i < poses_.poses.size(); ++i)
+    if (const auto X_BC = pose_if(nullptr, i)) poses.push_back({time_s_[i], *X_BC});
+  return poses;
+}
+
+std::string CameraPath::text() const {
+  const std::vector<StampedPose> poses = stamped();
+  if (poses.empty()) return {};
+  return "camera_poses: " + poses_.file.filename().string() + ", " + motion_text(poses);
+}
+
+std::vector<Note> CameraPath::notes() const {
+  std::vector<Note> notes = poses_.notes;
+  const std::vector<StampedPose> poses = stamped();
+  if (poses.empty()) return notes;
+  for (Note& note : unusual_poses(poses_.file.filename().string(), poses, false))
+    notes.push_back(std::move(note));
+  return notes;
+}
+
+std::vector<std::filesystem::path> pose_files(const std::filesystem::path& folder,
+                                              const RecordingIndex& recording) {
+  const auto frame_of = frames_by_numbers(folder, frame_names(recording));
+  std::vector<std::filesystem::path> files(recording.frames.size());
+  bool any = false;
+  for (const std::filesystem::path& file : files_in_order(folder, ".txt")) {
+    const auto frame = frame_of.find(numbers_in_name(file.stem().string()));
+    if (frame == frame_of.end()) continue;
+    if (!files[frame->second].empty())
+      refuse(file, "frame ", frame->second, " has another file, ", files[frame->second].string(),
+             ": expected one");
+    files[frame->second] = file, any = true;
+  }
+  if (!any)
+    refuse(folder,
+           "has no .txt file with the numbers of a depth image in its name: expected one pose for each, "
+           "such as that of ",
+           frame_names(recording).front());
+  return files;
+}
 
 void PoseFit::set_anchor(std::size_t frame, const PointCloud& cloud, const RigidTransform& X_CW) {
   anchor_ = {frame, cloud.image->camera, {}};

@@ -52,44 +52,6 @@ std::vector<fs::path> paired_by_numbers(const std::vector<fs::path>& depth,
   return images;
 }
 
-}  // namespace
-
-std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& extension) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (!has_ending(entry.path(), extension) || is_hidden(entry.path())) continue;
-    require_target(entry.path());
-    files.push_back(entry.path());
-  }
-  sort_by_name(files);
-  return files;
-}
-
-std::vector<fs::path> colour_images(const std::vector<fs::path>& depth, const fs::path& folder) {
-  std::vector<fs::path> images(depth.size());
-  require_target(folder);
-  if (!fs::is_directory(folder)) return images;
-  const std::vector<fs::path> colours = files_in_order(folder, ".png");
-  if (colours.empty() && !fs::is_empty(folder))
-    refuse(folder.string(), "holds no .png file: expected the colour images of ", depth.front().string(),
-           " and the others");
-  if (colours.empty()) return images;
-  std::map<std::string, fs::path> of_stem;
-  for (const fs::path& colour : colours) of_stem.emplace(colour.stem().string(), colour);
-  bool any = false;
-  for (std::size_t j = 0; j < depth.size(); ++j) {
-    const fs::path same = folder / depth[j].filename();  // a folder may hold both 1.png and 1.PNG
-    const auto found = of_stem.find(depth[j].stem().string());
-    if (found == of_stem.end()) continue;
-    images[j] = fs::exists(same) ? same : found->second, any = true;
-  }
-  return any ? images : paired_by_numbers(depth, colours);
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-
 Json parse_camera_file(const fs::path& file) {
   static const Json kKeys = {
       "width",      "height", "fx", "fy", "cx", "cy", "depth_scale_m", "frame_rate_hz", "colour_registered",
@@ -124,36 +86,6 @@ double frame_rate(const fs::path& file, const Json& json) {
   refuse(file, "frame_rate_hz = ", shown(json["frame_rate_hz"]), ": expected above 0 to 10000");
 }
 
-}  // namespace
-
-ImageCamera read_camera_file(const fs::path& file) {
-  const Json json = parse_camera_file(file);
-  ImageCamera result;
-  result.source = file.filename().string();
-  CameraIntrinsics& camera = result.camera;
-  camera.width = pixel_count(file, json, "width"), camera.height = pixel_count(file, json, "height");
-  camera.fx = number(file, json, "fx", true), camera.fy = number(file, json, "fy", true);
-  camera.cx = number(file, json, "cx", false), camera.cy = number(file, json, "cy", false);
-  result.metres_per_unit = number(file, json, "depth_scale_m", true);
-  if (json.contains("frame_rate_hz")) result.frame_rate_hz = frame_rate(file, json);
-  if (const auto found = json.find("colour_registered"); found != json.end()) {
-    if (!found->is_boolean()) refuse(file, "colour_registered = ", shown(*found), ": expected true, false");
-    result.colour_registered = found->get<bool>();
-  }
-  if (const auto found = json.find("depth_along"); found != json.end()) {
-    if (*found != "axis" && *found != "ray")
-      refuse(file, "depth_along = ", shown(*found), ": expected \"axis\", \"ray\"");
-    result.depth_along_ray = *found == "ray";
-  }
-  return result;
-}
-
-double read_frame_rate(const fs::path& file) {
-  return frame_rate(file, parse_camera_file(file));
-}
-
-namespace {
-
 constexpr double kMaxStamp_s = 1e12;  // some 30000 years; differences of stamps are then exact to 0.1 ms
 
 // Returns seconds since an arbitrary origin. Throws InputError about `where`, the list with ":line", unless
@@ -165,52 +97,6 @@ double read_stamp(const std::string& where, const std::string& stamp) {
     return stamp_s;
   refuse(where, "timestamp '", stamp.substr(0, 32), "': expected a number of seconds");
 }
-
-}  // namespace
-
-std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
-  const std::string text = read_input_text(list, "expected lines 'timestamp filename'");
-  std::vector<StampedFile> files;
-  for_each_line(without_byte_order_mark(text), [&](std::size_t number, std::string_view line) {
-    if (line.ends_with('\r')) line.remove_suffix(1);  // files of other systems
-    const std::vector<std::string_view> words = words_of_line(line);
-    if (words.empty() || words[0].front() == '#') return;
-    const std::string where = list.string() + ":" + std::to_string(number), stamp(words[0]);
-    const double stamp_s = read_stamp(where, stamp);
-    if (words.size() != 2)
-      refuse(where, "'", line.substr(0, 64), "': expected one timestamp and one file name");
-    if (!files.empty() && stamp_s <= files.back().stamp_s)
-      refuse(where, "timestamp ", stamp, ": expected above that of the line before");
-    files.push_back({stamp_s, list.parent_path() / words[1]});
-    const std::filesystem::path& file = files.back().file;
-    if (!std::filesystem::is_regular_file(file)) refuse(where, "no file ", file.string());
-  });
-  if (files.empty()) refuse(list.string(), "lists no file: expected lines 'timestamp filename'");
-  return files;
-}
-
-std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
-                                            const std::vector<StampedFile>& colour) {
-  constexpr double kMaxApart_s = 0.02;  // the tolerance of the benchmark's own association
-  std::vector<RecordedFrame> frames;
-  auto first = colour.begin();
-  for (const StampedFile& image : depth) {
-    RecordedFrame frame{image.stamp_s - depth.front().stamp_s, image.file, {}};
-    double nearest_s = kMaxApart_s;
-    // The stamps increase, so a colour image that is too early for this depth image is too early for all
-    // later ones.
-    while (first != colour.end() && image.stamp_s - first->stamp_s > kMaxApart_s) ++first;
-    for (auto other = first; other != colour.end() && other->stamp_s - image.stamp_s <= kMaxApart_s;
-         ++other) {
-      const double off_s = std::abs(other->stamp_s - image.stamp_s);
-      if (off_s <= nearest_s) nearest_s = off_s, frame.colour = other->file;
-    }
-    frames.push_back(frame);
-  }
-  return frames;
-}
-
-namespace {
 
 constexpr double kMillimetre_m = 1e-3;
 
@@ -363,6 +249,106 @@ RecordingIndex index_images(const std::vector<fs::path>& depth, const ImageCamer
 }
 
 }  // namespace
+
+std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& extension) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!has_ending(entry.path(), extension) || is_hidden(entry.path())) continue;
+    require_target(entry.path());
+    files.push_back(entry.path());
+  }
+  sort_by_name(files);
+  return files;
+}
+
+std::vector<fs::path> colour_images(const std::vector<fs::path>& depth, const fs::path& folder) {
+  std::vector<fs::path> images(depth.size());
+  require_target(folder);
+  if (!fs::is_directory(folder)) return images;
+  const std::vector<fs::path> colours = files_in_order(folder, ".png");
+  if (colours.empty() && !fs::is_empty(folder))
+    refuse(folder.string(), "holds no .png file: expected the colour images of ", depth.front().string(),
+           " and the others");
+  if (colours.empty()) return images;
+  std::map<std::string, fs::path> of_stem;
+  for (const fs::path& colour : colours) of_stem.emplace(colour.stem().string(), colour);
+  bool any = false;
+  for (std::size_t j = 0; j < depth.size(); ++j) {
+    const fs::path same = folder / depth[j].filename();  // a folder may hold both 1.png and 1.PNG
+    const auto found = of_stem.find(depth[j].stem().string());
+    if (found == of_stem.end()) continue;
+    images[j] = fs::exists(same) ? same : found->second, any = true;
+  }
+  return any ? images : paired_by_numbers(depth, colours);
+}
+
+ImageCamera read_camera_file(const fs::path& file) {
+  const Json json = parse_camera_file(file);
+  ImageCamera result;
+  result.source = file.filename().string();
+  CameraIntrinsics& camera = result.camera;
+  camera.width = pixel_count(file, json, "width"), camera.height = pixel_count(file, json, "height");
+  camera.fx = number(file, json, "fx", true), camera.fy = number(file, json, "fy", true);
+  camera.cx = number(file, json, "cx", false), camera.cy = number(file, json, "cy", false);
+  result.metres_per_unit = number(file, json, "depth_scale_m", true);
+  if (json.contains("frame_rate_hz")) result.frame_rate_hz = frame_rate(file, json);
+  if (const auto found = json.find("colour_registered"); found != json.end()) {
+    if (!found->is_boolean()) refuse(file, "colour_registered = ", shown(*found), ": expected true, false");
+    result.colour_registered = found->get<bool>();
+  }
+  if (const auto found = json.find("depth_along"); found != json.end()) {
+    if (*found != "axis" && *found != "ray")
+      refuse(file, "depth_along = ", shown(*found), ": expected \"axis\", \"ray\"");
+    result.depth_along_ray = *found == "ray";
+  }
+  return result;
+}
+
+double read_frame_rate(const fs::path& file) {
+  return frame_rate(file, parse_camera_file(file));
+}
+
+std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list) {
+  const std::string text = read_input_text(list, "expected lines 'timestamp filename'");
+  std::vector<StampedFile> files;
+  for_each_line(without_byte_order_mark(text), [&](std::size_t number, std::string_view line) {
+    if (line.ends_with('\r')) line.remove_suffix(1);  // files of other systems
+    const std::vector<std::string_view> words = words_of_line(line);
+    if (words.empty() || words[0].front() == '#') return;
+    const std::string where = list.string() + ":" + std::to_string(number), stamp(words[0]);
+    const double stamp_s = read_stamp(where, stamp);
+    if (words.size() != 2)
+      refuse(where, "'", line.substr(0, 64), "': expected one timestamp and one file name");
+    if (!files.empty() && stamp_s <= files.back().stamp_s)
+      refuse(where, "timestamp ", stamp, ": expected above that of the line before");
+    files.push_back({stamp_s, list.parent_path() / words[1]});
+    const std::filesystem::path& file = files.back().file;
+    if (!std::filesystem::is_regular_file(file)) refuse(where, "no file ", file.string());
+  });
+  if (files.empty()) refuse(list.string(), "lists no file: expected lines 'timestamp filename'");
+  return files;
+}
+
+std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
+                                            const std::vector<StampedFile>& colour) {
+  constexpr double kMaxApart_s = 0.02;  // the tolerance of the benchmark's own association
+  std::vector<RecordedFrame> frames;
+  auto first = colour.begin();
+  for (const StampedFile& image : depth) {
+    RecordedFrame frame{image.stamp_s - depth.front().stamp_s, image.file, {}};
+    double nearest_s = kMaxApart_s;
+    // The stamps increase, so a colour image that is too early for this depth image is too early for all
+    // later ones.
+    while (first != colour.end() && image.stamp_s - first->stamp_s > kMaxApart_s) ++first;
+    for (auto other = first; other != colour.end() && other->stamp_s - image.stamp_s <= kMaxApart_s;
+         ++other) {
+      const double off_s = std::abs(other->stamp_s - image.stamp_s);
+      if (off_s <= nearest_s) nearest_s = off_s, frame.colour = other->file;
+    }
+    frames.push_back(frame);
+  }
+  return frames;
+}
 
 double mean_rate_hz(const std::string& file, std::size_t frames, double last_s) {
   if (frames < 2) return kNominalRate_hz;

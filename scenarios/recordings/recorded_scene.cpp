@@ -41,6 +41,17 @@ Patch patch_around(const PointCloud& cloud, const RigidTransform& X_CW, int u, i
   return patch;
 }
 
+// Returns the pose of the camera in the base frame: the transform of tf_static is applied first, then the
+// registration. If no frame_id is chosen, the former is the identity and the registration keeps its bits.
+RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingIndex& recording) {
+  const RigidTransform X_registered =
+      Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
+  if (!recording.bag || recording.bag->pose().matrix().isIdentity(0)) return X_registered;
+  const RigidTransform X_WC = X_registered * recording.bag->pose();
+  if (!is_near_origin(X_WC.translation())) refuse(s.path, far_from_origin("tf_static has its sensor"));
+  return X_WC;
+}
+
 }  // namespace
 
 double distance_to_measured(const PointCloud& cloud, const Vec3& p_W, double radius_m) {
@@ -57,21 +68,6 @@ double distance_to_measured(const PointCloud& cloud, const Vec3& p_W, double rad
                    static_cast<int>(*pixel) / camera.width, static_cast<int>(half), 4 * radius_m);
   return patch.usable ? (p_W - patch.mean).dot(patch.normal) : unknown;
 }
-
-namespace {
-
-// Returns the pose of the camera in the base frame: the transform of tf_static is applied first, then the
-// registration. If no frame_id is chosen, the former is the identity and the registration keeps its bits.
-RigidTransform camera_pose(const RecordedScene::Settings& s, const RecordingIndex& recording) {
-  const RigidTransform X_registered =
-      Eigen::Translation3d(s.camera_position_m) * rotation(kRadiansPerDegree * s.camera_rotation_deg);
-  if (!recording.bag || recording.bag->pose().matrix().isIdentity(0)) return X_registered;
-  const RigidTransform X_WC = X_registered * recording.bag->pose();
-  if (!is_near_origin(X_WC.translation())) refuse(s.path, far_from_origin("tf_static has its sensor"));
-  return X_WC;
-}
-
-}  // namespace
 
 Parameters parameters(RecordedScene::Settings& s) {
   return {

@@ -59,39 +59,6 @@ std::vector<InputFile> bag_files(const fs::path& bag) {
   return list;
 }
 
-}  // namespace
-
-void set_data_folder(const std::string& folder) {
-  data_folder = folder;
-}
-
-std::string input_places() {
-  return "here or below REMOTE_TOUCH_DATA" + (data_folder.empty() ? " (not set)" : " = " + data_folder);
-}
-
-std::string find_input(const std::string& path) {
-  const fs::path below = fs::path(data_folder) / path;
-  const bool may_be_below = !data_folder.empty() && fs::path(path).is_relative();
-  for (const fs::path& found : {fs::path(path), may_be_below ? below : fs::path()}) {
-    std::error_code unreachable;
-    if (found.empty() || !fs::exists(found, unreachable)) continue;
-    require_file_or_folder(found);
-    return found.string();
-  }
-  throw MissingInput(path, "no such recording, image or mesh: expected a folder or file " + input_places());
-}
-
-FrameRange frames_of(const InputPart& part, const RecordingIndex& recording) {
-  const int available = static_cast<int>(recording.frames.size());
-  const int last = part.last_frame < 0 ? available - 1 : part.last_frame;
-  if (part.first_frame >= available || last >= available)
-    refuse(part.path, "first_frame = ", part.first_frame, ", last_frame = ", part.last_frame,
-           ": expected 0 to ", available - 1);
-  return {part.first_frame, last};
-}
-
-namespace {
-
 std::vector<InputFile> listed_files(const InputPart& part) {
   const fs::path found = find_input(part.path);
   if (is_single_file(found)) return {{found.filename().generic_string(), found}};
@@ -123,16 +90,6 @@ std::vector<InputFile> listed_files(const InputPart& part) {
   for (const auto& [name, file] : files) list.push_back({name, file});
   return list;
 }
-
-}  // namespace
-
-std::vector<InputFile> files_of(const InputPart& part) {
-  std::vector<InputFile> files = listed_files(part);
-  for (const InputFile& input : files) require_file(input.file), require_readable_size(input.file);
-  return files;
-}
-
-namespace {
 
 int rows_of(const PointCloud& cloud) {
   return cloud.columns() == 0 ? 0 : static_cast<int>(cloud.size()) / cloud.columns();
@@ -180,38 +137,6 @@ void conform_to_camera(const CameraIntrinsics& camera, const std::string& subjec
   if (!cloud.image)
     cloud.image = ImageLayout{camera, RigidTransform::Identity(), residual + kPixelRounding_px};
 }
-
-}  // namespace
-
-FrameLayout layout_of(const PointCloud& cloud) {
-  FrameLayout layout{cloud.columns() > 0, {}};
-  if (cloud.image) layout.camera = cloud.image->camera;
-  return layout;
-}
-
-void conform(const FrameLayout& layout, const std::string& subject, PointCloud& cloud) {
-  if (cloud.size() > 0 && layout.is_organised != (cloud.columns() > 0))
-    refuse(subject, layout.is_organised
-                        ? "has points in no order: expected an organised cloud, as the first frame "
-                          "that is used is"
-                        : "is an organised cloud: expected points in no order, as the first frame "
-                          "that is used has");
-  if (layout.camera)
-    conform_to_camera(*layout.camera, subject, cloud);
-  else
-    cloud.image.reset();
-}
-
-void drop_beyond(double max_depth_m, PointCloud& cloud) {
-  for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
-    if (!(cloud.z[i] > max_depth_m)) continue;
-    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
-  }
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 
 RecordingIndex index_of_clouds(RecordingIndex::Kind kind) {
   RecordingIndex index;
@@ -280,6 +205,68 @@ void check_size(const fs::path& file, int width, int height, const CameraIntrins
 }
 
 }  // namespace
+
+void set_data_folder(const std::string& folder) {
+  data_folder = folder;
+}
+
+std::string input_places() {
+  return "here or below REMOTE_TOUCH_DATA" + (data_folder.empty() ? " (not set)" : " = " + data_folder);
+}
+
+std::string find_input(const std::string& path) {
+  const fs::path below = fs::path(data_folder) / path;
+  const bool may_be_below = !data_folder.empty() && fs::path(path).is_relative();
+  for (const fs::path& found : {fs::path(path), may_be_below ? below : fs::path()}) {
+    std::error_code unreachable;
+    if (found.empty() || !fs::exists(found, unreachable)) continue;
+    require_file_or_folder(found);
+    return found.string();
+  }
+  throw MissingInput(path,
+                         "no such recording, image or mesh: expected a folder or file " + input_places());
+}
+
+FrameRange frames_of(const InputPart& part, const RecordingIndex& recording) {
+  const int available = static_cast<int>(recording.frames.size());
+  const int last = part.last_frame < 0 ? available - 1 : part.last_frame;
+  if (part.first_frame >= available || last >= available)
+    refuse(part.path, "first_frame = ", part.first_frame, ", last_frame = ", part.last_frame,
+           ": expected 0 to ", available - 1);
+  return {part.first_frame, last};
+}
+
+std::vector<InputFile> files_of(const InputPart& part) {
+  std::vector<InputFile> files = listed_files(part);
+  for (const InputFile& input : files) require_file(input.file), require_readable_size(input.file);
+  return files;
+}
+
+FrameLayout layout_of(const PointCloud& cloud) {
+  FrameLayout layout{cloud.columns() > 0, {}};
+  if (cloud.image) layout.camera = cloud.image->camera;
+  return layout;
+}
+
+void conform(const FrameLayout& layout, const std::string& subject, PointCloud& cloud) {
+  if (cloud.size() > 0 && layout.is_organised != (cloud.columns() > 0))
+    refuse(subject, layout.is_organised
+                        ? "has points in no order: expected an organised cloud, as the first frame "
+                          "that is used is"
+                        : "is an organised cloud: expected points in no order, as the first frame "
+                          "that is used has");
+  if (layout.camera)
+    conform_to_camera(*layout.camera, subject, cloud);
+  else
+    cloud.image.reset();
+}
+
+void drop_beyond(double max_depth_m, PointCloud& cloud) {
+  for (std::size_t i = 0; cloud.image && i < cloud.size(); ++i) {
+    if (!(cloud.z[i] > max_depth_m)) continue;
+    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
 
 RecordingIndex index_recording(const fs::path& path, const BagChoice& choice) {
   try {

@@ -17,6 +17,27 @@ double swing(double turns) {
   return turns <= 0 ? 0 : sin_cos(360 * kRadiansPerDegree * (turns - std::floor(turns))).first;
 }
 
+// Returns the height at which a vertical line through (x, z) meets the surface. The height above the surface
+// increases all along the line, because the surface is nowhere vertical, so bisection finds it.
+double height_over(double x, double z, const Shape& shape, const ShapePose& pose) {
+  if (pose.sine == 0) return pose.y_m + shape.height(x - pose.x_m, z);
+  const auto is_above = [&](double y) {
+    const Vec3 p_S = pose.to_S({x, y, z});
+    return p_S.y() > shape.height(p_S.x(), p_S.z());
+  };
+  double reach = 0.001;
+  while (reach < 1e6 && (!is_above(pose.y_m + reach) || is_above(pose.y_m - reach))) reach *= 2;
+  double low = pose.y_m - reach, high = pose.y_m + reach;
+  for (double middle = pose.y_m; middle > low && middle < high; middle = 0.5 * (low + high))
+    (is_above(middle) ? high : low) = middle;
+  return high;
+}
+
+// Returns the first frame at or after that time, or -1 (no frame) if the time is negative.
+int first_frame_from(double time_s, double frame_rate_hz) {
+  return time_s < 0 ? -1 : static_cast<int>(std::ceil((time_s - kSameTime_s) * frame_rate_hz));
+}
+
 }  // namespace
 
 Parameters parameters(ShapeMotion::Settings& s) {
@@ -72,31 +93,6 @@ bool ShapeMotion::ever_rests() const {
 bool ShapeMotion::moves_vertically_only() const {
   return settings_.tilt_deg == 0 && settings_.rock_deg == 0 && settings_.slide_velocity_m_per_s == 0;
 }
-
-namespace {
-
-// Returns the height at which a vertical line through (x, z) meets the surface. The height above the surface
-// increases all along the line, because the surface is nowhere vertical, so bisection finds it.
-double height_over(double x, double z, const Shape& shape, const ShapePose& pose) {
-  if (pose.sine == 0) return pose.y_m + shape.height(x - pose.x_m, z);
-  const auto is_above = [&](double y) {
-    const Vec3 p_S = pose.to_S({x, y, z});
-    return p_S.y() > shape.height(p_S.x(), p_S.z());
-  };
-  double reach = 0.001;
-  while (reach < 1e6 && (!is_above(pose.y_m + reach) || is_above(pose.y_m - reach))) reach *= 2;
-  double low = pose.y_m - reach, high = pose.y_m + reach;
-  for (double middle = pose.y_m; middle > low && middle < high; middle = 0.5 * (low + high))
-    (is_above(middle) ? high : low) = middle;
-  return high;
-}
-
-// Returns the first frame at or after that time, or -1 (no frame) if the time is negative.
-int first_frame_from(double time_s, double frame_rate_hz) {
-  return time_s < 0 ? -1 : static_cast<int>(std::ceil((time_s - kSameTime_s) * frame_rate_hz));
-}
-
-}  // namespace
 
 Parameters parameters(MovingShape::Settings& s) {
   Parameters list = parameters(s.grid);

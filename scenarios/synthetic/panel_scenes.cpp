@@ -42,6 +42,11 @@ bool faces_the_inside(std::span<const FlatPanel> panels, const Vec3& p, const Ve
   return rest.norm() <= kSamePlace_m;
 }
 
+// Columns of Settings::plates.
+struct PlateColumn {
+  enum { x, y, z, size_x, size_z, velocity_x, velocity_y, from_s, until_s };
+};
+
 }  // namespace
 
 Vec3 FlatPanel::nearest(const Vec3& p) const {
@@ -218,15 +223,6 @@ std::vector<FlatPanel> Wedge::panels(double time_s) const {
   }
   return walls;
 }
-
-namespace {
-
-// Columns of Settings::plates.
-struct PlateColumn {
-  enum { x, y, z, size_x, size_z, velocity_x, velocity_y, from_s, until_s };
-};
-
-}  // namespace
 
 Parameters parameters(Plates::Settings& s) {
   const Parameters more = {

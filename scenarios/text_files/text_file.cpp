@@ -41,6 +41,71 @@ class OpenFile {
   int file_;
 };
 
+// Checks every value and key while the text is parsed.
+class Watch {
+ public:
+  explicit Watch(const std::string& label) : label_(label) {}
+
+  void see(int depth, Json::parse_event_t event, const Json& parsed) {
+    if (depth > kMaxJsonDepth) refuse(label_, "nested too deep: expected at most ", kMaxJsonDepth, " levels");
+    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys_.pop_back();
+    if (event == Json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
+      refuse(label_, "the key ", shown(parsed), " appears twice in one object: expected each key once");
+  }
+
+ private:
+  const std::string& label_;
+  std::vector<std::set<std::string>> keys_;  // keys so far of each open object
+};
+
+// Throws Json::exception if the text is not JSON. The library takes the byte 0 as the end of the text, so the
+// callers refuse it.
+Json parse_watched(const std::string& text, const std::string& label) {
+  Watch watch(label);
+  return Json::parse(text, [&](int depth, Json::parse_event_t event, Json& parsed) {
+    watch.see(depth, event, parsed);
+    return true;
+  });
+}
+
+struct NamedUnit {
+  ColumnQuantity::Unit of;
+  std::string_view name;
+  double in_si;
+};
+constexpr NamedUnit kUnits[] = {
+    {ColumnQuantity::Unit::time, "s", 1},     {ColumnQuantity::Unit::time, "ms", 1e-3},
+    {ColumnQuantity::Unit::time, "us", 1e-6}, {ColumnQuantity::Unit::time, "ns", 1e-9},
+    {ColumnQuantity::Unit::length, "m", 1},   {ColumnQuantity::Unit::length, "mm", 1e-3},
+    {ColumnQuantity::Unit::force, "n", 1},
+};
+
+constexpr NamedUnit kNoUnit = {ColumnQuantity::Unit::none, "", 1};
+
+// Returns the unit in which a column of this name, in small letters, has the quantity. Returns null if the
+// name is that of something else.
+const NamedUnit* unit_of(const ColumnQuantity& quantity, std::string_view name) {
+  for (const std::string_view base : quantity.names) {
+    if (name == base) return &kNoUnit;
+    if (!name.starts_with(base) || name[base.size()] != '_') continue;
+    const std::string_view suffix = name.substr(base.size() + 1);
+    if (suffix.empty()) return &kNoUnit;
+    for (const NamedUnit& unit : kUnits)
+      if (unit.of == quantity.unit && unit.name == suffix) return &unit;
+  }
+  return nullptr;
+}
+
+template <class Number>
+std::optional<Number> whole_word(std::string_view word) {
+  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // refused by from_chars()
+  const char *const begin = word.data() + (has_plus ? 1 : 0), *const end = word.data() + word.size();
+  Number value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
 
 std::string formatted(const char* format, ...) {
@@ -90,38 +155,6 @@ std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
-
-namespace {
-
-// Checks every value and key while the text is parsed.
-class Watch {
- public:
-  explicit Watch(const std::string& label) : label_(label) {}
-
-  void see(int depth, Json::parse_event_t event, const Json& parsed) {
-    if (depth > kMaxJsonDepth) refuse(label_, "nested too deep: expected at most ", kMaxJsonDepth, " levels");
-    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys_.pop_back();
-    if (event == Json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
-      refuse(label_, "the key ", shown(parsed), " appears twice in one object: expected each key once");
-  }
-
- private:
-  const std::string& label_;
-  std::vector<std::set<std::string>> keys_;  // keys so far of each open object
-};
-
-// Throws Json::exception if the text is not JSON. The library takes the byte 0 as the end of the text, so the
-// callers refuse it.
-Json parse_watched(const std::string& text, const std::string& label) {
-  Watch watch(label);
-  return Json::parse(text, [&](int depth, Json::parse_event_t event, Json& parsed) {
-    watch.see(depth, event, parsed);
-    return true;
-  });
-}
-
-}  // namespace
 
 Json parse_json(const std::string& text, const std::string& label) {
   if (const std::size_t at = text.find('\0'); at != std::string::npos)
@@ -173,47 +206,6 @@ std::string shown(const Json& value) {
   if (text.size() > kMaxLength) text.replace(kMaxLength, std::string::npos, "...");
   return text;
 }
-
-namespace {
-
-struct NamedUnit {
-  ColumnQuantity::Unit of;
-  std::string_view name;
-  double in_si;
-};
-constexpr NamedUnit kUnits[] = {
-    {ColumnQuantity::Unit::time, "s", 1},     {ColumnQuantity::Unit::time, "ms", 1e-3},
-    {ColumnQuantity::Unit::time, "us", 1e-6}, {ColumnQuantity::Unit::time, "ns", 1e-9},
-    {ColumnQuantity::Unit::length, "m", 1},   {ColumnQuantity::Unit::length, "mm", 1e-3},
-    {ColumnQuantity::Unit::force, "n", 1},
-};
-
-constexpr NamedUnit kNoUnit = {ColumnQuantity::Unit::none, "", 1};
-
-// Returns the unit in which a column of this name, in small letters, has the quantity. Returns null if the
-// name is that of something else.
-const NamedUnit* unit_of(const ColumnQuantity& quantity, std::string_view name) {
-  for (const std::string_view base : quantity.names) {
-    if (name == base) return &kNoUnit;
-    if (!name.starts_with(base) || name[base.size()] != '_') continue;
-    const std::string_view suffix = name.substr(base.size() + 1);
-    if (suffix.empty()) return &kNoUnit;
-    for (const NamedUnit& unit : kUnits)
-      if (unit.of == quantity.unit && unit.name == suffix) return &unit;
-  }
-  return nullptr;
-}
-
-template <class Number>
-std::optional<Number> whole_word(std::string_view word) {
-  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // refused by from_chars()
-  const char *const begin = word.data() + (has_plus ? 1 : 0), *const end = word.data() + word.size();
-  Number value = 0;
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
-}
-
-}  // namespace
 
 std::vector<std::string_view> words_of_line(std::string_view line, std::string_view separators) {
   std::vector<std::string_view> words;

@@ -58,6 +58,17 @@ class FarthestPoints {
   std::size_t count_ = 0;
 };
 
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+// Converts a motion (t, lever w) of a body about one position to the same motion about another, `by` away
+// from it.
+Matrix6 transport(const Vec3& by, double lever_m) {
+  Matrix6 m = Matrix6::Identity();  // t' = t + w x by
+  m.block<3, 3>(0, 3) << 0, by.z(), -by.y(), -by.z(), 0, by.x(), by.y(), -by.x(), 0;
+  m.block<3, 3>(0, 3) /= lever_m;
+  return m;
+}
+
 }  // namespace
 
 ToolPositions::ToolPositions(const TriangleMesh& mesh, double group_radius_m, std::size_t max_groups) {
@@ -100,21 +111,6 @@ void ToolPositions::divide(std::size_t groups) {
   }
   positions_T_ = std::move(sorted);
 }
-
-namespace {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-// Converts a motion (t, lever w) of a body about one position to the same motion about another, `by` away
-// from it.
-Matrix6 transport(const Vec3& by, double lever_m) {
-  Matrix6 m = Matrix6::Identity();  // t' = t + w x by
-  m.block<3, 3>(0, 3) << 0, by.z(), -by.y(), -by.z(), 0, by.x(), by.y(), -by.x(), 0;
-  m.block<3, 3>(0, 3) /= lever_m;
-  return m;
-}
-
-}  // namespace
 
 void CarriedMotion::add(const CarriedPosition& position) {
   if (empty()) first_W_ = position.p_W;

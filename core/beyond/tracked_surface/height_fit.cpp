@@ -7,6 +7,69 @@
 #include "core/numeric/order_statistic.h"
 
 namespace remote_touch {
+namespace {
+
+constexpr double kMinNeighbourFraction = 0.25;
+constexpr double kMinNeighbours = 2;  // not counting the point itself
+
+constexpr int kTerms = 6, kPlane = 3;  // number of terms; the first kPlane are those of a plane
+
+// Solves a x = b in place by Cholesky's method. Returns false if the matrix is not clearly positive definite.
+bool solve(double a[kTerms][kTerms], double b[kTerms]) {
+  constexpr double kMinFraction = 1e-4;  // smallest fraction of a diagonal element that may be left
+  for (int i = 0; i < kTerms; ++i) {
+    const double own = a[i][i];
+    for (int j = 0; j <= i; ++j) {
+      double sum = a[i][j];
+      for (int k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
+      if (i != j)
+        a[i][j] = sum / a[j][j];
+      else if (sum > kMinFraction * own && own > 0)
+        a[i][i] = std::sqrt(sum);
+      else
+        return false;
+    }
+  }
+  for (int i = 0; i < kTerms; ++i) {
+    for (int k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
+    b[i] /= a[i][i];
+  }
+  for (int i = kTerms - 1; i >= 0; --i) {
+    for (int k = i + 1; k < kTerms; ++k) b[i] -= a[k][i] * b[k];
+    b[i] /= a[i][i];
+  }
+  return true;
+}
+
+// Returns the fraction of the curvature to keep (James and Stein's rule). The improvement of the fit by the
+// curvature, in units of the noise's variance, is a chi square of 3 degrees of freedom if there is no
+// curvature. No curvature is kept if the improvement is below kOfChance. a: the Cholesky factor.
+double fraction_to_keep(const double a[kTerms][kTerms], const double c[kTerms], double sigma) {
+  constexpr double kOfChance = 6;
+  double improvement = 0;
+  for (int j = kPlane; j < kTerms; ++j) {
+    double term = 0;
+    for (int i = j; i < kTerms; ++i) term += a[i][j] * c[i];
+    improvement += term * term;
+  }
+  return std::max(0.0, 1 - kOfChance * sigma * sigma / std::max(improvement, 1e-12));
+}
+
+constexpr int kCells = HeightMap::kCells;
+constexpr double kCell = HeightMap::kCell, kHalf = HeightMap::kHalf;
+
+constexpr int kWindows[] = {1, 2, 3, 5, 7, 10};  // half sides, in cells
+constexpr double kConfidence = 3;                // half width of an interval, in standard errors
+constexpr double kTooUnsure = 0.25;              // a larger standard error does not limit wider windows,
+                                                 // contact radii
+constexpr double kMinNoise = 0.01;               // smallest noise, for deviations that planes cannot follow
+constexpr double kMinWindowPoints = 5;           // minimum number of points in a window
+
+int corner(double coordinate) {
+  return static_cast<int>(std::clamp((coordinate + kHalf) / kCell + 0.5, 0.0, kCells + 0.5));
+}
+
+}  // namespace
 
 bool PatchRegion::holds(const Ball& ball) const {
   const PatchPlace p = frame.place(ball.centre);
@@ -57,13 +120,6 @@ QuadraticSums PatchPoints::sums_of_quadratic(double radius) const {
   return kernels_.patch.sums_of_quadratic(columns(), member_.data(), count_, radius);
 }
 
-namespace {
-
-constexpr double kMinNeighbourFraction = 0.25;
-constexpr double kMinNeighbours = 2;  // not counting the point itself
-
-}  // namespace
-
 // Returns the index of a column. Columns are one contact radius wide, with an empty one as a border on either
 // side.
 int StrayPoints::column(double coordinate) const {
@@ -100,53 +156,6 @@ bool StrayPoints::is_surface(const PatchPlace& p) const {
   return sum >= min_;
 }
 
-namespace {
-
-constexpr int kTerms = 6, kPlane = 3;  // number of terms; the first kPlane are those of a plane
-
-// Solves a x = b in place by Cholesky's method. Returns false if the matrix is not clearly positive definite.
-bool solve(double a[kTerms][kTerms], double b[kTerms]) {
-  constexpr double kMinFraction = 1e-4;  // smallest fraction of a diagonal element that may be left
-  for (int i = 0; i < kTerms; ++i) {
-    const double own = a[i][i];
-    for (int j = 0; j <= i; ++j) {
-      double sum = a[i][j];
-      for (int k = 0; k < j; ++k) sum -= a[i][k] * a[j][k];
-      if (i != j)
-        a[i][j] = sum / a[j][j];
-      else if (sum > kMinFraction * own && own > 0)
-        a[i][i] = std::sqrt(sum);
-      else
-        return false;
-    }
-  }
-  for (int i = 0; i < kTerms; ++i) {
-    for (int k = 0; k < i; ++k) b[i] -= a[i][k] * b[k];
-    b[i] /= a[i][i];
-  }
-  for (int i = kTerms - 1; i >= 0; --i) {
-    for (int k = i + 1; k < kTerms; ++k) b[i] -= a[k][i] * b[k];
-    b[i] /= a[i][i];
-  }
-  return true;
-}
-
-// Returns the fraction of the curvature to keep (James and Stein's rule). The improvement of the fit by the
-// curvature, in units of the noise's variance, is a chi square of 3 degrees of freedom if there is no
-// curvature. No curvature is kept if the improvement is below kOfChance. a: the Cholesky factor.
-double fraction_to_keep(const double a[kTerms][kTerms], const double c[kTerms], double sigma) {
-  constexpr double kOfChance = 6;
-  double improvement = 0;
-  for (int j = kPlane; j < kTerms; ++j) {
-    double term = 0;
-    for (int i = j; i < kTerms; ++i) term += a[i][j] * c[i];
-    improvement += term * term;
-  }
-  return std::max(0.0, 1 - kOfChance * sigma * sigma / std::max(improvement, 1e-12));
-}
-
-}  // namespace
-
 Trend fit_trend(const PatchPoints& points, double sigma) {
   constexpr double kMinPoints = 30;
   // The factors are multiples of 2^-12 below 2^6, so sums of up to 2^17 of their products are exact.
@@ -169,24 +178,6 @@ Trend fit_trend(const PatchPoints& points, double sigma) {
   for (int i = 0; i < kTerms; ++i) trend.c[i] = i < kPlane ? b[i] : keep * b[i];
   return trend;
 }
-
-namespace {
-
-constexpr int kCells = HeightMap::kCells;
-constexpr double kCell = HeightMap::kCell, kHalf = HeightMap::kHalf;
-
-constexpr int kWindows[] = {1, 2, 3, 5, 7, 10};  // half sides, in cells
-constexpr double kConfidence = 3;                // half width of an interval, in standard errors
-constexpr double kTooUnsure = 0.25;              // a larger standard error does not limit wider windows,
-                                                 // contact radii
-constexpr double kMinNoise = 0.01;               // smallest noise, for deviations that planes cannot follow
-constexpr double kMinWindowPoints = 5;           // minimum number of points in a window
-
-int corner(double coordinate) {
-  return static_cast<int>(std::clamp((coordinate + kHalf) / kCell + 0.5, 0.0, kCells + 0.5));
-}
-
-}  // namespace
 
 void HeightFit::set_points(const PatchPoints& points, const Trend& trend) {
   trend_ = trend;

@@ -8,30 +8,6 @@
 #include "core/numeric/counting_sort.h"
 
 namespace remote_touch {
-
-Parameters parameters(SheetSettings& s) {
-  return {
-      {"gate_m", &s.gate_m, 1e-4, 1, "search range around the predicted position of the sheet"},
-      {"initial_gate_m", &s.initial_gate_m, 1e-4, 1,
-       "search range for a new sheet, and for one not found within gate_m"},
-      {"max_gate_m", &s.max_gate_m, 1e-4, 1, "maximum search range; a sheet not found within it is lost"},
-      {"max_missed_frames", &s.max_missed_frames, 0, 100,
-       "maximum number of successive frames without the sheet; after more, a proxy in contact is released"},
-      {"denoise", &s.denoise, 0, 1, "remove the noise from the points of the sheet"},
-  };
-}
-
-std::string validate(const SheetSettings& s) {
-  const auto line = [](const char* name, double value, const char* other, double min) {
-    return std::string(name) + " = " + std::to_string(value) + ": expected at least " + other + " = " +
-           std::to_string(min);
-  };
-  if (s.initial_gate_m < s.gate_m) return line("initial_gate_m", s.initial_gate_m, "gate_m", s.gate_m);
-  if (s.max_gate_m < s.initial_gate_m)
-    return line("max_gate_m", s.max_gate_m, "initial_gate_m", s.initial_gate_m);
-  return {};
-}
-
 namespace {
 
 constexpr double kReaches[] = {6, 12, 24, 40};  // contact radii
@@ -95,7 +71,49 @@ double nearest_mode(const HeightProfile& smooth, double proxy_height) {
   return mode;
 }
 
+// Returns the plane of least squares through the residuals that are within reach of the plane `before`. It is
+// only the mean height if there are few points.
+SheetShift refined(const PatchPoints& points, const PatchPlace& proxy, const SheetShift& before,
+                   double reach) {
+  constexpr double kSteepest = 0.5, kMinPoints = 12;
+  const auto [n, su, sv, se, uu, uv, vv, ue, ve] = points.sums_near(
+      {proxy.u, proxy.v, kRegistrationReach, before.height, before.slope_u, before.slope_v, reach});
+  if (n < 3) return before;
+  const double mu = su / n, mv = sv / n, me = se / n;
+  const double cuu = uu - n * mu * mu, cuv = uv - n * mu * mv, cvv = vv - n * mv * mv;
+  const double cue = ue - n * mu * me, cve = ve - n * mv * me, det = cuu * cvv - cuv * cuv;
+  SheetShift shift{me, 0, 0};
+  if (n < kMinPoints || !(det > 0.05 * cuu * cvv)) return shift;
+  shift.slope_u = std::clamp((cvv * cue - cuv * cve) / det, -kSteepest, kSteepest);
+  shift.slope_v = std::clamp((cuu * cve - cuv * cue) / det, -kSteepest, kSteepest);
+  shift.height = me - shift.slope_u * mu - shift.slope_v * mv;
+  return shift;
+}
+
 }  // namespace
+
+Parameters parameters(SheetSettings& s) {
+  return {
+      {"gate_m", &s.gate_m, 1e-4, 1, "search range around the predicted position of the sheet"},
+      {"initial_gate_m", &s.initial_gate_m, 1e-4, 1,
+       "search range for a new sheet, and for one not found within gate_m"},
+      {"max_gate_m", &s.max_gate_m, 1e-4, 1, "maximum search range; a sheet not found within it is lost"},
+      {"max_missed_frames", &s.max_missed_frames, 0, 100,
+       "maximum number of successive frames without the sheet; after more, a proxy in contact is released"},
+      {"denoise", &s.denoise, 0, 1, "remove the noise from the points of the sheet"},
+  };
+}
+
+std::string validate(const SheetSettings& s) {
+  const auto line = [](const char* name, double value, const char* other, double min) {
+    return std::string(name) + " = " + std::to_string(value) + ": expected at least " + other + " = " +
+           std::to_string(min);
+  };
+  if (s.initial_gate_m < s.gate_m) return line("initial_gate_m", s.initial_gate_m, "gate_m", s.gate_m);
+  if (s.max_gate_m < s.initial_gate_m)
+    return line("max_gate_m", s.max_gate_m, "initial_gate_m", s.initial_gate_m);
+  return {};
+}
 
 std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& proxy_W,
                                      double contact_radius_m, const Kernels& kernels,
@@ -138,29 +156,6 @@ std::optional<FoundSheet> find_sheet(const NeighbourSearch& frame, const Vec3& p
   found.frame = PatchFrame(foot_W, normal, contact_radius_m);
   return found;
 }
-
-namespace {
-
-// Returns the plane of least squares through the residuals that are within reach of the plane `before`. It is
-// only the mean height if there are few points.
-SheetShift refined(const PatchPoints& points, const PatchPlace& proxy, const SheetShift& before,
-                   double reach) {
-  constexpr double kSteepest = 0.5, kMinPoints = 12;
-  const auto [n, su, sv, se, uu, uv, vv, ue, ve] = points.sums_near(
-      {proxy.u, proxy.v, kRegistrationReach, before.height, before.slope_u, before.slope_v, reach});
-  if (n < 3) return before;
-  const double mu = su / n, mv = sv / n, me = se / n;
-  const double cuu = uu - n * mu * mu, cuv = uv - n * mu * mv, cvv = vv - n * mv * mv;
-  const double cue = ue - n * mu * me, cve = ve - n * mv * me, det = cuu * cvv - cuv * cuv;
-  SheetShift shift{me, 0, 0};
-  if (n < kMinPoints || !(det > 0.05 * cuu * cvv)) return shift;
-  shift.slope_u = std::clamp((cvv * cue - cuv * cve) / det, -kSteepest, kSteepest);
-  shift.slope_v = std::clamp((cuu * cve - cuv * cue) / det, -kSteepest, kSteepest);
-  shift.height = me - shift.slope_u * mu - shift.slope_v * mv;
-  return shift;
-}
-
-}  // namespace
 
 SheetShift register_sheet(const PatchPoints& points, const HeightProfile& profile, const PatchPlace& proxy,
                           double gate, double half_range, double sigma) {

@@ -13,6 +13,9 @@
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
+
+using Settings = ContactReplay::Settings;
+
 namespace {
 
 constexpr double kMaxCoordinateInFile_m = 100;
@@ -115,23 +118,6 @@ class TraceReader {
   std::size_t most_fields_ = 0;
 };
 
-}  // namespace
-
-ForceTrace read_force_trace(const std::filesystem::path& file, const std::string& traj_columns) {
-  if (!has_ending(file, ".csv") && !has_ending(file, ".traj"))
-    refuse(file.string(), "expected a file that ends in .csv or .traj");
-  const std::string text = read_input_text(file, "expected rows of time, position and force");
-  TraceReader reader(file, traj_columns);
-  for_each_line(without_byte_order_mark(text), [&](std::size_t number, std::string_view untrimmed) {
-    const std::string_view line = trimmed(untrimmed);
-    if (!line.empty() && line[0] != '#' && line[0] != '%') reader.add(number, line);
-  });
-  return reader.take();
-}
-
-namespace {
-
-using Settings = ContactReplay::Settings;
 using Row = ContactReplay::Row;
 
 constexpr double kRows_per_s = 1000;     // rows of a generated contact; the usual haptic rate
@@ -157,41 +143,6 @@ Row row_of(const Contact& contact, const Settings& s) {
           contact.force_N};
 }
 
-}  // namespace
-
-Parameters parameters(ContactReplay::Settings& s) {
-  return {
-      {"stiffness_N_per_m", &s.stiffness_N_per_m, 1, 1e6,
-       "stiffness of the renderer under test; must be that of the renderer"},
-      {"onset_distance_m", &s.onset_distance_m, 0, 1,
-       "distance of the HIP from the surface at which the renderer's force begins: 0 for a proxy, contact_radius_m for penalty"},
-      {"file", &s.file, 0, 0,
-       "measured contact, .traj or .csv: time, position, force; empty: a contact on the true surface"},
-      {"columns", &s.columns, 0, 0,
-       "columns of a .traj file: time, x, y, z, fx, fy, fz with units (_s _ms _m _mm _N); others are not used"},
-      {"start_s", &s.start_s, 0, 1e6, "time that is left out at the begin of the file"},
-      {"scale", &s.scale, 1e-6, 1e6, "factor of the file's positions"},
-      {"rotation_deg", &s.rotation_deg, -360, 360,
-       "rotation vector (axis times angle) from the file's frame to the world"},
-      {"offset_m", &s.offset_m, -1000, 1000, "position of the file's origin in the world"},
-      {"force_on_object", &s.force_on_object, 0, 0,
-       "true: the file has the force on the object; false: the force on the hand"},
-      {"contact_force_N", &s.contact_force_N, 0, 1000, "smaller forces of the file count as free motion"},
-      {"from_m", &s.from_m, -100, 100,
-       "start of the line over which a generated contact moves; over a height field its height is not used"},
-      {"to_m", &s.to_m, -100, 100, "end of that line"},
-      {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100,
-       "speed along that line, of the approach and of the retreat"},
-      {"clearance_m", &s.clearance_m, 0, 10, "distance from contact at the start and at the end"},
-      {"ramp_s", &s.ramp_s, 0, 100, "time in which the force rises from 0 and falls to 0"},
-      {"min_force_N", &s.min_force_N, 0, 1000, "minimum of the force while the contact moves"},
-      {"max_force_N", &s.max_force_N, 0, 1000, "maximum of the force; the minimum again: a constant force"},
-      {"force_period_s", &s.force_period_s, 1e-3, 1000, "period of the force"},
-  };
-}
-
-namespace {
-
 // The times at which the parts of a generated contact end.
 struct Timing {
   explicit Timing(const Settings& s)
@@ -202,31 +153,6 @@ struct Timing {
         retreat_s(unload_s + s.clearance_m / s.speed_m_per_s) {}
   double approach_s, load_s, slide_s, unload_s, retreat_s;
 };
-
-}  // namespace
-
-std::string validate(const ContactReplay::Settings& s) {
-  if (!s.file.empty()) {
-    const bool is_trace = has_ending(s.file, ".csv") || has_ending(s.file, ".traj");
-    return is_trace ? "" : "file = " + s.file + ": expected a file that ends in .csv or .traj";
-  }
-  if (!((s.to_m - s.from_m).norm() > 0)) return "to_m: expected another position than from_m";
-  if (s.min_force_N > s.max_force_N)
-    return "min_force_N = " + std::to_string(s.min_force_N) + ": expected at most max_force_N";
-  if (!(s.max_force_N > 0)) return "max_force_N = 0: expected above 0";
-  const double duration_s = Timing(s).retreat_s;
-  return duration_s <= kMaxDuration_s
-             ? ""
-             : "speed_m_per_s = " + std::to_string(s.speed_m_per_s) + ": the motion lasts " +
-                   std::to_string(duration_s) + " s, expected at most " + std::to_string(kMaxDuration_s);
-}
-
-std::vector<InputPart> input_files(const ContactReplay::Settings& s) {
-  if (s.file.empty()) return {};
-  return {{s.file}};
-}
-
-namespace {
 
 // --- a contact from a file ---
 
@@ -388,6 +314,70 @@ class GeneratedContact {
 };
 
 }  // namespace
+
+ForceTrace read_force_trace(const std::filesystem::path& file, const std::string& traj_columns) {
+  if (!has_ending(file, ".csv") && !has_ending(file, ".traj"))
+    refuse(file.string(), "expected a file that ends in .csv or .traj");
+  const std::string text = read_input_text(file, "expected rows of time, position and force");
+  TraceReader reader(file, traj_columns);
+  for_each_line(without_byte_order_mark(text), [&](std::size_t number, std::string_view untrimmed) {
+    const std::string_view line = trimmed(untrimmed);
+    if (!line.empty() && line[0] != '#' && line[0] != '%') reader.add(number, line);
+  });
+  return reader.take();
+}
+
+Parameters parameters(ContactReplay::Settings& s) {
+  return {
+      {"stiffness_N_per_m", &s.stiffness_N_per_m, 1, 1e6,
+       "stiffness of the renderer under test; must be that of the renderer"},
+      {"onset_distance_m", &s.onset_distance_m, 0, 1,
+       "distance of the HIP from the surface at which the renderer's force begins: 0 for a proxy, contact_radius_m for penalty"},
+      {"file", &s.file, 0, 0,
+       "measured contact, .traj or .csv: time, position, force; empty: a contact on the true surface"},
+      {"columns", &s.columns, 0, 0,
+       "columns of a .traj file: time, x, y, z, fx, fy, fz with units (_s _ms _m _mm _N); others are not used"},
+      {"start_s", &s.start_s, 0, 1e6, "time that is left out at the begin of the file"},
+      {"scale", &s.scale, 1e-6, 1e6, "factor of the file's positions"},
+      {"rotation_deg", &s.rotation_deg, -360, 360,
+       "rotation vector (axis times angle) from the file's frame to the world"},
+      {"offset_m", &s.offset_m, -1000, 1000, "position of the file's origin in the world"},
+      {"force_on_object", &s.force_on_object, 0, 0,
+       "true: the file has the force on the object; false: the force on the hand"},
+      {"contact_force_N", &s.contact_force_N, 0, 1000, "smaller forces of the file count as free motion"},
+      {"from_m", &s.from_m, -100, 100,
+       "start of the line over which a generated contact moves; over a height field its height is not used"},
+      {"to_m", &s.to_m, -100, 100, "end of that line"},
+      {"speed_m_per_s", &s.speed_m_per_s, 1e-6, 100,
+       "speed along that line, of the approach and of the retreat"},
+      {"clearance_m", &s.clearance_m, 0, 10, "distance from contact at the start and at the end"},
+      {"ramp_s", &s.ramp_s, 0, 100, "time in which the force rises from 0 and falls to 0"},
+      {"min_force_N", &s.min_force_N, 0, 1000, "minimum of the force while the contact moves"},
+      {"max_force_N", &s.max_force_N, 0, 1000, "maximum of the force; the minimum again: a constant force"},
+      {"force_period_s", &s.force_period_s, 1e-3, 1000, "period of the force"},
+  };
+}
+
+std::string validate(const ContactReplay::Settings& s) {
+  if (!s.file.empty()) {
+    const bool is_trace = has_ending(s.file, ".csv") || has_ending(s.file, ".traj");
+    return is_trace ? "" : "file = " + s.file + ": expected a file that ends in .csv or .traj";
+  }
+  if (!((s.to_m - s.from_m).norm() > 0)) return "to_m: expected another position than from_m";
+  if (s.min_force_N > s.max_force_N)
+    return "min_force_N = " + std::to_string(s.min_force_N) + ": expected at most max_force_N";
+  if (!(s.max_force_N > 0)) return "max_force_N = 0: expected above 0";
+  const double duration_s = Timing(s).retreat_s;
+  return duration_s <= kMaxDuration_s
+             ? ""
+             : "speed_m_per_s = " + std::to_string(s.speed_m_per_s) + ": the motion lasts " +
+                   std::to_string(duration_s) + " s, expected at most " + std::to_string(kMaxDuration_s);
+}
+
+std::vector<InputPart> input_files(const ContactReplay::Settings& s) {
+  if (s.file.empty()) return {};
+  return {{s.file}};
+}
 
 ContactReplay::ContactReplay(const Settings& settings, const Scenario& scenario) {
   const std::vector<Contact> contacts = settings.file.empty()

@@ -18,6 +18,12 @@ Vec3 cut(const Vec3& v, double max_length) {
   return max_length > 0 ? limited_length(v, max_length) : v;
 }
 
+// Returns the nearest multiples of the step; the vector itself without a step.
+Vec3 rounded(const Vec3& v, double step) {
+  if (!(step > 0)) return v;
+  return v.unaryExpr([step](double x) { return std::round(x / step) * step; });
+}
+
 }  // namespace
 
 Parameters parameters(MotorSettings& s) {
@@ -72,16 +78,6 @@ std::string validate(const DeviceSettings& s) {
            ": expected 1 without contact_damping_Ns_per_m, because nothing else uses the velocity";
   return {};
 }
-
-namespace {
-
-// Returns the nearest multiples of the step; the vector itself without a step.
-Vec3 rounded(const Vec3& v, double step) {
-  if (!(step > 0)) return v;
-  return v.unaryExpr([step](double x) { return std::round(x / step) * step; });
-}
-
-}  // namespace
 
 DeviceModel::DeviceModel(const DeviceSettings& settings, double tick_s)
     : s_(settings),

@@ -88,6 +88,28 @@ Responses responses(double w, double d, double duration_s, Squares squares) {
   return r;
 }
 
+// Why the first stop of a sliding mass is found for certain: friction is constant while the mass slides, so
+// the acceleration a = x'' obeys a'' + d a' + w a = 0, as the force is held and the path has no acceleration.
+// Two zeros of a are at least pi / sqrt(w) apart. In a piece shorter than that the velocity has at most one
+// extremum, which bisection on a finds, and then at most one zero before and one after the extremum.
+
+constexpr double kPieceAngle = 1.5;  // largest sqrt(w) t of a piece, below pi
+
+// Each stop takes half an oscillation of the mass, so far fewer occur in a tick of a hand that the settings
+// accept. The limit ends a tick in which rounding makes the mass start and stop without a motion.
+constexpr int kMaxStops = 200;
+
+// Returns the latest time in [low, high] up to which `before` holds. pre: it holds at low, or low is 0, and
+// it holds up to one time and not after it.
+template <class Predicate>
+double last_time(double low, double high, Predicate before) {
+  for (;;) {
+    const double middle = low + (high - low) / 2;
+    if (!(middle > low && middle < high)) return high;
+    (before(middle) ? low : high) = middle;
+  }
+}
+
 }  // namespace
 
 StepEnergy& StepEnergy::operator+=(const StepEnergy& other) {
@@ -151,32 +173,6 @@ StepEnergy HeldForceStep::energy(const Start& start) const {
   energy.potential_J = 0.5 * system_.stiffness * apart_change.dot(2 * start.apart + apart_change);
   return energy;
 }
-
-namespace {
-
-// Why the first stop of a sliding mass is found for certain: friction is constant while the mass slides, so
-// the acceleration a = x'' obeys a'' + d a' + w a = 0, as the force is held and the path has no acceleration.
-// Two zeros of a are at least pi / sqrt(w) apart. In a piece shorter than that the velocity has at most one
-// extremum, which bisection on a finds, and then at most one zero before and one after the extremum.
-
-constexpr double kPieceAngle = 1.5;  // largest sqrt(w) t of a piece, below pi
-
-// Each stop takes half an oscillation of the mass, so far fewer occur in a tick of a hand that the settings
-// accept. The limit ends a tick in which rounding makes the mass start and stop without a motion.
-constexpr int kMaxStops = 200;
-
-// Returns the latest time in [low, high] up to which `before` holds. pre: it holds at low, or low is 0, and
-// it holds up to one time and not after it.
-template <class Predicate>
-double last_time(double low, double high, Predicate before) {
-  for (;;) {
-    const double middle = low + (high - low) / 2;
-    if (!(middle > low && middle < high)) return high;
-    (before(middle) ? low : high) = middle;
-  }
-}
-
-}  // namespace
 
 // The state of one axis; remaining_s is the part of the tick that is left.
 struct DryFrictionStep::Axis {

@@ -47,98 +47,6 @@ std::string no_image_text(const Scenario& scenario, const PointCloud& cloud) {
          "the camera that are not mirrored";
 }
 
-}  // namespace
-
-FrameImage first_image(const Scenario& scenario, const std::string& subject) {
-  const PointCloud cloud = scenario.cloud(0);
-  if (!cloud.image) refuse(subject, no_image_text(scenario, cloud));
-  if (cloud.size() != cloud.image->camera.pixels())
-    refuse(subject, "frame 0 has ", cloud.size(), " points: expected ", size_text(cloud.image->camera));
-  if (!cloud.has_measured_point())
-    refuse(subject, "no pixel of the first frame has a depth: expected a camera that sees a surface");
-  return {*cloud.image, depth_of(cloud, *cloud.image)};
-}
-
-void require_image_of(const ImageLayout& first, const PointCloud& frame, int number,
-                      const std::string& subject) {
-  constexpr double kFits_px = 1;
-  const auto refuse_frame = [&](const std::string& problem) {
-    refuse(subject, "frame ", number, " ", problem);
-  };
-  const CameraIntrinsics& camera = first.camera;
-  if (!frame.has_measured_point()) return;
-  const bool has_size = !frame.image || (frame.image->camera.width == camera.width &&
-                                         frame.image->camera.height == camera.height);
-  if (!has_size || frame.size() != camera.pixels())
-    refuse_frame("has " +
-                 (has_size ? std::to_string(frame.size()) + " points" : size_text(frame.image->camera)) +
-                 ": expected " + size_text(camera) + ", as frame 0 has");
-  if (frame.image && frame.image->camera == camera) return;  // the layout promises that the points fit
-  const RigidTransform& X_WC = frame.image ? frame.image->X_WC : first.X_WC;
-  const double error_px = largest_error_px(frame, X_WC.inverse(), camera);
-  if (error_px <= kFits_px + first.pixel_slack + (frame.image ? frame.image->pixel_slack : 0)) return;
-  if (!frame.image)
-    refuse_frame("is not an image: expected an image of the camera of frame 0 in every frame");
-  refuse_frame(formatted(
-      "has another camera (f = %.6g, %.6g, c = %.6g, %.6g): expected that of frame 0 (f = %.6g, %.6g, "
-      "c = %.6g, %.6g)",
-      frame.image->camera.fx, frame.image->camera.fy, frame.image->camera.cx, frame.image->camera.cy,
-      camera.fx, camera.fy, camera.cx, camera.cy));
-}
-
-FrameImage image_of(const Scenario& scenario, int frame, const ImageLayout& first,
-                    const std::string& subject) {
-  const PointCloud cloud = scenario.cloud(frame);
-  require_image_of(first, cloud, frame, subject);
-  ImageLayout layout = first;
-  if (cloud.image) layout.X_WC = cloud.image->X_WC;
-  return {layout, depth_of(cloud, layout)};
-}
-
-double supported_depth(const DepthImage& image, int u, int v, const CameraIntrinsics& camera,
-                       const Support& support) {
-  if (u < 0 || v < 0 || u >= image.width || v >= image.height) return std::nan("");
-  const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
-  if (!(std::isfinite(z) && z > 0)) return std::nan("");
-  const int across = reach_px(image, camera.fx, support.margin_m, z);
-  const int down = reach_px(image, camera.fy, support.margin_m, z);
-  if (u <= across || v <= down || u + across >= image.width || v + down >= image.height) return std::nan("");
-  std::vector<double> seen;
-  for (int y = v - down; y <= v + down; ++y) {
-    for (int x = u - across; x <= u + across; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
-      // NaN fails both comparisons, so a hole ends the search too.
-      const bool joined = std::abs(image.z_m[i] - image.z_m[i - 1]) <= support.edge_jump_m &&
-                          std::abs(image.z_m[i] - image.z_m[i - image.width]) <= support.edge_jump_m;
-      if (!joined) return std::nan("");
-      seen.push_back(image.z_m[i]);
-    }
-  }
-  return median_in_place(seen);
-}
-
-int reach_px(const DepthImage& image, double focal_px, double length_m, double depth_m) {
-  if (!(depth_m > 0)) return 1;
-  const double most = std::max({1, image.width, image.height});
-  return static_cast<int>(std::clamp(focal_px * length_m / depth_m, 1.0, most));
-}
-
-std::optional<ImagePixel> nearest_supported(const DepthImage& image, const ImagePixel& to,
-                                            const CameraIntrinsics& camera, const Support& support) {
-  std::optional<ImagePixel> nearest;
-  long least = std::numeric_limits<long>::max();
-  for (int v = 0; v < image.height; ++v)
-    for (int u = 0; u < image.width; ++u) {
-      const long across = u - to.column, down = v - to.row, squared = across * across + down * down;
-      if (squared >= least || std::isnan(supported_depth(image, u, v, camera, support))) continue;
-      least = squared;
-      nearest = ImagePixel{v, u};
-    }
-  return nearest;
-}
-
-namespace {
-
 bool is_measured(const DepthImage& image, int u, int v) {
   return std::isfinite(image.z_m[static_cast<std::size_t>(v) * image.width + u]);
 }
@@ -160,70 +68,6 @@ bool is_rim(const DepthImage& image, int u, int v) {
       if (!is_measured(image, x, y)) return true;
   return false;
 }
-
-}  // namespace
-
-// Distances are in pixels along a row.
-DepthImage bridged(const DepthImage& image, const CameraIntrinsics& camera, double hole_m) {
-  constexpr double kMaxReach_px = 64;  // bounds the work for points close to the lens
-  const double row_distance = camera.fx / camera.fy;
-  DepthImage closed = image;
-  std::vector<double> distance_squared(image.z_m.size(), std::numeric_limits<double>::infinity());
-  for (int v = 0; v < image.height; ++v)
-    for (int u = 0; u < image.width; ++u) {
-      const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
-      if (!(std::isfinite(z) && z > 0) || !is_rim(image, u, v)) continue;
-      const double reach = std::min(0.5 * hole_m * camera.fx / z, kMaxReach_px);
-      const int across = static_cast<int>(reach);
-      const int down = static_cast<int>(std::min(reach / row_distance, kMaxReach_px));
-      for (int y = std::max(0, v - down); y <= std::min(image.height - 1, v + down); ++y)
-        for (int x = std::max(0, u - across); x <= std::min(image.width - 1, u + across); ++x) {
-          const double below = (y - v) * row_distance, squared = (x - u) * (x - u) + below * below;
-          const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
-          if (squared > reach * reach || std::isfinite(image.z_m[i]) || squared > distance_squared[i])
-            continue;
-          if (squared == distance_squared[i] && z >= closed.z_m[i]) continue;
-          distance_squared[i] = squared, closed.z_m[i] = z;
-        }
-    }
-  return closed;
-}
-
-const DepthImage& BridgeableImage::closed() {
-  if (!closed_) closed_ = bridged(measured_, camera_, hole_m_);
-  return *closed_;
-}
-
-double nearest_depth(const DepthImage& image, const PixelWindow& window) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const double z : depths_in(image, window)) nearest = std::min(nearest, z);
-  return nearest;
-}
-
-double median_depth(const DepthImage& image, const PixelWindow& window) {
-  std::vector<double> depths = depths_in(image, window);
-  return depths.empty() ? std::nan("") : median_in_place(depths);
-}
-
-double in_front_of(double depth_m, double clearance_m) {
-  return std::max(depth_m - clearance_m, 0.5 * depth_m);
-}
-
-std::string millimetres(double length_m) {
-  return formatted("%.4g mm", 1e3 * length_m);
-}
-
-void refuse_behind_camera(double surface_m) {
-  refuse("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is ",
-         millimetres(surface_m), " from the surface: expected smaller values");
-}
-
-Note holes_bridged(const std::string& where, double bridge_m) {
-  return {"holes bridged", where + ": holes up to trajectory.bridge_m = " + millimetres(bridge_m) +
-                               " wide are taken as closed"};
-}
-
-namespace {
 
 constexpr int kTrials = 300;  // planes tried; one with a fifth of the points is found with probability 0.91
 constexpr int kStride = 4;    // every 4th pixel in both directions is sampled
@@ -336,6 +180,154 @@ NearestObject describe(const DepthImage& image, const std::vector<int>& patch) {
 }
 
 }  // namespace
+
+FrameImage first_image(const Scenario& scenario, const std::string& subject) {
+  const PointCloud cloud = scenario.cloud(0);
+  if (!cloud.image) refuse(subject, no_image_text(scenario, cloud));
+  if (cloud.size() != cloud.image->camera.pixels())
+    refuse(subject, "frame 0 has ", cloud.size(), " points: expected ", size_text(cloud.image->camera));
+  if (!cloud.has_measured_point())
+    refuse(subject, "no pixel of the first frame has a depth: expected a camera that sees a surface");
+  return {*cloud.image, depth_of(cloud, *cloud.image)};
+}
+
+void require_image_of(const ImageLayout& first, const PointCloud& frame, int number,
+                      const std::string& subject) {
+  constexpr double kFits_px = 1;
+  const auto refuse_frame = [&](const std::string& problem) {
+    refuse(subject, "frame ", number, " ", problem);
+  };
+  const CameraIntrinsics& camera = first.camera;
+  if (!frame.has_measured_point()) return;
+  const bool has_size = !frame.image || (frame.image->camera.width == camera.width &&
+                                         frame.image->camera.height == camera.height);
+  if (!has_size || frame.size() != camera.pixels())
+    refuse_frame("has " +
+                 (has_size ? std::to_string(frame.size()) + " points" : size_text(frame.image->camera)) +
+                 ": expected " + size_text(camera) + ", as frame 0 has");
+  if (frame.image && frame.image->camera == camera) return;  // the layout promises that the points fit
+  const RigidTransform& X_WC = frame.image ? frame.image->X_WC : first.X_WC;
+  const double error_px = largest_error_px(frame, X_WC.inverse(), camera);
+  if (error_px <= kFits_px + first.pixel_slack + (frame.image ? frame.image->pixel_slack : 0)) return;
+  if (!frame.image)
+    refuse_frame("is not an image: expected an image of the camera of frame 0 in every frame");
+  refuse_frame(formatted(
+      "has another camera (f = %.6g, %.6g, c = %.6g, %.6g): expected that of frame 0 (f = %.6g, %.6g, "
+      "c = %.6g, %.6g)",
+      frame.image->camera.fx, frame.image->camera.fy, frame.image->camera.cx, frame.image->camera.cy,
+      camera.fx, camera.fy, camera.cx, camera.cy));
+}
+
+FrameImage image_of(const Scenario& scenario, int frame, const ImageLayout& first,
+                    const std::string& subject) {
+  const PointCloud cloud = scenario.cloud(frame);
+  require_image_of(first, cloud, frame, subject);
+  ImageLayout layout = first;
+  if (cloud.image) layout.X_WC = cloud.image->X_WC;
+  return {layout, depth_of(cloud, layout)};
+}
+
+double supported_depth(const DepthImage& image, int u, int v, const CameraIntrinsics& camera,
+                       const Support& support) {
+  if (u < 0 || v < 0 || u >= image.width || v >= image.height) return std::nan("");
+  const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
+  if (!(std::isfinite(z) && z > 0)) return std::nan("");
+  const int across = reach_px(image, camera.fx, support.margin_m, z);
+  const int down = reach_px(image, camera.fy, support.margin_m, z);
+  if (u <= across || v <= down || u + across >= image.width || v + down >= image.height) return std::nan("");
+  std::vector<double> seen;
+  for (int y = v - down; y <= v + down; ++y) {
+    for (int x = u - across; x <= u + across; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
+      // NaN fails both comparisons, so a hole ends the search too.
+      const bool joined = std::abs(image.z_m[i] - image.z_m[i - 1]) <= support.edge_jump_m &&
+                          std::abs(image.z_m[i] - image.z_m[i - image.width]) <= support.edge_jump_m;
+      if (!joined) return std::nan("");
+      seen.push_back(image.z_m[i]);
+    }
+  }
+  return median_in_place(seen);
+}
+
+int reach_px(const DepthImage& image, double focal_px, double length_m, double depth_m) {
+  if (!(depth_m > 0)) return 1;
+  const double most = std::max({1, image.width, image.height});
+  return static_cast<int>(std::clamp(focal_px * length_m / depth_m, 1.0, most));
+}
+
+std::optional<ImagePixel> nearest_supported(const DepthImage& image, const ImagePixel& to,
+                                            const CameraIntrinsics& camera, const Support& support) {
+  std::optional<ImagePixel> nearest;
+  long least = std::numeric_limits<long>::max();
+  for (int v = 0; v < image.height; ++v)
+    for (int u = 0; u < image.width; ++u) {
+      const long across = u - to.column, down = v - to.row, squared = across * across + down * down;
+      if (squared >= least || std::isnan(supported_depth(image, u, v, camera, support))) continue;
+      least = squared;
+      nearest = ImagePixel{v, u};
+    }
+  return nearest;
+}
+
+// Distances are in pixels along a row.
+DepthImage bridged(const DepthImage& image, const CameraIntrinsics& camera, double hole_m) {
+  constexpr double kMaxReach_px = 64;  // bounds the work for points close to the lens
+  const double row_distance = camera.fx / camera.fy;
+  DepthImage closed = image;
+  std::vector<double> distance_squared(image.z_m.size(), std::numeric_limits<double>::infinity());
+  for (int v = 0; v < image.height; ++v)
+    for (int u = 0; u < image.width; ++u) {
+      const double z = image.z_m[static_cast<std::size_t>(v) * image.width + u];
+      if (!(std::isfinite(z) && z > 0) || !is_rim(image, u, v)) continue;
+      const double reach = std::min(0.5 * hole_m * camera.fx / z, kMaxReach_px);
+      const int across = static_cast<int>(reach);
+      const int down = static_cast<int>(std::min(reach / row_distance, kMaxReach_px));
+      for (int y = std::max(0, v - down); y <= std::min(image.height - 1, v + down); ++y)
+        for (int x = std::max(0, u - across); x <= std::min(image.width - 1, u + across); ++x) {
+          const double below = (y - v) * row_distance, squared = (x - u) * (x - u) + below * below;
+          const std::size_t i = static_cast<std::size_t>(y) * image.width + x;
+          if (squared > reach * reach || std::isfinite(image.z_m[i]) || squared > distance_squared[i])
+            continue;
+          if (squared == distance_squared[i] && z >= closed.z_m[i]) continue;
+          distance_squared[i] = squared, closed.z_m[i] = z;
+        }
+    }
+  return closed;
+}
+
+const DepthImage& BridgeableImage::closed() {
+  if (!closed_) closed_ = bridged(measured_, camera_, hole_m_);
+  return *closed_;
+}
+
+double nearest_depth(const DepthImage& image, const PixelWindow& window) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double z : depths_in(image, window)) nearest = std::min(nearest, z);
+  return nearest;
+}
+
+double median_depth(const DepthImage& image, const PixelWindow& window) {
+  std::vector<double> depths = depths_in(image, window);
+  return depths.empty() ? std::nan("") : median_in_place(depths);
+}
+
+double in_front_of(double depth_m, double clearance_m) {
+  return std::max(depth_m - clearance_m, 0.5 * depth_m);
+}
+
+std::string millimetres(double length_m) {
+  return formatted("%.4g mm", 1e3 * length_m);
+}
+
+void refuse_behind_camera(double surface_m) {
+  refuse("trajectory.clearance_m, depth_m", "the hand would be behind the camera, which is ",
+         millimetres(surface_m), " from the surface: expected smaller values");
+}
+
+Note holes_bridged(const std::string& where, double bridge_m) {
+  return {"holes bridged", where + ": holes up to trajectory.bridge_m = " + millimetres(bridge_m) +
+                               " wide are taken as closed"};
+}
 
 NearestObject nearest_large_object(const DepthImage& image, const CameraIntrinsics& camera) {
   const std::optional<Plane> plane = dominant_plane(sample(image, camera));

@@ -10,18 +10,6 @@
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
-
-void PolylinePath::go_to(const Vec3& p, double speed_m_per_s) {
-  const double duration = speed_m_per_s > 0 ? (p - points_.back()).norm() / speed_m_per_s : 0;
-  arrival_s_.push_back(arrival_s_.back() + duration);
-  points_.push_back(p);
-}
-
-void PolylinePath::wait(double duration_s) {
-  arrival_s_.push_back(arrival_s_.back() + duration_s);
-  points_.push_back(points_.back());
-}
-
 namespace {
 
 // The place of a time among others: the index of the next one, and the fraction of the way to it.
@@ -38,7 +26,89 @@ TimePlace place_in(const std::vector<double>& times_s, double time_s) {
   return {static_cast<std::size_t>(next - times_s.begin()), (time_s - *(next - 1)) / (*next - *(next - 1))};
 }
 
+constexpr std::size_t kColumns = 7;
+constexpr double kHalfRotation_deg = 179.99;
+
+DeviceState pose(const double* row) {
+  return {{row[0], row[1], row[2]}, rotation(kRadiansPerDegree * Vec3(row[3], row[4], row[5]))};
+}
+
+Vec3 rotation_to(const DeviceState& from, const DeviceState& to) {
+  return rotation_vector(to.orientation_W * from.orientation_W.conjugate());
+}
+
+// Spacing of the samples of the surface. A vertical step becomes a slope of this width.
+constexpr double kSampling_m = 1e-4;
+
+constexpr const char* kFollowSubject = "trajectory.name = follow-surface";
+
+// Returns the line from start to end, without its height.
+Vec3 level_line_m(const FollowSurface::Settings& s) {
+  return {s.to_m.x() - s.from_m.x(), 0, s.to_m.z() - s.from_m.z()};
+}
+
+// Returns the heights of the curve that stays at distance `depth` below a profile with samples every
+// `spacing`. It is the lower envelope of circles around the samples.
+std::vector<double> inside(const std::vector<double>& heights, double spacing, double depth) {
+  const int count = static_cast<int>(heights.size()), reach = static_cast<int>(std::abs(depth) / spacing);
+  std::vector<double> result(heights.size(), std::numeric_limits<double>::infinity());
+  for (int i = 0; i < count; ++i)
+    for (int j = std::max(0, i - reach); j <= std::min(count - 1, i + reach); ++j) {
+      const double offset = (i - j) * spacing;
+      const double circle = std::sqrt(std::max(0.0, depth * depth - offset * offset));
+      double& lowest = result[static_cast<std::size_t>(i)];
+      lowest = std::min(lowest, heights[static_cast<std::size_t>(j)] - circle);
+    }
+  return result;
+}
+
+// Returns, for each sample of the profile, the height of the upper end of a step within step_margin_m; minus
+// infinity if there is no step.
+std::vector<double> step_tops(const std::vector<double>& heights, double spacing,
+                              const FollowSurface::Settings& s) {
+  const auto count = static_cast<std::ptrdiff_t>(heights.size());
+  const auto reach = static_cast<std::ptrdiff_t>(s.step_margin_m / spacing);
+  std::vector<double> tops(heights.size(), -std::numeric_limits<double>::infinity());
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const auto first = heights.begin() + std::max<std::ptrdiff_t>(0, i - reach);
+    const auto last = heights.begin() + std::min(count - 1, i + reach) + 1;
+    const auto [low, high] = std::minmax_element(first, last);
+    if (*high - *low > s.step_m) tops[static_cast<std::size_t>(i)] = *high;
+  }
+  return tops;
+}
+
+// The sines' shares of the extent, and their relative rates. The ratios of the rates are irrational: the
+// golden and the silver ratio.
+constexpr double kFraction[] = {0.5, 0.3, 0.2};
+constexpr double kRate[] = {1, 1.618033988749895, 2.414213562373095};
+// The rates of the axes differ too, so that no two stay in phase: they are powers of two, with tenths and
+// twelfths as exponents.
+constexpr double kAxisRate[] = {
+    1, 1.0717734625362931, 0.9438743126816935, 1.1486983549970351, 0.8705505632961241, 1.2311444133449163};
+constexpr double kTwoPi = 6.283185307179586;
+
+// Returns the rate of the first sine of x, rad/s, at which the largest speeds of all sines add up to the
+// allowed speed.
+double rate_of_first_sine(const RandomMotion::Settings& s) {
+  double of_all = 0;
+  for (int i = 0; i < 3; ++i) of_all += kFraction[i] * kRate[i];
+  const Vec3 of_axes = of_all * s.extent_m.cwiseProduct(Vec3(kAxisRate[0], kAxisRate[1], kAxisRate[2]));
+  return s.speed_m_per_s / of_axes.norm();
+}
+
 }  // namespace
+
+void PolylinePath::go_to(const Vec3& p, double speed_m_per_s) {
+  const double duration = speed_m_per_s > 0 ? (p - points_.back()).norm() / speed_m_per_s : 0;
+  arrival_s_.push_back(arrival_s_.back() + duration);
+  points_.push_back(p);
+}
+
+void PolylinePath::wait(double duration_s) {
+  arrival_s_.push_back(arrival_s_.back() + duration_s);
+  points_.push_back(points_.back());
+}
 
 Vec3 PolylinePath::at(double time_s) const {
   const auto [i, fraction] = place_in(arrival_s_, time_s);
@@ -64,21 +134,6 @@ Waypoints::Waypoints(const Settings& settings, const Scenario&)
   const std::vector<double>& w = settings.waypoints;
   for (std::size_t i = 4; i + 3 < w.size(); i += 4) path_.go_to({w[i], w[i + 1], w[i + 2]}, w[i + 3]);
 }
-
-namespace {
-
-constexpr std::size_t kColumns = 7;
-constexpr double kHalfRotation_deg = 179.99;
-
-DeviceState pose(const double* row) {
-  return {{row[0], row[1], row[2]}, rotation(kRadiansPerDegree * Vec3(row[3], row[4], row[5]))};
-}
-
-Vec3 rotation_to(const DeviceState& from, const DeviceState& to) {
-  return rotation_vector(to.orientation_W * from.orientation_W.conjugate());
-}
-
-}  // namespace
 
 Parameters parameters(Poses::Settings& s) {
   return {
@@ -144,20 +199,6 @@ DeviceState Press::at(double time_s) const {
   return {Vec3(settings_.start_m.x(), y - settings_.depth_m, settings_.start_m.z())};
 }
 
-namespace {
-
-// Spacing of the samples of the surface. A vertical step becomes a slope of this width.
-constexpr double kSampling_m = 1e-4;
-
-constexpr const char* kFollowSubject = "trajectory.name = follow-surface";
-
-// Returns the line from start to end, without its height.
-Vec3 level_line_m(const FollowSurface::Settings& s) {
-  return {s.to_m.x() - s.from_m.x(), 0, s.to_m.z() - s.from_m.z()};
-}
-
-}  // namespace
-
 Parameters parameters(FollowSurface::Settings& s) {
   return {
       {"from_m", &s.from_m, -100, 100, "start; its height is not used"},
@@ -175,41 +216,6 @@ Parameters parameters(FollowSurface::Settings& s) {
 std::string validate(const FollowSurface::Settings& s) {
   return level_line_m(s).norm() > 0 ? "" : "to_m: expected another x or z than that of from_m";
 }
-
-namespace {
-
-// Returns the heights of the curve that stays at distance `depth` below a profile with samples every
-// `spacing`. It is the lower envelope of circles around the samples.
-std::vector<double> inside(const std::vector<double>& heights, double spacing, double depth) {
-  const int count = static_cast<int>(heights.size()), reach = static_cast<int>(std::abs(depth) / spacing);
-  std::vector<double> result(heights.size(), std::numeric_limits<double>::infinity());
-  for (int i = 0; i < count; ++i)
-    for (int j = std::max(0, i - reach); j <= std::min(count - 1, i + reach); ++j) {
-      const double offset = (i - j) * spacing;
-      const double circle = std::sqrt(std::max(0.0, depth * depth - offset * offset));
-      double& lowest = result[static_cast<std::size_t>(i)];
-      lowest = std::min(lowest, heights[static_cast<std::size_t>(j)] - circle);
-    }
-  return result;
-}
-
-// Returns, for each sample of the profile, the height of the upper end of a step within step_margin_m; minus
-// infinity if there is no step.
-std::vector<double> step_tops(const std::vector<double>& heights, double spacing,
-                              const FollowSurface::Settings& s) {
-  const auto count = static_cast<std::ptrdiff_t>(heights.size());
-  const auto reach = static_cast<std::ptrdiff_t>(s.step_margin_m / spacing);
-  std::vector<double> tops(heights.size(), -std::numeric_limits<double>::infinity());
-  for (std::ptrdiff_t i = 0; i < count; ++i) {
-    const auto first = heights.begin() + std::max<std::ptrdiff_t>(0, i - reach);
-    const auto last = heights.begin() + std::min(count - 1, i + reach) + 1;
-    const auto [low, high] = std::minmax_element(first, last);
-    if (*high - *low > s.step_m) tops[static_cast<std::size_t>(i)] = *high;
-  }
-  return tops;
-}
-
-}  // namespace
 
 FollowSurface::FollowSurface(const Settings& s, const Scenario& scenario)
     : scenario_(scenario), path_(s.from_m) {
@@ -260,29 +266,6 @@ DeviceState FollowSurface::at(double time_s) const {
   if (moves_) p_W.y() += risen_m(p_W, time_s);
   return {p_W};
 }
-
-namespace {
-
-// The sines' shares of the extent, and their relative rates. The ratios of the rates are irrational: the
-// golden and the silver ratio.
-constexpr double kFraction[] = {0.5, 0.3, 0.2};
-constexpr double kRate[] = {1, 1.618033988749895, 2.414213562373095};
-// The rates of the axes differ too, so that no two stay in phase: they are powers of two, with tenths and
-// twelfths as exponents.
-constexpr double kAxisRate[] = {
-    1, 1.0717734625362931, 0.9438743126816935, 1.1486983549970351, 0.8705505632961241, 1.2311444133449163};
-constexpr double kTwoPi = 6.283185307179586;
-
-// Returns the rate of the first sine of x, rad/s, at which the largest speeds of all sines add up to the
-// allowed speed.
-double rate_of_first_sine(const RandomMotion::Settings& s) {
-  double of_all = 0;
-  for (int i = 0; i < 3; ++i) of_all += kFraction[i] * kRate[i];
-  const Vec3 of_axes = of_all * s.extent_m.cwiseProduct(Vec3(kAxisRate[0], kAxisRate[1], kAxisRate[2]));
-  return s.speed_m_per_s / of_axes.norm();
-}
-
-}  // namespace
 
 Parameters parameters(RandomMotion::Settings& s) {
   return {

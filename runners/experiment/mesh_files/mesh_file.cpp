@@ -127,15 +127,6 @@ class FacetWatch final : public Assimp::LogStream {
   bool found_ = false;
 };
 
-}  // namespace
-
-bool is_mesh_file(const std::filesystem::path& file) {
-  const std::string ending = ending_of(file);
-  return ending == ".obj" || ending == ".ply" || ending == ".stl";
-}
-
-namespace {
-
 // Throws std::runtime_error unless a binary STL file has as many bytes as its count of facets needs. The
 // library refuses other sizes too, but not in plain words.
 void require_whole_facets(const std::string& stl) {
@@ -230,6 +221,11 @@ void require_precise(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+bool is_mesh_file(const std::filesystem::path& file) {
+  const std::string ending = ending_of(file);
+  return ending == ".obj" || ending == ".ply" || ending == ".stl";
+}
 
 TriangleMesh read_mesh(const std::filesystem::path& file, const RunInChild& run) {
   const char* allowed = "expected an OBJ, PLY or STL file";

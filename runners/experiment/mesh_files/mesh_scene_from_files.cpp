@@ -120,6 +120,103 @@ std::string motion_problem(const PlacedMesh& s, const std::string& prefix) {
   return {};
 }
 
+constexpr std::array<const char*, 3> kPrefixes = {"", "second_", "third_"};
+
+SceneMesh table_around(const BoundingBox& box, double height_m) {
+  const double a = box.isEmpty() ? 0.5 : std::max(0.5, box.diagonal().norm());
+  const TriangleMesh plate = {{{-a, 0, a}, {a, 0, a}, {a, 0, -a}, {-a, 0, -a}}, {{0, 1, 2}, {0, 2, 3}}};
+  RigidTransform X_WO = RigidTransform::Identity();
+  if (!box.isEmpty()) X_WO.translation() = box.center();
+  X_WO.translation().y() = height_m;
+  return {{"table", std::make_shared<const MeshDistance>(plate), false}, PosePath(X_WO)};
+}
+
+BoundingBox box_of(const SceneMesh& mesh) {
+  BoundingBox box;
+  const RigidTransform X_WO = mesh.path.at(0);
+  for (const Vec3& vertex : mesh.object.shape->vertices()) box.extend(X_WO * vertex);
+  return box;
+}
+
+// Returns the depth of the nearest surface that the sensor measures.
+double nearest_depth_m(const DepthSensorSettings& sensor) {
+  if (sensor.sensor == DepthSensorKind::simple) return 0;
+  const Triangulation t = triangulation(sensor);
+  return t.max_disparity_px > 0 ? t.focal_px * t.baseline_m / t.max_disparity_px : 0;
+}
+
+// Places the camera where a ball around the box fills the smaller side of the image, or farther away, where
+// the nearest point of the ball is not too near for the sensor.
+void fit(const BoundingBox& box, DepthSensorSettings& sensor) {
+  DepthCameraSettings& camera = sensor.camera;
+  const double half_image_px = 0.5 * std::min(camera.width, camera.height);
+  const double radius_m = 0.5 * box.diagonal().norm();
+  const double filling_m =
+      radius_m * std::sqrt(half_image_px * half_image_px + camera.focal_px * camera.focal_px) / half_image_px;
+  const double distance_m = std::max(filling_m, radius_m + nearest_depth_m(sensor));
+  const Vec3 back = (camera.camera_position_m - camera.target_position_m).normalized();
+  camera.target_position_m = box.center();
+  camera.camera_position_m = box.center() + distance_m * back;
+}
+
+std::string text_of(const SceneMesh& mesh) {
+  const Vec3 sides_m = box_of(mesh).sizes();
+  return mesh.object.name +
+         formatted(": %zu triangles, %.3f x %.3f x %.3f m", mesh.object.shape->triangles().size(),
+                   sides_m.x(), sides_m.y(), sides_m.z()) +
+         (mesh.object.shape->crosses_itself() ? ", its faces cross each other" : "");
+}
+
+std::string text_of(const Vec3& camera_W) {
+  return formatted("camera at (%.3f, %.3f, %.3f) m", camera_W.x(), camera_W.y(), camera_W.z());
+}
+
+// The paths of the files of poses that a scene names, on one clock.
+class ScenePaths {
+ public:
+  ScenePaths(const MeshSceneFromFiles::Settings& s, std::vector<Note>& notes) {
+    for (const PlacedMesh& object : s.objects) add(object.mesh.empty() ? "" : object.path);
+    add(s.camera_path);
+    std::vector<const PoseFile*> files;
+    for (const auto& file : files_)
+      if (file) files.push_back(&*file);
+    const std::vector<double> origins_s = origins_of_clocks(files, notes);
+    for (std::size_t i = 0, next = 0; i < files_.size(); ++i) {
+      if (!files_[i]) continue;
+      paths_[i] = path_of(*files_[i], origins_s[next++]);
+      if (i + 1 == files_.size() && s.pose_direction == PoseDirection::world_to_camera)
+        paths_[i] = inverse(*paths_[i]);
+      const bool may_be_reordered = files_[i]->has_unnamed_quaternions && i + 1 < files_.size();
+      const std::string name = files_[i]->file.filename().string();
+      for (const auto& more : {files_[i]->notes, unusual_poses(name, paths_[i]->poses(), may_be_reordered)})
+        notes.insert(notes.end(), more.begin(), more.end());
+      text_ += "; " + name + ": " + motion_text(paths_[i]->poses());
+    }
+  }
+
+  // i: index of an object, or kCamera.
+  static constexpr std::size_t kCamera = 3;
+  const std::optional<PosePath>& operator[](std::size_t i) const { return paths_[i]; }
+  // Describes what was read of each, for the user.
+  const std::string& text() const { return text_; }
+
+ private:
+  void add(const std::string& name) {
+    files_.push_back(name.empty() ? std::nullopt
+                                  : std::optional(read_poses(find_input(name), PoseLines::stamped)));
+    paths_.emplace_back();
+  }
+  static PosePath inverse(const PosePath& path) {
+    std::vector<StampedPose> poses = path.poses();
+    for (StampedPose& pose : poses) pose.X = pose.X.inverse();
+    return PosePath(std::move(poses));
+  }
+
+  std::vector<std::optional<PoseFile>> files_;
+  std::vector<std::optional<PosePath>> paths_;
+  std::string text_;
+};
+
 }  // namespace
 
 Parameters parameters(PlacedMesh& s, const std::string& prefix) {
@@ -178,61 +275,6 @@ SceneMesh load(const PlacedMesh& s, const std::string& prefix, const PosePath& p
   return {std::move(object), std::move(path), colour_in(s.colour)};
 }
 
-namespace {
-
-constexpr std::array<const char*, 3> kPrefixes = {"", "second_", "third_"};
-
-SceneMesh table_around(const BoundingBox& box, double height_m) {
-  const double a = box.isEmpty() ? 0.5 : std::max(0.5, box.diagonal().norm());
-  const TriangleMesh plate = {{{-a, 0, a}, {a, 0, a}, {a, 0, -a}, {-a, 0, -a}}, {{0, 1, 2}, {0, 2, 3}}};
-  RigidTransform X_WO = RigidTransform::Identity();
-  if (!box.isEmpty()) X_WO.translation() = box.center();
-  X_WO.translation().y() = height_m;
-  return {{"table", std::make_shared<const MeshDistance>(plate), false}, PosePath(X_WO)};
-}
-
-BoundingBox box_of(const SceneMesh& mesh) {
-  BoundingBox box;
-  const RigidTransform X_WO = mesh.path.at(0);
-  for (const Vec3& vertex : mesh.object.shape->vertices()) box.extend(X_WO * vertex);
-  return box;
-}
-
-// Returns the depth of the nearest surface that the sensor measures.
-double nearest_depth_m(const DepthSensorSettings& sensor) {
-  if (sensor.sensor == DepthSensorKind::simple) return 0;
-  const Triangulation t = triangulation(sensor);
-  return t.max_disparity_px > 0 ? t.focal_px * t.baseline_m / t.max_disparity_px : 0;
-}
-
-// Places the camera where a ball around the box fills the smaller side of the image, or farther away, where
-// the nearest point of the ball is not too near for the sensor.
-void fit(const BoundingBox& box, DepthSensorSettings& sensor) {
-  DepthCameraSettings& camera = sensor.camera;
-  const double half_image_px = 0.5 * std::min(camera.width, camera.height);
-  const double radius_m = 0.5 * box.diagonal().norm();
-  const double filling_m =
-      radius_m * std::sqrt(half_image_px * half_image_px + camera.focal_px * camera.focal_px) / half_image_px;
-  const double distance_m = std::max(filling_m, radius_m + nearest_depth_m(sensor));
-  const Vec3 back = (camera.camera_position_m - camera.target_position_m).normalized();
-  camera.target_position_m = box.center();
-  camera.camera_position_m = box.center() + distance_m * back;
-}
-
-std::string text_of(const SceneMesh& mesh) {
-  const Vec3 sides_m = box_of(mesh).sizes();
-  return mesh.object.name +
-         formatted(": %zu triangles, %.3f x %.3f x %.3f m", mesh.object.shape->triangles().size(),
-                   sides_m.x(), sides_m.y(), sides_m.z()) +
-         (mesh.object.shape->crosses_itself() ? ", its faces cross each other" : "");
-}
-
-std::string text_of(const Vec3& camera_W) {
-  return formatted("camera at (%.3f, %.3f, %.3f) m", camera_W.x(), camera_W.y(), camera_W.z());
-}
-
-}  // namespace
-
 Parameters parameters(MeshSceneFromFiles::Settings& s) {
   Parameters all;
   for (std::size_t i = 0; i < kPrefixes.size(); ++i)
@@ -269,56 +311,6 @@ std::vector<InputPart> input_files(const MeshSceneFromFiles::Settings& s) {
   if (!s.camera_path.empty()) files.push_back({s.camera_path});
   return files;
 }
-
-namespace {
-
-// The paths of the files of poses that a scene names, on one clock.
-class ScenePaths {
- public:
-  ScenePaths(const MeshSceneFromFiles::Settings& s, std::vector<Note>& notes) {
-    for (const PlacedMesh& object : s.objects) add(object.mesh.empty() ? "" : object.path);
-    add(s.camera_path);
-    std::vector<const PoseFile*> files;
-    for (const auto& file : files_)
-      if (file) files.push_back(&*file);
-    const std::vector<double> origins_s = origins_of_clocks(files, notes);
-    for (std::size_t i = 0, next = 0; i < files_.size(); ++i) {
-      if (!files_[i]) continue;
-      paths_[i] = path_of(*files_[i], origins_s[next++]);
-      if (i + 1 == files_.size() && s.pose_direction == PoseDirection::world_to_camera)
-        paths_[i] = inverse(*paths_[i]);
-      const bool may_be_reordered = files_[i]->has_unnamed_quaternions && i + 1 < files_.size();
-      const std::string name = files_[i]->file.filename().string();
-      for (const auto& more : {files_[i]->notes, unusual_poses(name, paths_[i]->poses(), may_be_reordered)})
-        notes.insert(notes.end(), more.begin(), more.end());
-      text_ += "; " + name + ": " + motion_text(paths_[i]->poses());
-    }
-  }
-
-  // i: index of an object, or kCamera.
-  static constexpr std::size_t kCamera = 3;
-  const std::optional<PosePath>& operator[](std::size_t i) const { return paths_[i]; }
-  // Describes what was read of each, for the user.
-  const std::string& text() const { return text_; }
-
- private:
-  void add(const std::string& name) {
-    files_.push_back(name.empty() ? std::nullopt
-                                  : std::optional(read_poses(find_input(name), PoseLines::stamped)));
-    paths_.emplace_back();
-  }
-  static PosePath inverse(const PosePath& path) {
-    std::vector<StampedPose> poses = path.poses();
-    for (StampedPose& pose : poses) pose.X = pose.X.inverse();
-    return PosePath(std::move(poses));
-  }
-
-  std::vector<std::optional<PoseFile>> files_;
-  std::vector<std::optional<PosePath>> paths_;
-  std::string text_;
-};
-
-}  // namespace
 
 MeshSceneFromFiles::Parts MeshSceneFromFiles::read(const Settings& s) {
   Parts parts{{}, {}, s.scene, {}, {}};

@@ -46,37 +46,6 @@ bool is_sound(const VoxelTool& tool) {
          tool.grid.origin_T.allFinite() && tool.grid.size_m > 0 && std::isfinite(tool.grid.size_m);
 }
 
-}  // namespace
-
-std::string sha256_of_mesh(const TriangleMesh& mesh) {
-  CacheWriter pack;
-  pack.list(mesh.vertices);
-  pack.list(mesh.triangles);
-  return pack.hex();
-}
-
-std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings) {
-  CacheWriter pack;
-  pack.text(build_for_keys());
-  pack.text(mesh_sha256);
-  pack.value(settings.voxel_m), pack.value(settings.size_m), pack.value(settings.repair);
-  if (settings.outer_field) pack.text("outer field");
-  return pack.hex();
-}
-
-std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& key) {
-  StoredTool stored;
-  if (!read_cache_file(folder, kToolKind, key, [&](Unpacker& unpack) { visit(unpack, stored); })) return {};
-  if (!is_sound(stored.tool)) return {};
-  return stored;
-}
-
-bool write_tool(const fs::path& folder, const std::string& key, const StoredTool& stored) {
-  return write_cache_file(folder, kToolKind, key, [&](CacheWriter& pack) { visit(pack, stored); });
-}
-
-namespace {
-
 const CacheKind kSpheresKind{"spheres", kSpheresFormat};
 
 // A tree as lists. It can be built again from its leaves and the number of leaves of each node of the lowest
@@ -117,7 +86,62 @@ void visit(Direction& pack, Tree& tree, Spheres& spheres) {
   pack.value(spheres.inflation_m), pack.value(spheres.outside_m), pack.value(spheres.surface_outside_m);
 }
 
+struct KeyedTool {
+  std::string key;  // key in the cache
+  StoredTool stored;
+};
+
+KeyedTool built_or_cached(const ToolSettings& s) {
+  const VoxelToolSettings settings{s.voxel_m, s.size_m, s.repair, s.outer_field};
+  const GeneratedTool* built_in = find_generated_tool(s.mesh);
+  const fs::path file = built_in != nullptr ? "" : find_mesh_file("renderer.tool_mesh", s.mesh);
+  TriangleMesh mesh;
+  if (built_in != nullptr) mesh = built_in->make();
+  // The key of a mesh file comes from its bytes and not from its mesh, because reading the mesh takes longer
+  // than reading its tool from the cache.
+  const std::string source =
+      built_in != nullptr ? sha256_of_mesh(mesh)
+                          : sha256_of_file(file) + file.extension().string() + " " + mesh_reader_version();
+  const fs::path folder = cache_folder();
+  const std::string key = tool_key(source, settings);
+  if (std::optional<StoredTool> stored = read_tool(folder, key)) return {key, *std::move(stored)};
+  if (built_in == nullptr) mesh = read_mesh(file);
+  ToolReport made;
+  StoredTool stored;
+  stored.tool = make_voxel_tool(std::move(mesh), settings, made, "renderer.tool_mesh = " + s.mesh);
+  stored.report = text(made);
+  write_tool(folder, key, stored);
+  return {key, std::move(stored)};
+}
+
 }  // namespace
+
+std::string sha256_of_mesh(const TriangleMesh& mesh) {
+  CacheWriter pack;
+  pack.list(mesh.vertices);
+  pack.list(mesh.triangles);
+  return pack.hex();
+}
+
+std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings) {
+  CacheWriter pack;
+  pack.text(build_for_keys());
+  pack.text(mesh_sha256);
+  pack.value(settings.voxel_m), pack.value(settings.size_m), pack.value(settings.repair);
+  if (settings.outer_field) pack.text("outer field");
+  return pack.hex();
+}
+
+std::optional<StoredTool> read_tool(const fs::path& folder, const std::string& key) {
+  StoredTool stored;
+  if (!read_cache_file(folder, kToolKind, key, [&](Unpacker& unpack) { visit(unpack, stored); })) return {};
+  if (!is_sound(stored.tool)) return {};
+  return stored;
+}
+
+bool write_tool(const fs::path& folder, const std::string& key, const StoredTool& stored) {
+  return write_cache_file(folder, kToolKind, key, [&](CacheWriter& pack) { visit(pack, stored); });
+}
 
 std::string spheres_key(const std::string& tool_key, int max_leaves) {
   CacheWriter pack;
@@ -161,38 +185,6 @@ std::string validate(const ToolSettings& s) {
 std::vector<InputPart> input_files(const ToolSettings& s) {
   return mesh_files_of(s.mesh);
 }
-
-namespace {
-
-struct KeyedTool {
-  std::string key;  // key in the cache
-  StoredTool stored;
-};
-
-KeyedTool built_or_cached(const ToolSettings& s) {
-  const VoxelToolSettings settings{s.voxel_m, s.size_m, s.repair, s.outer_field};
-  const GeneratedTool* built_in = find_generated_tool(s.mesh);
-  const fs::path file = built_in != nullptr ? "" : find_mesh_file("renderer.tool_mesh", s.mesh);
-  TriangleMesh mesh;
-  if (built_in != nullptr) mesh = built_in->make();
-  // The key of a mesh file comes from its bytes and not from its mesh, because reading the mesh takes longer
-  // than reading its tool from the cache.
-  const std::string source =
-      built_in != nullptr ? sha256_of_mesh(mesh)
-                          : sha256_of_file(file) + file.extension().string() + " " + mesh_reader_version();
-  const fs::path folder = cache_folder();
-  const std::string key = tool_key(source, settings);
-  if (std::optional<StoredTool> stored = read_tool(folder, key)) return {key, *std::move(stored)};
-  if (built_in == nullptr) mesh = read_mesh(file);
-  ToolReport made;
-  StoredTool stored;
-  stored.tool = make_voxel_tool(std::move(mesh), settings, made, "renderer.tool_mesh = " + s.mesh);
-  stored.report = text(made);
-  write_tool(folder, key, stored);
-  return {key, std::move(stored)};
-}
-
-}  // namespace
 
 std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& s, std::string* report) {
   KeyedTool made = built_or_cached(s);

@@ -52,46 +52,6 @@ float float_at(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-}  // namespace
-
-bool is_depth_encoding(const std::string& encoding) {
-  return encoding == "16UC1" || encoding == "mono16" || encoding == "Z16" || encoding == "32FC1";
-}
-
-DepthImage depth_from_message(const ImageMessage& message, const DepthUnits& units, double max_depth_m,
-                              const std::string& subject) {
-  const std::string& encoding = message.encoding;
-  if (!is_depth_encoding(encoding))
-    refuse(subject, "encoding = \"", encoding.substr(0, 32), "\": expected depths as ", kDepthEncodings);
-  if (encoding == "32FC1") return depth_of_rows<float>(message, units.of_floats_m, max_depth_m, subject);
-  return depth_of_rows<std::uint16_t>(message, units.of_integers_m, max_depth_m, subject);
-}
-
-DepthImage depth_from_message(const CompressedImageMessage& message, const DepthUnits& units,
-                              double max_depth_m, const std::string& subject) {
-  constexpr std::size_t kHeader = 12;
-  const bool integers = message.format.starts_with("16UC1"), floats = message.format.starts_with("32FC1");
-  const bool transport = message.format.find("compressedDepth") != std::string::npos;
-  if (!transport || !(integers || floats) || message.format.find("rvl") != std::string::npos)
-    refuse(subject, "format = \"", message.format.substr(0, 64),
-           "\": expected \"16UC1; compressedDepth\" or \"32FC1; compressedDepth\", "
-           "with PNG inside");
-  if (message.data.size() < kHeader)
-    refuse(subject, "has ", message.data.size(),
-           " bytes of data: expected a header of 12 bytes and a PNG image");
-  const float a = float_at(message.data, 4), b = float_at(message.data, 8);
-  const GreyImage image = decode_grey_png(message.data.substr(kHeader), subject);
-  DepthImage depth{image.width, image.height, std::vector<double>(image.values.size())};
-  for (std::size_t i = 0; i < depth.z_m.size(); ++i) {
-    const double q = image.values[i];
-    const double z_m = integers ? q * units.of_integers_m : q > 0 ? a / (q - b) * units.of_floats_m : 0;
-    depth.z_m[i] = measured_or_nan(z_m, max_depth_m);
-  }
-  return depth;
-}
-
-namespace {
-
 // Lens model: maps the ray (x, y, 1) of a pinhole to the ray that the lens makes of it. D = (k1, k2, p1, p2,
 // k3).
 struct PlumbBob {
@@ -203,92 +163,6 @@ void require_pinhole(const double* matrix, std::size_t columns, const char* name
   }
 }
 
-}  // namespace
-
-ImageSize image_size(const CameraInfoMessage& info, const std::string& subject) {
-  const std::uint32_t bx = binning(info.binning_x), by = binning(info.binning_y);
-  const ImageSize size = {extent_x(info, subject).size / bx, extent_y(info, subject).size / by};
-  if (info.width > 0 && info.height > 0 && (size.width == 0 || size.height == 0))
-    refuse(subject, "binning = ", bx, " x ", by, ": expected no more than the pixels that the camera has");
-  return size;
-}
-
-ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::string& subject) {
-  const ImageSize size = image_size(info, subject);
-  const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
-  if (pixels == 0 || pixels > kMaxImagePixels)
-    refuse(subject, "has ", size.width, " x ", size.height, " pixels: expected 1 to ", kMaxImagePixels);
-  const auto& K = info.K;
-  const auto& P = info.P;
-  const double fx = rectified ? P[0] : K[0], fy = rectified ? P[5] : K[4];
-  const double cx = rectified ? P[2] : K[2], cy = rectified ? P[6] : K[5];
-  const auto sound = [](double f) { return f > 1e-6 && f < 1e6; };  // so that every ray is finite
-  const Axis x = binned({fx, cx}, info.region.x_offset, binning(info.binning_x));
-  const Axis y = binned({fy, cy}, info.region.y_offset, binning(info.binning_y));
-  if (!sound(x.f) || !sound(y.f) || !(std::abs(x.c) < 1e6) || !(std::abs(y.c) < 1e6))
-    refuse(subject, rectified ? "P" : "K", " has fx = ", fx, ", fy = ", fy, ", cx = ", cx, ", cy = ", cy,
-           ": expected a calibrated camera");
-  if (rectified)
-    require_pinhole(P.data(), 4, "P", subject);
-  else
-    require_pinhole(K.data(), 3, "K", subject);
-  if (rectified && info.region.do_rectify)
-    refuse(subject,
-           "roi.do_rectify = true: expected false, because the region of the rectified image "
-           "is not stated");
-  camera_ = {static_cast<int>(size.width), static_cast<int>(size.height), x.f, y.f, x.c, y.c};
-  const auto& d = info.distortion;
-  if (rectified) return;
-  const bool straight = std::all_of(d.begin(), d.end(), [](double k) { return k == 0; });
-  if (straight && bends_by_coefficients_only(info.distortion_model)) return;
-  const bool finite = std::all_of(d.begin(), d.end(), [](double k) { return std::isfinite(k); });
-  if (info.distortion_model != "plumb_bob" || (d.size() != 4 && d.size() != 5) || !finite)
-    refuse(subject, "distortion_model = \"", info.distortion_model.substr(0, 32), "\" with ", d.size(),
-           " coefficients: expected plumb_bob with 4 or 5 finite ones, or a pinhole");
-  make_table(info);
-}
-
-void ImageRays::make_table(const CameraInfoMessage& info) {
-  const PlumbBob lens(info.distortion);
-  const std::size_t pixels = static_cast<std::size_t>(camera_.width) * camera_.height;
-  source_.assign(pixels, -1), ray_x_.assign(pixels, 0), ray_y_.assign(pixels, 0);
-  const auto pixel = [&](const Eigen::Vector2d& ray) {
-    return Eigen::Vector2d(camera_.fx * ray.x() + camera_.cx, camera_.fy * ray.y() + camera_.cy);
-  };
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const std::size_t u = i % static_cast<std::size_t>(camera_.width);
-    const std::size_t v = i / static_cast<std::size_t>(camera_.width);
-    const Eigen::Vector2d at(static_cast<double>(u), static_cast<double>(v));
-    Eigen::Vector2d ray((at.x() - camera_.cx) / camera_.fx, (at.y() - camera_.cy) / camera_.fy);
-    if (!lens.is_one_to_one_at(ray)) continue;
-    const Eigen::Vector2d seen = pixel(lens.bent(ray)).array().round();
-    if (!(seen.x() >= 0 && seen.y() >= 0 && seen.x() < camera_.width && seen.y() < camera_.height)) continue;
-    const Eigen::Vector2d to((seen.x() - camera_.cx) / camera_.fx, (seen.y() - camera_.cy) / camera_.fy);
-    constexpr double kMaxSlack_px = 2;  // beyond it the lens shrinks the image too much for one point a pixel
-    if (!lens.unbend(to, ray) || !((pixel(ray) - at).cwiseAbs().maxCoeff() < kMaxSlack_px)) continue;
-    slack_ = std::max(slack_, (pixel(ray) - at).cwiseAbs().maxCoeff() + 1e-6);
-    source_[i] = static_cast<int>(seen.y()) * camera_.width + static_cast<int>(seen.x());
-    ray_x_[i] = ray.x(), ray_y_[i] = ray.y();
-  }
-}
-
-PointCloud ImageRays::cloud(const DepthImage& depth) const {
-  assert(depth.width == camera_.width && depth.height == camera_.height);
-  if (!has_distortion()) return cloud_from_depth(depth, camera_, RigidTransform::Identity());
-  PointCloud cloud;
-  const std::size_t pixels = source_.size();
-  cloud.x.resize(pixels), cloud.y.resize(pixels), cloud.z.resize(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const double z_m = source_[i] < 0 ? std::numeric_limits<double>::quiet_NaN()
-                                      : depth.z_m[static_cast<std::size_t>(source_[i])];
-    cloud.x[i] = ray_x_[i] * z_m, cloud.y[i] = ray_y_[i] * z_m, cloud.z[i] = z_m;
-  }
-  cloud.image = ImageLayout{camera_, RigidTransform::Identity(), slack_};
-  return cloud;
-}
-
-namespace {
-
 static_assert(std::endian::native == std::endian::little, "a message may be the other way round");
 
 constexpr std::uint64_t kMaxPoints = 1u << 24;  // 0.4 GB of coordinates
@@ -390,6 +264,124 @@ void read_colour(const PointCloudMessage& message, const std::string& subject,
 }
 
 }  // namespace
+
+bool is_depth_encoding(const std::string& encoding) {
+  return encoding == "16UC1" || encoding == "mono16" || encoding == "Z16" || encoding == "32FC1";
+}
+
+DepthImage depth_from_message(const ImageMessage& message, const DepthUnits& units, double max_depth_m,
+                              const std::string& subject) {
+  const std::string& encoding = message.encoding;
+  if (!is_depth_encoding(encoding))
+    refuse(subject, "encoding = \"", encoding.substr(0, 32), "\": expected depths as ", kDepthEncodings);
+  if (encoding == "32FC1") return depth_of_rows<float>(message, units.of_floats_m, max_depth_m, subject);
+  return depth_of_rows<std::uint16_t>(message, units.of_integers_m, max_depth_m, subject);
+}
+
+DepthImage depth_from_message(const CompressedImageMessage& message, const DepthUnits& units,
+                              double max_depth_m, const std::string& subject) {
+  constexpr std::size_t kHeader = 12;
+  const bool integers = message.format.starts_with("16UC1"), floats = message.format.starts_with("32FC1");
+  const bool transport = message.format.find("compressedDepth") != std::string::npos;
+  if (!transport || !(integers || floats) || message.format.find("rvl") != std::string::npos)
+    refuse(subject, "format = \"", message.format.substr(0, 64),
+           "\": expected \"16UC1; compressedDepth\" or \"32FC1; compressedDepth\", "
+           "with PNG inside");
+  if (message.data.size() < kHeader)
+    refuse(subject, "has ", message.data.size(),
+           " bytes of data: expected a header of 12 bytes and a PNG image");
+  const float a = float_at(message.data, 4), b = float_at(message.data, 8);
+  const GreyImage image = decode_grey_png(message.data.substr(kHeader), subject);
+  DepthImage depth{image.width, image.height, std::vector<double>(image.values.size())};
+  for (std::size_t i = 0; i < depth.z_m.size(); ++i) {
+    const double q = image.values[i];
+    const double z_m = integers ? q * units.of_integers_m : q > 0 ? a / (q - b) * units.of_floats_m : 0;
+    depth.z_m[i] = measured_or_nan(z_m, max_depth_m);
+  }
+  return depth;
+}
+
+ImageSize image_size(const CameraInfoMessage& info, const std::string& subject) {
+  const std::uint32_t bx = binning(info.binning_x), by = binning(info.binning_y);
+  const ImageSize size = {extent_x(info, subject).size / bx, extent_y(info, subject).size / by};
+  if (info.width > 0 && info.height > 0 && (size.width == 0 || size.height == 0))
+    refuse(subject, "binning = ", bx, " x ", by, ": expected no more than the pixels that the camera has");
+  return size;
+}
+
+ImageRays::ImageRays(const CameraInfoMessage& info, bool rectified, const std::string& subject) {
+  const ImageSize size = image_size(info, subject);
+  const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
+  if (pixels == 0 || pixels > kMaxImagePixels)
+    refuse(subject, "has ", size.width, " x ", size.height, " pixels: expected 1 to ", kMaxImagePixels);
+  const auto& K = info.K;
+  const auto& P = info.P;
+  const double fx = rectified ? P[0] : K[0], fy = rectified ? P[5] : K[4];
+  const double cx = rectified ? P[2] : K[2], cy = rectified ? P[6] : K[5];
+  const auto sound = [](double f) { return f > 1e-6 && f < 1e6; };  // so that every ray is finite
+  const Axis x = binned({fx, cx}, info.region.x_offset, binning(info.binning_x));
+  const Axis y = binned({fy, cy}, info.region.y_offset, binning(info.binning_y));
+  if (!sound(x.f) || !sound(y.f) || !(std::abs(x.c) < 1e6) || !(std::abs(y.c) < 1e6))
+    refuse(subject, rectified ? "P" : "K", " has fx = ", fx, ", fy = ", fy, ", cx = ", cx, ", cy = ", cy,
+           ": expected a calibrated camera");
+  if (rectified)
+    require_pinhole(P.data(), 4, "P", subject);
+  else
+    require_pinhole(K.data(), 3, "K", subject);
+  if (rectified && info.region.do_rectify)
+    refuse(subject,
+           "roi.do_rectify = true: expected false, because the region of the rectified image "
+           "is not stated");
+  camera_ = {static_cast<int>(size.width), static_cast<int>(size.height), x.f, y.f, x.c, y.c};
+  const auto& d = info.distortion;
+  if (rectified) return;
+  const bool straight = std::all_of(d.begin(), d.end(), [](double k) { return k == 0; });
+  if (straight && bends_by_coefficients_only(info.distortion_model)) return;
+  const bool finite = std::all_of(d.begin(), d.end(), [](double k) { return std::isfinite(k); });
+  if (info.distortion_model != "plumb_bob" || (d.size() != 4 && d.size() != 5) || !finite)
+    refuse(subject, "distortion_model = \"", info.distortion_model.substr(0, 32), "\" with ", d.size(),
+           " coefficients: expected plumb_bob with 4 or 5 finite ones, or a pinhole");
+  make_table(info);
+}
+
+void ImageRays::make_table(const CameraInfoMessage& info) {
+  const PlumbBob lens(info.distortion);
+  const std::size_t pixels = static_cast<std::size_t>(camera_.width) * camera_.height;
+  source_.assign(pixels, -1), ray_x_.assign(pixels, 0), ray_y_.assign(pixels, 0);
+  const auto pixel = [&](const Eigen::Vector2d& ray) {
+    return Eigen::Vector2d(camera_.fx * ray.x() + camera_.cx, camera_.fy * ray.y() + camera_.cy);
+  };
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const std::size_t u = i % static_cast<std::size_t>(camera_.width);
+    const std::size_t v = i / static_cast<std::size_t>(camera_.width);
+    const Eigen::Vector2d at(static_cast<double>(u), static_cast<double>(v));
+    Eigen::Vector2d ray((at.x() - camera_.cx) / camera_.fx, (at.y() - camera_.cy) / camera_.fy);
+    if (!lens.is_one_to_one_at(ray)) continue;
+    const Eigen::Vector2d seen = pixel(lens.bent(ray)).array().round();
+    if (!(seen.x() >= 0 && seen.y() >= 0 && seen.x() < camera_.width && seen.y() < camera_.height)) continue;
+    const Eigen::Vector2d to((seen.x() - camera_.cx) / camera_.fx, (seen.y() - camera_.cy) / camera_.fy);
+    constexpr double kMaxSlack_px = 2;  // beyond it the lens shrinks the image too much for one point a pixel
+    if (!lens.unbend(to, ray) || !((pixel(ray) - at).cwiseAbs().maxCoeff() < kMaxSlack_px)) continue;
+    slack_ = std::max(slack_, (pixel(ray) - at).cwiseAbs().maxCoeff() + 1e-6);
+    source_[i] = static_cast<int>(seen.y()) * camera_.width + static_cast<int>(seen.x());
+    ray_x_[i] = ray.x(), ray_y_[i] = ray.y();
+  }
+}
+
+PointCloud ImageRays::cloud(const DepthImage& depth) const {
+  assert(depth.width == camera_.width && depth.height == camera_.height);
+  if (!has_distortion()) return cloud_from_depth(depth, camera_, RigidTransform::Identity());
+  PointCloud cloud;
+  const std::size_t pixels = source_.size();
+  cloud.x.resize(pixels), cloud.y.resize(pixels), cloud.z.resize(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const double z_m = source_[i] < 0 ? std::numeric_limits<double>::quiet_NaN()
+                                      : depth.z_m[static_cast<std::size_t>(source_[i])];
+    cloud.x[i] = ray_x_[i] * z_m, cloud.y[i] = ray_y_[i] * z_m, cloud.z[i] = z_m;
+  }
+  cloud.image = ImageLayout{camera_, RigidTransform::Identity(), slack_};
+  return cloud;
+}
 
 PointCloud cloud_from_message(const PointCloudMessage& message, const std::string& subject) {
   check_size(message, subject);

@@ -67,33 +67,6 @@ std::vector<double> ratios(const std::vector<double>& across, const std::vector<
   return result;
 }
 
-}  // namespace
-
-void mark_missing_points(PointCloud& cloud) {
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Vec3 p = cloud.point(i);
-    if (p.allFinite() && !p.isZero(0)) continue;
-    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
-  }
-}
-
-std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int height) {
-  // A pinhole camera sees no point behind it. The fit cannot detect such a point, because x/z is the same at
-  // (-x, -z).
-  const auto behind_camera = [](double z_m) { return z_m <= 0; };
-  if (std::any_of(cloud.z.begin(), cloud.z.end(), behind_camera)) return std::nullopt;
-  const std::size_t columns = static_cast<std::size_t>(width);
-  const auto u = fit_axis(ratios(cloud.x, cloud.z), columns, true);
-  const auto v = fit_axis(ratios(cloud.y, cloud.z), columns, false);
-  if (!u || !v || !(u->focal > 0) || !(v->focal > 0)) return std::nullopt;
-  const double residual = std::max(u->residual, v->residual);
-  if (!(residual < kMaxFitResidual_px)) return std::nullopt;
-  const CameraIntrinsics camera{width, height, u->focal, v->focal, u->centre, v->centre};
-  return ImageLayout{camera, RigidTransform::Identity(), residual + kPixelRounding_px};
-}
-
-namespace {
-
 // Makes the name of a chunk printable: a damaged file may have any bytes there.
 std::string printable(std::string name) {
   for (char& c : name)
@@ -264,41 +237,6 @@ GreyImage grey_image(PngFile& png, const std::string& name) {
   return image;
 }
 
-}  // namespace
-
-GreyImage decode_grey_png(std::string_view bytes, const std::string& name) {
-  PngFile png(bytes, name);
-  return grey_image(png, name);
-}
-
-DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m) {
-  PngFile png(file);
-  const GreyImage image = grey_image(png, file.string());
-  DepthImage depth{image.width, image.height, std::vector<double>(image.values.size())};
-  for (std::size_t i = 0; i < depth.z_m.size(); ++i) {
-    const int value = image.values[i];
-    const double z_m = value * metres_per_unit;
-    depth.z_m[i] = value == 0 || z_m > max_depth_m ? std::numeric_limits<double>::quiet_NaN() : z_m;
-  }
-  return depth;
-}
-
-std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height) {
-  PngFile png(file);
-  if (png.bit_depth() > 8)
-    refuse(file.string(), "pixels are ", png.pixel_format(), ": expected up to 8 bits a channel");
-  width = png.width(), height = png.height();
-  const std::vector<png_byte>& bytes = png.decode_as_rgba();
-  std::vector<std::uint32_t> colour(bytes.size() / 4);
-  for (std::size_t i = 0; i < colour.size(); ++i) {
-    const png_byte* const rgba = &bytes[4 * i];
-    colour[i] = rgba[3] == 0 ? kNoColour : static_cast<std::uint32_t>(rgba[0] << 16 | rgba[1] << 8 | rgba[2]);
-  }
-  return colour;
-}
-
-namespace {
-
 constexpr std::size_t kMaxNpySide = 65535, kMaxNpyPixels = 1u << 26;  // as of PNG files
 
 struct NpyHeader {
@@ -407,6 +345,60 @@ std::vector<double> numbers_in(const std::filesystem::path& file, const std::str
 }
 
 }  // namespace
+
+void mark_missing_points(PointCloud& cloud) {
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 p = cloud.point(i);
+    if (p.allFinite() && !p.isZero(0)) continue;
+    cloud.x[i] = cloud.y[i] = cloud.z[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+std::optional<ImageLayout> fit_pinhole(const PointCloud& cloud, int width, int height) {
+  // A pinhole camera sees no point behind it. The fit cannot detect such a point, because x/z is the same at
+  // (-x, -z).
+  const auto behind_camera = [](double z_m) { return z_m <= 0; };
+  if (std::any_of(cloud.z.begin(), cloud.z.end(), behind_camera)) return std::nullopt;
+  const std::size_t columns = static_cast<std::size_t>(width);
+  const auto u = fit_axis(ratios(cloud.x, cloud.z), columns, true);
+  const auto v = fit_axis(ratios(cloud.y, cloud.z), columns, false);
+  if (!u || !v || !(u->focal > 0) || !(v->focal > 0)) return std::nullopt;
+  const double residual = std::max(u->residual, v->residual);
+  if (!(residual < kMaxFitResidual_px)) return std::nullopt;
+  const CameraIntrinsics camera{width, height, u->focal, v->focal, u->centre, v->centre};
+  return ImageLayout{camera, RigidTransform::Identity(), residual + kPixelRounding_px};
+}
+
+GreyImage decode_grey_png(std::string_view bytes, const std::string& name) {
+  PngFile png(bytes, name);
+  return grey_image(png, name);
+}
+
+DepthImage read_depth_png(const std::filesystem::path& file, double metres_per_unit, double max_depth_m) {
+  PngFile png(file);
+  const GreyImage image = grey_image(png, file.string());
+  DepthImage depth{image.width, image.height, std::vector<double>(image.values.size())};
+  for (std::size_t i = 0; i < depth.z_m.size(); ++i) {
+    const int value = image.values[i];
+    const double z_m = value * metres_per_unit;
+    depth.z_m[i] = value == 0 || z_m > max_depth_m ? std::numeric_limits<double>::quiet_NaN() : z_m;
+  }
+  return depth;
+}
+
+std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height) {
+  PngFile png(file);
+  if (png.bit_depth() > 8)
+    refuse(file.string(), "pixels are ", png.pixel_format(), ": expected up to 8 bits a channel");
+  width = png.width(), height = png.height();
+  const std::vector<png_byte>& bytes = png.decode_as_rgba();
+  std::vector<std::uint32_t> colour(bytes.size() / 4);
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const png_byte* const rgba = &bytes[4 * i];
+    colour[i] = rgba[3] == 0 ? kNoColour : static_cast<std::uint32_t>(rgba[0] << 16 | rgba[1] << 8 | rgba[2]);
+  }
+  return colour;
+}
 
 DepthImage read_depth_npy(const std::filesystem::path& file, double metres_per_unit, double max_depth_m) {
   const std::string bytes = bytes_in(file);
