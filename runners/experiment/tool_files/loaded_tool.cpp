@@ -1,14 +1,20 @@
 #include "runners/experiment/tool_files/loaded_tool.h"
 
+#include <type_traits>
+
+#include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
+
 namespace remote_touch {
 namespace {
 
-std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion,
-                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+using Tool = std::shared_ptr<const VoxelTool>;
+
+std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
   return std::make_unique<ToolRenderer>(motion, tool, kernels);
 }
-std::unique_ptr<Renderer> renderer_of(const TrackedToolParameters& motion,
-                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+std::unique_ptr<Renderer> renderer_of(const TrackedToolParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
   return std::make_unique<TrackedToolRenderer>(motion, tool, kernels);
 }
 
@@ -18,47 +24,43 @@ class ToolToCompare final : public ToolRenderer {
   using ToolRenderer::ToolRenderer;
   Parameters live_parameters() override { return {}; }
 };
-std::unique_ptr<Renderer> renderer_of(const ToolPenaltyParameters& motion,
-                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+std::unique_ptr<Renderer> renderer_of(const ToolPenaltyParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
   return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
                                          make_penalty_motion(motion, *tool));
 }
-std::unique_ptr<Renderer> renderer_of(const ToolGodObjectParameters& motion,
-                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+std::unique_ptr<Renderer> renderer_of(const ToolGodObjectParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
   return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
                                          std::make_unique<GodObjectMotion>(motion, *tool));
 }
-std::unique_ptr<Renderer> renderer_of(const InnerSphereParameters& motion,
-                                      const std::shared_ptr<const VoxelTool>& tool, const Kernels& kernels) {
+std::unique_ptr<Renderer> renderer_of(const InnerSphereParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
   return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
                                          std::make_unique<InnerSphereMotion>(motion, *tool));
 }
 
-ToolSettings tool_for(const ToolSettings& settings, const ToolParameters& motion) {
-  ToolSettings tool = settings;
-  tool.outer_field = motion.contact_rule == ContactRule::continuous;
+template <class MotionSettings>
+ToolSettings tool_for(ToolSettings tool, const MotionSettings& motion) {
+  if constexpr (std::is_same_v<MotionSettings, TrackedToolParameters>) return tool_for(tool, motion.tool);
+  if constexpr (std::is_same_v<MotionSettings, ToolParameters>)
+    tool.outer_field = motion.contact_rule == ContactRule::continuous;
+  if constexpr (std::is_same_v<MotionSettings, ToolGodObjectParameters>) tool.outer_field = true;
   return tool;
 }
-ToolSettings tool_for(const ToolSettings& settings, const TrackedToolParameters& motion) {
-  return tool_for(settings, motion.tool);
-}
-ToolSettings tool_for(const ToolSettings& settings, const ToolPenaltyParameters&) {
-  return settings;
-}
-ToolSettings tool_for(const ToolSettings& settings, const InnerSphereParameters&) {
-  return settings;
-}
-ToolSettings tool_for(const ToolSettings& settings, const ToolGodObjectParameters&) {
-  ToolSettings tool = settings;
-  tool.outer_field = true;
-  return tool;
+
+std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion, const ToolOfSpheres& loaded,
+                                      const Kernels& kernels) {
+  const std::shared_ptr<const SphereTree> spheres(loaded.spheres, &loaded.spheres->spheres);
+  return std::make_unique<SphereTreeRenderer>(motion, loaded.tool, spheres, kernels);
 }
 
 }  // namespace
 
 template <class MotionSettings>
 ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)
-    : renderer_(renderer_of(settings.motion, load_tool(tool_for(settings.tool, settings.motion)), kernels)) {}
+    : LoadedRenderer(
+          renderer_of(settings.motion, load_tool(tool_for(settings.tool, settings.motion)), kernels)) {}
 
 template class ToolFromMesh<ToolParameters>;
 template class ToolFromMesh<TrackedToolParameters>;
@@ -87,10 +89,7 @@ std::vector<InputPart> input_files(const LoadedSpheres::Settings& s) {
 }
 
 LoadedSpheres::LoadedSpheres(const Settings& settings, double, const Kernels& kernels)
-    : LoadedSpheres(load_tool_of_spheres(settings.tool, settings.leaves), settings.motion, kernels) {}
-
-LoadedSpheres::LoadedSpheres(const ToolOfSpheres& loaded, const ToolParameters& motion,
-                             const Kernels& kernels)
-    : renderer_(motion, loaded.tool, {loaded.spheres, &loaded.spheres->spheres}, kernels) {}
+    : LoadedRenderer(
+          renderer_of(settings.motion, load_tool_of_spheres(settings.tool, settings.leaves), kernels)) {}
 
 }  // namespace remote_touch

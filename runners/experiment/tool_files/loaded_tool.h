@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/beyond/tracked_surface/tracked_tool_renderer.h"
-#include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
 #include "core/dissertation/tool/motion/god_object_motion.h"
 #include "core/dissertation/tool/motion/penalty_motion.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
@@ -26,13 +25,9 @@ struct MovedToolSettings {
   MotionSettings motion;
 };
 
-template <class MotionSettings>
-class ToolFromMesh final : public Renderer {
+// Passes every call on to a renderer of another class.
+class LoadedRenderer : public Renderer {
  public:
-  using Settings = MovedToolSettings<MotionSettings>;
-
-  // Throws InputError when the tool cannot be made.
-  ToolFromMesh(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
   void prepare(Frame& frame) const override { renderer_->prepare(frame); }
   void reserve(std::size_t points) override { renderer_->reserve(points); }
   void on_frame(const Frame& frame) override { renderer_->on_frame(frame); }
@@ -42,8 +37,20 @@ class ToolFromMesh final : public Renderer {
     return renderer_->step(device, time_s);
   }
 
+ protected:
+  explicit LoadedRenderer(std::unique_ptr<Renderer> renderer) : renderer_(std::move(renderer)) {}
+
  private:
   std::unique_ptr<Renderer> renderer_;
+};
+
+template <class MotionSettings>
+class ToolFromMesh final : public LoadedRenderer {
+ public:
+  using Settings = MovedToolSettings<MotionSettings>;
+
+  // Throws InputError when the tool cannot be made.
+  ToolFromMesh(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
 };
 
 using LoadedTool = ToolFromMesh<ToolParameters>;
@@ -77,8 +84,7 @@ RenderedContact rendered_contact(const MovedToolSettings<MotionSettings>&) {
 }
 
 // The 6-DOF fixture renderer for experiments, chapter 7: a tool of spheres made from a mesh, and its motion.
-
-class LoadedSpheres final : public Renderer {
+class LoadedSpheres final : public LoadedRenderer {
  public:
   struct Settings {
     ToolSettings tool{.mesh = "key"};
@@ -92,19 +98,6 @@ class LoadedSpheres final : public Renderer {
 
   // Throws InputError when the tool cannot be made.
   LoadedSpheres(const Settings& settings, double haptic_rate_hz, const Kernels& kernels);
-  void prepare(Frame& frame) const override { renderer_.prepare(frame); }
-  void reserve(std::size_t points) override { renderer_.reserve(points); }
-  void on_frame(const Frame& frame) override { renderer_.on_frame(frame); }
-  Parameters live_parameters() override { return renderer_.live_parameters(); }
-  void parameters_changed() override { renderer_.parameters_changed(); }
-  RenderOutput step(const DeviceState& device, double time_s) override {
-    return renderer_.step(device, time_s);
-  }
-
- private:
-  LoadedSpheres(const ToolOfSpheres& loaded, const ToolParameters& motion, const Kernels& kernels);
-
-  SphereTreeRenderer renderer_;
 };
 
 Parameters parameters(LoadedSpheres::Settings& s);
