@@ -99,20 +99,6 @@ std::string size_text(int columns, int rows) {
   return std::to_string(columns) + " x " + std::to_string(rows) + " points";
 }
 
-// Returns the largest offset of a projected point from its pixel, along u or v (px). Returns infinity if a
-// point is not in front of the camera.
-double residual_px(const CameraIntrinsics& camera, const PointCloud& cloud) {
-  double worst = 0;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!cloud.is_measured(i)) continue;
-    if (!(cloud.z[i] > 0)) return std::numeric_limits<double>::infinity();
-    const int place = static_cast<int>(i), u = place % camera.width, v = place / camera.width;
-    worst = std::max({worst, std::abs(camera.fx * cloud.x[i] / cloud.z[i] + camera.cx - u),
-                      std::abs(camera.fy * cloud.y[i] / cloud.z[i] + camera.cy - v)});
-  }
-  return worst;
-}
-
 PointCloud image_of_holes(const CameraIntrinsics& camera) {
   PointCloud cloud;
   const auto pixels = camera.pixels();
@@ -129,7 +115,7 @@ void conform_to_camera(const CameraIntrinsics& camera, const std::string& subjec
   // A depth image has the recording's camera. It is not tested, because a lens may bend its rays by more than
   // a pixel.
   if (cloud.image && cloud.image->camera == camera) return;
-  const double residual = residual_px(camera, cloud);
+  const double residual = largest_error_px(cloud, RigidTransform::Identity(), camera);
   if (!(residual < (cloud.image ? 2 * kMaxFitResidual_px : kMaxFitResidual_px)))
     refuse(subject,
            "has another camera than the first frame that is used, or none: expected points at the "
@@ -240,6 +226,19 @@ std::vector<InputFile> files_of(const InputPart& part) {
   std::vector<InputFile> files = listed_files(part);
   for (const InputFile& input : files) require_file(input.file), require_readable_size(input.file);
   return files;
+}
+
+double largest_error_px(const PointCloud& cloud, const RigidTransform& X_CW, const CameraIntrinsics& camera) {
+  double largest = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_measured(i)) continue;
+    const Vec3 p_C = X_CW * cloud.point(i);
+    if (!(p_C.z() > 0)) return std::numeric_limits<double>::infinity();
+    const int place = static_cast<int>(i), u = place % camera.width, v = place / camera.width;
+    largest = std::max({largest, std::abs(camera.fx * p_C.x() / p_C.z() + camera.cx - u),
+                        std::abs(camera.fy * p_C.y() / p_C.z() + camera.cy - v)});
+  }
+  return largest;
 }
 
 FrameLayout layout_of(const PointCloud& cloud) {

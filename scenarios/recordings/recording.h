@@ -147,6 +147,11 @@ struct InputFile {
 };
 std::vector<InputFile> files_of(const InputPart& part);
 
+// Returns the largest distance, in pixels along one axis, between the pixel of a measured point and the pixel
+// at which the camera sees that point. Infinite if a point is behind the camera. pre: the cloud has a point
+// per pixel.
+double largest_error_px(const PointCloud& cloud, const RigidTransform& X_CW, const CameraIntrinsics& camera);
+
 // Layout that all frames of a recording share: images of one camera, or organised clouds without a camera, or
 // clouds in no order.
 

@@ -5,27 +5,11 @@
 #include <limits>
 
 #include "core/numeric/order_statistic.h"
+#include "scenarios/recordings/recording.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {
-
-// The largest distance, in pixels along one axis, between the pixel of a measured point and the pixel at
-// which the camera sees that point. Infinite if a point is behind the camera. pre: the cloud has a point per
-// pixel.
-double largest_error_px(const PointCloud& cloud, const RigidTransform& X_CW, const CameraIntrinsics& camera) {
-  double largest = 0;
-  for (int v = 0; v < camera.height; ++v)
-    for (int u = 0; u < camera.width; ++u) {
-      const std::size_t i = static_cast<std::size_t>(v) * camera.width + u;
-      if (!cloud.is_measured(i)) continue;
-      const Vec3 p_C = X_CW * cloud.point(i);
-      if (!(p_C.z() > 0)) return std::numeric_limits<double>::infinity();
-      largest = std::max({largest, std::abs(camera.fx * p_C.x() / p_C.z() + camera.cx - u),
-                          std::abs(camera.fy * p_C.y() / p_C.z() + camera.cy - v)});
-    }
-  return largest;
-}
 
 // Returns the depth image of the cloud. All pixels are NaN if the cloud does not have a point per pixel.
 DepthImage depth_of(const PointCloud& cloud, const ImageLayout& layout) {

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string_view>
-#include <type_traits>
 
 #include "core/geometry/colour.h"
 #include "scenarios/recordings/images_and_clouds/depth_images.h"
@@ -37,19 +34,10 @@ DepthImage depth_of_rows(const ImageMessage& message, double scale, double max_d
            " or more, as its height and step say");
   DepthImage depth{static_cast<int>(width), static_cast<int>(height), std::vector<double>(width * height)};
   for (std::uint64_t i = 0; i < width * height; ++i) {
-    std::array<char, sizeof(Value)> bytes;
-    const std::uint64_t at = i / width * message.step + i % width * sizeof(Value);
-    std::memcpy(bytes.data(), message.data.data() + at, bytes.size());
-    if (message.big_endian) std::reverse(bytes.begin(), bytes.end());
-    depth.z_m[i] = measured_or_nan(std::bit_cast<Value>(bytes) * scale, max_depth_m);
+    const char* at = message.data.data() + i / width * message.step + i % width * sizeof(Value);
+    depth.z_m[i] = measured_or_nan(number_at<Value>(at, message.big_endian) * scale, max_depth_m);
   }
   return depth;
-}
-
-float float_at(std::string_view bytes, std::size_t at) {
-  float value = 0;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
 }
 
 // Lens model: maps the ray (x, y, 1) of a pinhole to the ray that the lens makes of it. D = (k1, k2, p1, p2,
@@ -215,18 +203,6 @@ void check_size(const PointCloudMessage& message, const std::string& subject) {
            " or more, as its width, height and steps say");
 }
 
-template <class Value>
-Value value_at(const char* bytes, bool big_endian) {
-  using Word = std::conditional_t<sizeof(Value) == 8, std::uint64_t, std::uint32_t>;
-  Word word = 0;
-  std::memcpy(&word, bytes, sizeof word);
-  if (big_endian) {
-    auto* first = reinterpret_cast<unsigned char*>(&word);
-    std::reverse(first, first + sizeof word);
-  }
-  return std::bit_cast<Value>(word);
-}
-
 template <class Value, class Column>
 void read_column(const PointCloudMessage& message, const PointField& field, Column& column) {
   column.resize(std::size_t{message.width} * message.height);
@@ -234,7 +210,7 @@ void read_column(const PointCloudMessage& message, const PointField& field, Colu
   for (std::size_t v = 0; v < message.height; ++v) {
     const char* at = message.data.data() + v * message.row_step + field.offset;
     for (std::size_t u = 0; u < message.width; ++u, at += message.point_step)
-      *out++ = value_at<Value>(at, message.big_endian);
+      *out++ = number_at<Value>(at, message.big_endian);
   }
 }
 
@@ -290,7 +266,7 @@ DepthImage depth_from_message(const CompressedImageMessage& message, const Depth
   if (message.data.size() < kHeader)
     refuse(subject, "has ", message.data.size(),
            " bytes of data: expected a header of 12 bytes and a PNG image");
-  const float a = float_at(message.data, 4), b = float_at(message.data, 8);
+  const float a = number_at<float>(message.data.data() + 4), b = number_at<float>(message.data.data() + 8);
   const GreyImage image = decode_grey_png(message.data.substr(kHeader), subject);
   DepthImage depth{image.width, image.height, std::vector<double>(image.values.size())};
   for (std::size_t i = 0; i < depth.z_m.size(); ++i) {

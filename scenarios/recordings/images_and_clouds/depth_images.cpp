@@ -324,14 +324,10 @@ std::vector<double> values_of(const std::filesystem::path& file, const std::stri
   if (bytes.size() - header.data_at != count * sizeof(Value))
     refuse(file, "has ", bytes.size() - header.data_at, " bytes of data: expected ", count * sizeof(Value),
            ", as its header says");
-  static_assert(std::endian::native == std::endian::little);
   std::vector<double> values(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    std::array<char, sizeof(Value)> one;
-    std::memcpy(one.data(), bytes.data() + header.data_at + i * sizeof(Value), one.size());
-    if (header.type[0] == '>') std::reverse(one.begin(), one.end());
-    values[i] = static_cast<double>(std::bit_cast<Value>(one));
-  }
+  const char* at = bytes.data() + header.data_at;
+  for (double& value : values)
+    value = static_cast<double>(number_at<Value>(at, header.type[0] == '>')), at += sizeof(Value);
   return values;
 }
 

@@ -1,6 +1,9 @@
 // Depth and colour images in files: PNG and NumPy.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -50,6 +53,16 @@ GreyImage decode_grey_png(std::string_view bytes, const std::string& name);
 // values of alpha are ignored. Allowed are RGB and grey of up to 8 bits a channel, with or without alpha, and
 // palettes. Samples are used as stored: no gamma or colour profile is applied. Throws InputError as above.
 std::vector<std::uint32_t> read_colour_png(const std::filesystem::path& file, int& width, int& height);
+
+// Returns the number whose bytes begin there.
+template <class Value>
+Value number_at(const char* bytes, bool big_endian = false) {
+  static_assert(std::endian::native == std::endian::little);
+  std::array<char, sizeof(Value)> own;
+  std::copy_n(bytes, own.size(), own.begin());
+  if (big_endian) std::reverse(own.begin(), own.end());
+  return std::bit_cast<Value>(own);
+}
 
 // Depth images in NumPy files (.npy), whose values may be floats.
 
