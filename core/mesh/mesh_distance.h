@@ -13,11 +13,10 @@
 
 namespace remote_touch {
 
-// Joins the triangles of a mesh that touch each other, so that every edge has all of its triangles.
-
-// Returns the same surface with one vertex per position (0 and -0 are equal), and without triangles that have
-// no area (is_degenerate()). Such a triangle is removed so that its neighbours meet, and a closed surface
-// stays closed:
+// Joins the triangles of a mesh that touch each other, so that every edge has all of its triangles. Returns
+// the same surface with one vertex per position (0 and -0 are equal), and without triangles that have no area
+// (is_degenerate()). Such a triangle is removed so that its neighbours meet, and a closed surface stays
+// closed:
 //   - If one of its corners lies on its longest side, the triangle across that side is divided there.
 //   - If it has a side shorter than 1e-8 of the longest one, the ends of that side become one vertex.
 // A triangle without area is only left out if its longest side has no other triangle, or several.

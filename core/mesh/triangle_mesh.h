@@ -17,7 +17,6 @@ struct TriangleMesh {
 };
 
 // Checks whether the corners of a mesh from an external source are vertices of it.
-
 inline bool has_its_vertices(const TriangleMesh& mesh) {
   const auto count = static_cast<int>(mesh.vertices.size());
   return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [=](const auto& triangle) {
@@ -25,13 +24,11 @@ inline bool has_its_vertices(const TriangleMesh& mesh) {
   });
 }
 
-// Cuts a polygon, concave ones too, into triangles.
-
-// Returns each triangle as the indices of its corners in the list, in the direction of the polygon. Their
-// areas sum up to the area of the polygon: they neither overlap nor leave it. A convex polygon becomes a fan
-// about its first corner. Empty for a polygon whose edges cross or touch each other. Corners that are not in
-// one plane are projected along the polygon's own normal (that of its area vector). pre: three finite corners
-// or more, neighbours differ.
+// Cuts a polygon, concave ones too, into triangles. Returns each triangle as the indices of its corners in
+// the list, in the direction of the polygon. Their areas sum up to the area of the polygon: they neither
+// overlap nor leave it. A convex polygon becomes a fan about its first corner. Empty for a polygon whose
+// edges cross or touch each other. Corners that are not in one plane are projected along the polygon's own
+// normal (that of its area vector). pre: three finite corners or more, neighbours differ.
 std::optional<std::vector<std::array<int, 3>>> polygon_triangles(const std::vector<Vec3>& corners);
 
 }  // namespace remote_touch

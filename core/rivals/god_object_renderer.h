@@ -87,7 +87,6 @@ class GridMesh {
 // multipliers for one, two or three active planes. Here all choices of up to three planes are tried, because
 // no more than three are needed to hold a point in space. The result is the nearest position that obeys every
 // plane.
-
 class PlaneConstraints {
  public:
   // slack_m: allowed violation of a plane, for rounding.

@@ -52,7 +52,6 @@ inline constexpr int kMaxInnerSpheres = 5000;
 InnerSpheres make_inner_spheres(const VoxelTool& tool, int max_spheres);
 
 // Finds the sphere that contains a position, among spheres that do not overlap.
-
 class SphereLocator {
  public:
   // Sorts the spheres into the cells of a grid around them: 96 along its longest side. Keeps the spheres by

@@ -17,7 +17,6 @@ namespace remote_touch {
 // The axis along which a cloud is thinnest: the eigenvector of the smallest eigenvalue of a symmetric matrix.
 // It is computed by cyclic Jacobi rotations in plain double, because the results of Eigen's solver differ in
 // the last bits between x86-64 levels.
-
 struct ThinnestAxis {
   Vec3 axis = Vec3::UnitX();  // unit; its sign has no meaning
   double smallest = 0;        // eigenvalue of this axis
@@ -30,7 +29,6 @@ struct ThinnestAxis {
 ThinnestAxis thinnest_axis(const Eigen::Matrix3d& symmetric);
 
 // The nearest neighbours of a position in a frame, for methods that adapt to the density of the points.
-
 class NearestPoints {
  public:
   explicit NearestPoints(const Kernels& kernels) : kernels_(kernels) {}

@@ -30,7 +30,6 @@ namespace remote_touch {
 // A neighbour search over points in the order of their indices, in blocks with bounding boxes. It can be
 // filled repeatedly without allocating. Points with neighbouring indices should be near each other, as in an
 // image or a grid.
-
 class BlockSearch final : public NeighbourSearch {
  public:
   void reserve(std::size_t points);

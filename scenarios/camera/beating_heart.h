@@ -15,7 +15,6 @@
 namespace remote_touch {
 
 // A solid ellipsoid with exact distance, ray cast and height.
-
 class Ellipsoid {
  public:
   // semi_axes_m, all > 0, lie along the columns of axes, which is a rotation.

@@ -14,7 +14,6 @@
 namespace remote_touch {
 
 // A convex profile in the (z, y) plane, extruded along x: boxes and ramps, with exact distance and ray cast.
-
 class Extrusion {
  public:
   // Corners (z, y) of a convex profile, counter-clockwise with z to the right and y up; metres.

@@ -14,10 +14,9 @@
 
 namespace remote_touch {
 
-// A valve's handwheel: a ring on three round spokes, with a hub, and a stem back to the wall behind it.
-
-// The axis is along z and the wheel lies in the plane z = centre.z; the stem ends at the wall z = 0. One
-// spoke points up, +y. Metres.
+// A valve's handwheel: a ring on three round spokes, with a hub, and a stem back to the wall behind it. The
+// axis is along z and the wheel lies in the plane z = centre.z; the stem ends at the wall z = 0. One spoke
+// points up, +y. Metres.
 class Handwheel {
  public:
   // Dimensions other than the constructor's. The ring's radius is that of the centre line of its tube.

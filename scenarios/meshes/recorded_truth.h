@@ -68,11 +68,10 @@ std::vector<std::filesystem::path> mask_files(const TruthFolder& truth);
 // masks.
 std::vector<std::filesystem::path> files_of(const TruthFolder& truth);
 
-// Masks of a recording's truth: the pixels at which the truth of a frame holds.
-
-// A mask is a PNG file of up to 8 bits a channel and of the size of the camera's image. The truth holds at
-// the pixels that are neither black nor fully transparent. Masks are read when they are first needed, and the
-// last ones are kept, so that several threads must not use one object at the same time.
+// Masks of a recording's truth: the pixels at which the truth of a frame holds. A mask is a PNG file of up to
+// 8 bits a channel and of the size of the camera's image. The truth holds at the pixels that are neither
+// black nor fully transparent. Masks are read when they are first needed, and the last ones are kept, so that
+// several threads must not use one object at the same time.
 class TruthMasks {
  public:
   // frames: the names of the frames' depth images. A mask belongs to the frame whose name has the same

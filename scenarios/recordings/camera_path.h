@@ -18,10 +18,9 @@ namespace remote_touch {
 
 class RecordedTruth;
 
-// The poses of the camera of a recording: at rest, or one for each frame.
-
-// W is the world frame of the scene and B the base frame of the poses: that of the file of poses, or that of
-// the camera if there is none. The registration X_WB places B in W.
+// The poses of the camera of a recording: at rest, or one for each frame. W is the world frame of the scene
+// and B the base frame of the poses: that of the file of poses, or that of the camera if there is none. The
+// registration X_WB places B in W.
 class CameraPath {
  public:
   // poses: a name in the recording's folder; empty: the camera is at rest in B. It is a file, see
@@ -62,11 +61,10 @@ std::vector<std::filesystem::path> pose_files(const std::filesystem::path& folde
                                               const RecordingIndex& recording);
 
 // The agreement of the frames of a recording with the poses in its files: frames with each other, by the
-// poses of the camera, and measured points with the true objects.
-
-// Distances are differences of depth in an image, medians over its pixels and then over the frames, m. They
-// are compared with those of other meanings of the poses, such as the inverse, so that a note can name the
-// likely mistake. Only images are compared; other clouds are ignored.
+// poses of the camera, and measured points with the true objects. Distances are differences of depth in an
+// image, medians over its pixels and then over the frames, m. They are compared with those of other meanings
+// of the poses, such as the inverse, so that a note can name the likely mistake. Only images are compared;
+// other clouds are ignored.
 class PoseFit {
  public:
   // Compares a frame with an earlier one. X_WC of the image is not used.

@@ -13,12 +13,10 @@
 
 namespace remote_touch {
 
-// Times at which the frames of a recording are shown, and their rate.
-
-// The frames of a part of a recording in the order in which they are played. Frame 0 is shown at 0 s. Without
-// a chosen rate, successive frames are as far apart in time as in the recording, also if the part is played
-// again. A loop adds one mean period from the last frame to the first. Ping-pong plays the stamps forwards
-// and backwards in turn.
+// Times at which the frames of a recording are shown, and their rate. The frames of a part of a recording in
+// the order in which they are played. Frame 0 is shown at 0 s. Without a chosen rate, successive frames are
+// as far apart in time as in the recording, also if the part is played again. A loop adds one mean period
+// from the last frame to the first. Ping-pong plays the stamps forwards and backwards in turn.
 class FrameTimes {
  public:
   enum class Playback { hold, loop, ping_pong };
@@ -58,7 +56,6 @@ class FrameTimes {
 
 // Statistics of a recording, counted over the frames that were read. They give a part of the line that a run
 // prints about its input, and notes on frames that may not be what the user meant.
-
 class FrameStatistics {
  public:
   explicit FrameStatistics(std::size_t frame_count) : is_read_(frame_count, false) {}

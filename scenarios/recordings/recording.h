@@ -154,7 +154,6 @@ double largest_error_px(const PointCloud& cloud, const RigidTransform& X_CW, con
 
 // Layout that all frames of a recording share: images of one camera, or organised clouds without a camera, or
 // clouds in no order.
-
 struct FrameLayout {
   bool is_organised = false;
   // Camera of images; camera of organised clouds, if a pinhole explains their first frame.

@@ -48,13 +48,12 @@ Parameters parameters(Grid& grid);
 // Adds zero-mean Gaussian noise of standard deviation sigma_m to x, y and z of every point.
 void add_noise(PointCloud& cloud, double sigma_m, const NoiseStream& stream, const Kernels& kernels);
 
-// A flat grid whose noise is computed only where a query needs it.
-
-// Points (x, height, z) of the grid, each coordinate plus sigma times a standard normal. The result is
-// bit-identical to computing every point. A normal has a hard bound (kMaxNormal), so a grid point that is too
-// far away cannot move near. Of the other points, only those are computed whose random words allow a
-// displacement that is large enough. The points around the last query are cached, and those nearest to it
-// once more, so a search serves one reader at a time.
+// A flat grid whose noise is computed only where a query needs it. Points (x, height, z) of the grid, each
+// coordinate plus sigma times a standard normal. The result is bit-identical to computing every point. A
+// normal has a hard bound (kMaxNormal), so a grid point that is too far away cannot move near. Of the other
+// points, only those are computed whose random words allow a displacement that is large enough. The points
+// around the last query are cached, and those nearest to it once more, so a search serves one reader at a
+// time.
 class NoisyGridSearch final : public NeighbourSearch {
  public:
   NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream);
@@ -91,7 +90,6 @@ class NoisyGridSearch final : public NeighbourSearch {
 };
 
 // A scene whose points are at the nodes of a grid, with noise.
-
 class GridScene : public Scenario {
  public:
   double frame_rate_hz() const override { return frame_rate_hz_; }

@@ -11,12 +11,11 @@
 namespace remote_touch {
 
 // Motion of a surface that is lifted, 4.3.2: it waits, rises at constant velocity, accelerates and rests. It
-// is a function of time, which a camera samples at its frames.
-
-// 4.3.2 gives the heights at the frames: v_j = v_{j-1} + a / f_c and y_j = y_{j-1} + v_j / f_c. This class
-// uses them as the heights at the updates of the motion, which have a rate of their own. The motion between
-// two updates is linear, or it follows the parabola with the acceleration a. With the time t since the end of
-// the rise and the height y_0 there, the parabola is
+// is a function of time, which a camera samples at its frames. 4.3.2 gives the heights at the frames: v_j =
+// v_{j-1} + a / f_c and y_j = y_{j-1} + v_j / f_c. This class uses them as the heights at the updates of the
+// motion, which have a rate of their own. The motion between two updates is linear, or it follows the
+// parabola with the acceleration a. With the time t since the end of the rise and the height y_0 there, the
+// parabola is
 //   y = y_0 + v_0 t + a t (t + 1 / update_rate_hz) / 2.
 // The displacement from frame to frame then grows by a / f_c^2 with each frame, for any frame rate f_c. The
 // parabola begins one update before the end of the rise. The velocity drops there by a / (2 update_rate_hz).
@@ -62,7 +61,6 @@ Parameters parameters(LiftMotion::Settings& s);
 
 // A flat cloud that rises from below at constant velocity and then accelerates, 4.3.2: the experiment of
 // Figs 4.12 and 4.13. Noise is drawn anew for every point of every frame.
-
 class MovingLift final : public GridScene {
  public:
   struct Settings {
@@ -103,7 +101,6 @@ inline std::string validate(const MovingLift::Settings&) {
 }
 
 // A flat cloud with normals that waits and then rises: a plane that lifts a tool.
-
 class MovingPlane final : public GridScene {
  public:
   struct Settings {

@@ -14,9 +14,8 @@
 
 namespace remote_touch {
 
-// A flat rectangle, sampled as a grid, from which the scenes of chapter 6 are built.
-
-// u, v and the normal are unit vectors at right angles; the normal points to the free side.
+// A flat rectangle, sampled as a grid, from which the scenes of chapter 6 are built. u, v and the normal are
+// unit vectors at right angles; the normal points to the free side.
 struct FlatPanel {
   Vec3 centre = Vec3::Zero();
   Vec3 normal = Vec3::UnitY();
@@ -47,7 +46,6 @@ int columns(const FlatPanel& panel, const PanelGrid& grid);
 double signed_distance(std::span<const FlatPanel> panels, const Vec3& p);
 
 // A scene of panels that rest or move, each sampled as a grid of points with normals.
-
 class PanelScene : public Scenario {
  public:
   double frame_rate_hz() const override { return 30; }
@@ -70,7 +68,6 @@ class PanelScene : public Scenario {
 };
 
 // A box that is open at the top, seen from inside: the scene of 6.3.1 and Fig 6.3.
-
 class OpenBox final : public PanelScene {
  public:
   struct Settings {
@@ -94,7 +91,6 @@ inline std::string validate(const OpenBox::Settings& s) {
 }
 
 // One panel at rest, seen from one side only, to test contact from the back too.
-
 class SinglePanel final : public PanelScene {
  public:
   struct Settings {
@@ -120,7 +116,6 @@ inline std::string validate(const SinglePanel::Settings& s) {
 
 // Two parallel walls. A bar between them that is rotated about y stops at an angle that is known in closed
 // form: a bar of 80 x 10 mm in a slot of 40 mm stops at 22.62 degrees, with its corners at x = +-35 mm.
-
 class Slot final : public PanelScene {
  public:
   struct Settings {
@@ -147,7 +142,6 @@ inline std::string validate(const Slot::Settings&) {
 
 // Two walls that lean apart and close on a tool between them, until no motion obeys all constraints and (6.8)
 // is infeasible.
-
 class Wedge final : public PanelScene {
  public:
   struct Settings {
@@ -186,12 +180,11 @@ Parameters parameters(Wedge::Settings& s);
 std::string validate(const Wedge::Settings& s);
 
 // Flat plates that hide each other from a camera above them: a nearer object passes or enters, or two objects
-// move apart.
-
-// The camera looks along -y with parallel rays through the nodes of the grid, which do not move. Each ray
-// sees the highest plate at its node. It sees nothing if there is no plate, or if that plate is above
-// max_height_m: it is then too near to be measured, but hides what is below. The points are stored row by
-// row; noise is added in the world frame. The true surface is the first plate, whether it is hidden or not.
+// move apart. The camera looks along -y with parallel rays through the nodes of the grid, which do not move.
+// Each ray sees the highest plate at its node. It sees nothing if there is no plate, or if that plate is
+// above max_height_m: it is then too near to be measured, but hides what is below. The points are stored row
+// by row; noise is added in the world frame. The true surface is the first plate, whether it is hidden or
+// not.
 class Plates final : public GridScene {
  public:
   struct Settings {

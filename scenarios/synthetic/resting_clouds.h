@@ -12,7 +12,6 @@
 namespace remote_touch {
 
 // A flat point cloud at rest at y = 0, see 4.3.1.
-
 class FlatGrid final : public GridScene {
  public:
   struct Settings {
@@ -42,7 +41,6 @@ inline std::string validate(const FlatGrid::Settings&) {
 }
 
 // A few points given in the settings, such as the single point of 5.3.1.
-
 class ListedPoints final : public Scenario {
  public:
   struct Settings {
@@ -67,10 +65,9 @@ class ListedPoints final : public Scenario {
 Parameters parameters(ListedPoints::Settings& s);
 std::string validate(const ListedPoints::Settings& s);
 
-// A triangle wave of growing amplitude, 4.3.3: sharp convex and concave edges, Fig 4.14.
-
-// The wave runs along x. Its corners lie half a period apart, alternately below and above y = 0 by an
-// amplitude that grows linearly along the grid; the flanks between them are straight.
+// A triangle wave of growing amplitude, 4.3.3: sharp convex and concave edges, Fig 4.14. The wave runs along
+// x. Its corners lie half a period apart, alternately below and above y = 0 by an amplitude that grows
+// linearly along the grid; the flanks between them are straight.
 class TriangleWave final : public GridScene {
  public:
   struct Settings {

@@ -11,9 +11,7 @@
 namespace remote_touch {
 
 // Positions on the surface of a tool, in a few groups. Each group is small enough for one patch of a tracked
-// sheet.
-
-// The positions are in the tool frame. Nothing is allocated after construction.
+// sheet. The positions are in the tool frame. Nothing is allocated after construction.
 class ToolPositions {
  public:
   struct Group {

@@ -14,9 +14,8 @@ namespace remote_touch {
 
 // The points of a frame around a patch, in the patch's coordinates.
 
-// The region in which the points of a patch replace those of the frame.
-
-// A cylinder about the patch's normal; radius and half height in contact radii.
+// The region in which the points of a patch replace those of the frame: a cylinder about the patch's normal;
+// radius and half height in contact radii.
 struct PatchRegion {
   PatchFrame frame;
   double radius = 0, half_height = 0;
@@ -73,11 +72,9 @@ class PatchPoints {
   Buffer<std::int32_t> bin_;  // work buffer of profile_near()
 };
 
-// Points of a patch that do not belong to its sheet: points of other surfaces, or outliers.
-
-// Distinguishes the two by density. A point belongs to a surface if the number of points per area around it,
-// in layers at least as thick as the noise, is at least a quarter of the sheet's, and if there are at least
-// two other points.
+// Points of a patch that do not belong to its sheet: points of other surfaces, or outliers. Distinguishes the
+// two by density. A point belongs to a surface if the number of points per area around it, in layers at least
+// as thick as the noise, is at least a quarter of the sheet's, and if there are at least two other points.
 class StrayPoints {
  public:
   // Counts the points that are no members. per_unit_area: number of members in a square of one contact
@@ -97,8 +94,7 @@ class StrayPoints {
 };
 
 // The curvature of a whole patch. Planes in wide windows would flatten it.
-
-// h = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2.
+//   h = c0 + c1 u + c2 v + c3 u^2 + c4 u v + c5 v^2
 struct Trend {
   double c[6] = {};
 

@@ -69,9 +69,8 @@ inline double shrunk(double x, double error) {
   return square > 0 ? square / (square + 4 * error * error) * x : 0;
 }
 
-// Histogram of the heights of a patch's points.
-
-// Counts in bins of a tenth of a contact radius, symmetric about height 0.
+// Histogram of the heights of a patch's points. Counts in bins of a tenth of a contact radius, symmetric
+// about height 0.
 class HeightProfile {
  public:
   static constexpr double kBin = 0.1;

@@ -16,7 +16,6 @@
 namespace remote_touch {
 
 // Settings of the search for a sheet, and of the noise reduction of its points.
-
 struct SheetSettings {
   double gate_m = 0.015, initial_gate_m = 0.035, max_gate_m = 0.075;
   int max_missed_frames = 1;
@@ -65,10 +64,8 @@ SheetShift register_sheet(const PatchPoints& points, const HeightProfile& profil
                           double gate, double half_range, double sigma);
 
 // Search over the points that a tracked sheet shows of a frame: the points in its region without their noise,
-// and the points outside it unchanged.
-
-// It is filled anew for every frame, without an allocation if reserve() was called for as many points.
-// reserve() keeps the points that it holds.
+// and the points outside it unchanged. It is filled anew for every frame, without an allocation if reserve()
+// was called for as many points. reserve() keeps the points that it holds.
 class SheetSearch final : public NeighbourSearch {
  public:
   void reserve(std::size_t points, bool with_radius, bool with_stiffness);

@@ -81,7 +81,6 @@ class HeldForceStep {
 
 // The exact motion of a mass on a spring and dampers with dry (Coulomb) friction during one tick. Like
 // HeldForceStep, this models a hand whose device holds its force for a tick; the joints of the device rub.
-
 // m x'' = F + k (p - x) + c_p (p' - x') - c_g x' - F_c sign(x') along every axis, each axis by itself. A mass
 // at rest stays at rest while the other forces on an axis are at most F_c. For rotations F_c is a torque.
 class DryFrictionStep {

@@ -114,7 +114,6 @@ std::string millimetres(double length_m);
 Note holes_bridged(const std::string& where, double bridge_m);
 
 // The nearest large object in a depth image: the default target of a scan.
-
 struct NearestObject {
   double nearest_depth_m = 0;    // depth of its nearest part (5th percentile)
   int row = 0, column = 0;       // medians of its pixels

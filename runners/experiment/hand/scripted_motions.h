@@ -14,7 +14,6 @@
 namespace remote_touch {
 
 // A path of straight pieces, each with its own speed.
-
 class PolylinePath {
  public:
   // Starts at a point, at time 0.
@@ -34,7 +33,6 @@ class PolylinePath {
 };
 
 // A device that visits listed points, each at its own speed.
-
 class Waypoints final : public Trajectory {
  public:
   struct Settings {
@@ -55,7 +53,6 @@ Parameters parameters(Waypoints::Settings& s);
 std::string validate(const Waypoints::Settings& s);
 
 // A device with six degrees of freedom that visits listed poses.
-
 class Poses final : public Trajectory {
  public:
   struct Settings {
@@ -81,7 +78,6 @@ Parameters parameters(Poses::Settings& s);
 std::string validate(const Poses::Settings& s);
 
 // A device that waits at a point and then presses a set depth into the surface below it, 4.3.2.
-
 class Press final : public Trajectory {
  public:
   struct Settings {
@@ -107,14 +103,13 @@ inline std::string validate(const Press::Settings&) {
   return {};
 }
 
-// A device that moves along a straight line over a height field, a set depth below the true surface.
-
-// The HIP keeps its distance to every part of the surface along the line (a parallel curve, not a vertical
-// shift). It lifts off over steps and comes down behind them: a frictionless proxy stays at the wall of a
-// step as long as the HIP is below the step's top, so a HIP that stayed inside would only build up force. The
-// HIP moves at constant speed along its own path, approaches from above and leaves upwards. The path is that
-// over the surface at time 0. If the surface rises or sinks as a whole, the HIP rises and sinks with it: with
-// the true surface, from which signed_distance() measures.
+// A device that moves along a straight line over a height field, a set depth below the true surface. The HIP
+// keeps its distance to every part of the surface along the line (a parallel curve, not a vertical shift). It
+// lifts off over steps and comes down behind them: a frictionless proxy stays at the wall of a step as long
+// as the HIP is below the step's top, so a HIP that stayed inside would only build up force. The HIP moves at
+// constant speed along its own path, approaches from above and leaves upwards. The path is that over the
+// surface at time 0. If the surface rises or sinks as a whole, the HIP rises and sinks with it: with the true
+// surface, from which signed_distance() measures.
 class FollowSurface final : public Trajectory {
  public:
   struct Settings {
@@ -145,10 +140,8 @@ class FollowSurface final : public Trajectory {
 Parameters parameters(FollowSurface::Settings& s);
 std::string validate(const FollowSurface::Settings& s);
 
-// A smooth random motion of six degrees of freedom, for stress tests.
-
-// Each coordinate of the position and of the rotation vector is a sum of three sines with incommensurable
-// frequencies and random phases.
+// A smooth random motion of six degrees of freedom, for stress tests. Each coordinate of the position and of
+// the rotation vector is a sum of three sines with incommensurable frequencies and random phases.
 class RandomMotion final : public Trajectory {
  public:
   struct Settings {

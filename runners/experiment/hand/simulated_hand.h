@@ -83,7 +83,6 @@ class OperatorModel {
 
 // The hand that moves the device of a run: a script alone, or a simulated operator who follows it and feels
 // the device's motors.
-
 class SimulatedHand {
  public:
   // If there is no operator, the hand follows the script exactly. If there are no device settings, the device

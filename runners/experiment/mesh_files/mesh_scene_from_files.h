@@ -49,7 +49,6 @@ std::vector<InputPart> input_files(const PlacedMesh& s);
 SceneMesh load(const PlacedMesh& s, const std::string& prefix, const PosePath& path);
 
 // A scene of meshes as a scenario of the program: a mesh of the user under the hand.
-
 class MeshSceneFromFiles final : public MeshScene {
  public:
   struct Settings {
@@ -99,7 +98,6 @@ std::string validate(const MeshSceneFromFiles::Settings& s);
 std::vector<InputPart> input_files(const MeshSceneFromFiles::Settings& s);
 
 // A recording as a scenario whose true surface may come from mesh files.
-
 class RecordingWithTruth final : public RecordedScene {
  public:
   using Settings = RecordedScene::Settings;

@@ -14,7 +14,6 @@
 namespace remote_touch {
 
 // A file that is read at given positions, so that threads share no current position.
-
 class ByteFile {
  public:
   // Throws InputError when it cannot be opened or is no plain file.

@@ -85,12 +85,11 @@ class ImageRays {
   double slack_ = 0;
 };
 
-// Reads the points of a PointCloud2 with any layout of its fields.
-
-// Reads the fields x, y, z (float32 or float64, metres) and, if present, rgb or rgba (4 bytes, 0xAARRGGBB).
-// Alpha is dropped, but see colour_of_float() for rgb as float32. Other fields are skipped. The message's
-// frame is the world frame. A point with a coordinate that is not finite, or at exactly (0, 0, 0), is a
-// missing measurement: it keeps its index, and its three coordinates are NaN.
+// Reads the points of a PointCloud2 with any layout of its fields. Reads the fields x, y, z (float32 or
+// float64, metres) and, if present, rgb or rgba (4 bytes, 0xAARRGGBB). Alpha is dropped, but see
+// colour_of_float() for rgb as float32. Other fields are skipped. The message's frame is the world frame. A
+// point with a coordinate that is not finite, or at exactly (0, 0, 0), is a missing measurement: it keeps its
+// index, and its three coordinates are NaN.
 //
 // height > 1: the cloud is organised. It gets cloud.image if a pinhole camera explains it, as for a PCD file.
 // height = 1: the points are in no order.
