@@ -209,8 +209,7 @@ std::string find_input(const std::string& path) {
     require_file_or_folder(found);
     return found.string();
   }
-  throw MissingInput(path,
-                         "no such recording, image or mesh: expected a folder or file " + input_places());
+  throw MissingInput(path, "no such recording, image or mesh: expected a folder or file " + input_places());
 }
 
 FrameRange frames_of(const InputPart& part, const RecordingIndex& recording) {

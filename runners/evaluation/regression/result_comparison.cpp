@@ -247,7 +247,7 @@ std::optional<Experiment> stored_experiment(const TextAttributes& trace) {
   const std::string configuration = attribute(trace, "config");
   if (configuration.empty()) return std::nullopt;
   try {
-    return Experiment::from_json(stored_configuration(configuration), "configuration");
+    return Experiment::from_json(configuration, "configuration");
   } catch (const InputError&) {
     return std::nullopt;
   }

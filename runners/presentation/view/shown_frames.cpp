@@ -162,9 +162,8 @@ Experiment experiment_of_run(const TextAttributes& trace, const std::string& nam
     throw InputError(
         name,
         "is of a live run, without its frames: expected the trace that `remote-touch run` makes from its recording");
-  Experiment experiment = read_configuration(trace, name, [&] {
-    return Experiment::from_json(parse_json(attribute(trace, "config"), name));
-  });
+  Experiment experiment = read_configuration(
+      trace, name, [&] { return Experiment::from_json(parse_json(attribute(trace, "config"), name)); });
   for (const ChangedInput& input :
        changed_inputs(attribute(trace, "input_digests"), input_hashes(experiment.inputs())))
     throw InputError(name, "its recording " + input.path + " has changed: expected " + input.before +

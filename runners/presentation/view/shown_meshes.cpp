@@ -198,7 +198,7 @@ std::vector<ShownMesh> shown_meshes(const Scenario& scenario, std::span<const do
 std::vector<ShownMesh> shown_meshes_of_live(const Scenario& scenario, double haptic_rate_hz) {
   constexpr double kMaxTimes = 2000;
   if (!scenario.truth_text().empty()) return {};  // a recording
-  double end_s = 0;  // from then on the scene rests
+  double end_s = 0;                               // from then on the scene rests
   for (const Phase& phase : scenario.phases())
     end_s = std::max(end_s, std::isfinite(phase.ends_s) ? phase.ends_s : phase.begins_s);
   const double steps = std::clamp(std::ceil(end_s * haptic_rate_hz), 1.0, kMaxTimes);

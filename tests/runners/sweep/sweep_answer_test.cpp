@@ -40,7 +40,8 @@ SweepResult sweep() {
                  {"method", "1", "", std::vector<std::int32_t>{0, 1}, 1, {"old", "new"}},
                  {"x", "m/s^2", "", std::vector<double>{1, 2, 3}}};
   result.replicates = kRuns;
-  result.measures = {{"popped_through", "1", "1 when the proxy popped through", {}}, {"max_force", "N", "", {}}};
+  result.measures = {{"popped_through", "1", "1 when the proxy popped through", {}},
+                     {"max_force", "N", "", {}}};
   result.start(false);
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     const std::size_t cell = result.cell_of(run);
