@@ -21,7 +21,7 @@ std::shared_ptr<const NeighbourSearch> cloud_with_fixtures() {
 // Wherever in its cube the position lies, no point within reach may be missing from the list.
 TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
   const auto points = cloud_with_fixtures();
-  const PointCloud& cloud = static_cast<const CloudSearch&>(*points).cloud();
+  const PointCloud& cloud = *points->stored_cloud();
   Neighbourhood near = scenes::neighbourhood(points, kReach);
   const PointCloud places = scenes::random_cloud(2000, 0.04, 22);
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -41,7 +41,7 @@ TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
 // list has every point within the reach, and fewer points beyond it than the list of around().
 TEST(Neighbourhood, NarrowedListHoldsEveryRegionWithinReach) {
   const auto points = cloud_with_fixtures();
-  const PointCloud& cloud = static_cast<const CloudSearch&>(*points).cloud();
+  const PointCloud& cloud = *points->stored_cloud();
   Neighbourhood near = scenes::neighbourhood(points, kReach), wide = scenes::neighbourhood(points, kReach);
   const PointCloud places = scenes::random_cloud(300, 0.04, 22);
   std::size_t narrow_count = 0, narrowed_size = 0, wide_size = 0;
