@@ -1,7 +1,6 @@
 #include "tests/doubles/depth_libraries.h"
 
-#include "runners/live/sensors/k4a_camera.h"
-#include "runners/live/sensors/realsense_camera.h"
+#include "runners/live/sensors/adapters.h"
 
 namespace remote_touch {
 

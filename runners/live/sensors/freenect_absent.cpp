@@ -1,6 +1,6 @@
 // Stands in for freenect_camera.cpp where its library is not installed.
 #include "core/parameters/input_error.h"
-#include "runners/live/sensors/freenect_camera.h"
+#include "runners/live/sensors/adapters.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/live/sensors/freenect_camera.h"
+#include "runners/live/sensors/adapters.h"
 
 #include <libfreenect.h>
 #include <signal.h>

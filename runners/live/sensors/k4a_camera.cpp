@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
+#include "runners/live/sensors/adapters.h"
 #include "runners/live/sensors/driver_frames.h"
 #include "runners/live/sensors/undistortion.h"
 

@@ -1,4 +1,6 @@
-// Azure Kinect, and Orbbec's Femto cameras through Orbbec's wrapper: depth through the k4a C interface.
+// The functions of the k4a interface that its adapter calls. The interface is that of the Azure Kinect;
+// Orbbec's wrapper for the Femto has it as well. It is declared here from its documentation, so no header of
+// the vendors is needed.
 #pragma once
 
 #include <cstddef>
@@ -7,18 +9,12 @@
 #include <string>
 
 #include "runners/libraries/shared_library.h"
-#include "runners/live/devices/haptic_device.h"
-#include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch::k4a {
 
 struct CaptureOfLibrary;
 struct DeviceOfLibrary;
 struct ImageOfLibrary;
-
-// The functions of the k4a interface that its adapter calls. The interface is that of the Azure Kinect;
-// Orbbec's wrapper for the Femto has it as well. It is declared here from its documentation, so no header of
-// the vendors is needed.
 
 using Device = DeviceOfLibrary*;
 using Capture = CaptureOfLibrary*;
@@ -114,19 +110,3 @@ using HeldCapture = std::unique_ptr<CaptureOfLibrary, Close>;
 using HeldImage = std::unique_ptr<ImageOfLibrary, Close>;
 
 }  // namespace remote_touch::k4a
-
-namespace remote_touch {
-
-// address: CAMERA[?MODE]. CAMERA is a number (0: the first, also if left out) or a serial number; MODE is
-// nfov (640 x 576 pixels, also if left out), nfov-binned (320 x 288), wfov-binned (512 x 512), all three at
-// 30 Hz, or wfov (1024 x 1024 at 15 Hz). Numbers have one or two digits; longer ones are serial numbers.
-//
-// The lens's distortion is removed from the depth (undistortion.h) with the calibration in the camera; the
-// view is that of a pinhole camera. There is no colour. If several frames come between two calls of next(),
-// only the newest is kept. The camera does not count its frames: their numbers follow from its time stamps,
-// so that gaps are visible.
-std::unique_ptr<DepthSource> open_k4a(const std::string& address, Clock& clock);
-
-Availability k4a_availability();
-
-}  // namespace remote_touch

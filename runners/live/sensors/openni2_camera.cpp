@@ -1,4 +1,4 @@
-#include "runners/live/sensors/openni2_camera.h"
+#include "runners/live/sensors/adapters.h"
 
 #include <OpenNI.h>
 #include <dlfcn.h>

@@ -7,6 +7,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/live/devices/device_address.h"
+#include "runners/live/sensors/adapters.h"
 #include "runners/live/sensors/driver_frames.h"
 #include "runners/live/sensors/undistortion.h"
 

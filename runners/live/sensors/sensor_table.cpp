@@ -7,10 +7,7 @@
 
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/live/devices/device_address.h"
-#include "runners/live/sensors/freenect_camera.h"
-#include "runners/live/sensors/k4a_camera.h"
-#include "runners/live/sensors/openni2_camera.h"
-#include "runners/live/sensors/realsense_camera.h"
+#include "runners/live/sensors/adapters.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/text_files/file_order.h"
 

@@ -37,10 +37,6 @@ namespace remote_touch {
 
 #ifndef REMOTE_TOUCH_VIEW_SERVER
 
-bool view_server_is_compiled_in() {
-  return false;
-}
-
 std::unique_ptr<ViewServer> serve_view(std::string, LivePages&, int) {
   throw InputError("--view", "not compiled in; install libboost-dev and build again");
 }
@@ -305,10 +301,6 @@ class BeastServer final : public ViewServer {
 };
 
 }  // namespace
-
-bool view_server_is_compiled_in() {
-  return true;
-}
 
 std::unique_ptr<ViewServer> serve_view(std::string page, LivePages& pages, int port) {
   return std::make_unique<BeastServer>(std::move(page), pages, port);

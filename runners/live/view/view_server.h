@@ -16,8 +16,6 @@
 
 namespace remote_touch {
 
-bool view_server_is_compiled_in();
-
 class ViewServer {
  public:
   virtual ~ViewServer() = default;          // calls end() and ends its thread
