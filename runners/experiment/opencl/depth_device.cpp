@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/opencl/device_pipeline.h"
 
 namespace remote_touch {
 

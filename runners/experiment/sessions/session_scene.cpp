@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/sessions/sensor_frame.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/text_files/text_file.h"
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/sessions/sensor_frame.h"
 
 namespace remote_touch {
 

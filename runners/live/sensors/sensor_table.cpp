@@ -1,7 +1,6 @@
 #include "runners/live/sensors/sensor_table.h"
 
 #include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
