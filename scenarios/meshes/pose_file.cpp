@@ -311,30 +311,6 @@ RigidTransform with_rotation(const RigidTransform& X, const Eigen::Matrix3d& R) 
   return changed;
 }
 
-RigidTransform inverse_of(const RigidTransform& X) {
-  return X.inverse();
-}
-RigidTransform from_millimetres(const RigidTransform& X) {
-  RigidTransform changed = X;
-  changed.translation() /= 1000;
-  return changed;
-}
-RigidTransform with_transposed_rotation(const RigidTransform& X) {
-  return with_rotation(X, X.linear().transpose());
-}
-RigidTransform with_flipped_axes(const RigidTransform& X) {
-  return with_rotation(X, X.linear() * Vec3(1, -1, -1).asDiagonal());
-}
-RigidTransform with_flipped_parent(const RigidTransform& X) {
-  RigidTransform flip = RigidTransform::Identity();
-  flip.linear().diagonal() = Vec3(1, -1, -1);
-  return flip * X;
-}
-RigidTransform with_real_part_first(const RigidTransform& X) {
-  const Eigen::Quaterniond q(X.linear());
-  return with_rotation(X, Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix());
-}
-
 }  // namespace
 
 std::optional<RigidTransform> pose_of_rows(const std::string& where, const std::array<double, 12>& rows) {
@@ -449,13 +425,29 @@ std::vector<Note> unusual_poses(const std::string& subject, std::span<const Stam
 }
 
 std::span<const OtherMeaning> other_meanings() {
+  using Pose = const RigidTransform&;
   static constexpr OtherMeaning kMeanings[] = {
-      {"the inverse poses", inverse_of},
-      {"positions in millimetres", from_millimetres},
-      {"transposed rotations", with_transposed_rotation},
-      {"y and z of the body reversed (as in OpenGL)", with_flipped_axes},
-      {"y and z of the parent frame reversed (as in OpenGL)", with_flipped_parent},
-      {"quaternions with qw first", with_real_part_first},
+      {"the inverse poses", [](Pose X) -> RigidTransform { return X.inverse(); }},
+      {"positions in millimetres",
+       [](Pose X) {
+         RigidTransform changed = X;
+         changed.translation() /= 1000;
+         return changed;
+       }},
+      {"transposed rotations", [](Pose X) { return with_rotation(X, X.linear().transpose()); }},
+      {"y and z of the body reversed (as in OpenGL)",
+       [](Pose X) { return with_rotation(X, X.linear() * Vec3(1, -1, -1).asDiagonal()); }},
+      {"y and z of the parent frame reversed (as in OpenGL)",
+       [](Pose X) {
+         RigidTransform flip = RigidTransform::Identity();
+         flip.linear().diagonal() = Vec3(1, -1, -1);
+         return flip * X;
+       }},
+      {"quaternions with qw first",
+       [](Pose X) {
+         const Eigen::Quaterniond q(X.linear());
+         return with_rotation(X, Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()).toRotationMatrix());
+       }},
   };
   return kMeanings;
 }

@@ -47,7 +47,6 @@ Wrench exerted(const MotorSettings& m, const Eigen::Quaterniond& handle_W, const
 }
 
 Parameters parameters(DeviceSettings& s) {
-  Parameters all = parameters(s.motors);
   const Parameters more{
       {"friction_N", &s.resistance.friction_N, 0, 100,
        "dry (Coulomb) friction along each axis of the base frame; needs an operator"},
@@ -68,8 +67,7 @@ Parameters parameters(DeviceSettings& s) {
       {"velocity_ticks", &s.velocity_ticks, 1, 1000,
        "ticks between the two positions whose difference is the measured velocity"},
   };
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
+  return appended(parameters(s.motors), more);
 }
 
 std::string validate(const DeviceSettings& s) {

@@ -52,17 +52,9 @@ std::string validate(const OperatorSettings& s) {
   return {};
 }
 
-OperatorModel::Step::Step(const MassOnSpring& system, double friction, double duration_s)
-    : without_friction(system, duration_s) {
-  if (friction > 0) with_friction.emplace(system, friction, duration_s);
-}
-
-HeldForceStep::Motion OperatorModel::Step::motion(const HeldForceStep::Start& start) const {
-  return with_friction ? with_friction->motion(start) : without_friction.motion(start);
-}
-
-StepEnergy OperatorModel::Step::energy(const HeldForceStep::Start& start) const {
-  return with_friction ? with_friction->energy(start) : without_friction.energy(start);
+OperatorModel::Step OperatorModel::step(const MassOnSpring& system, double friction, double duration_s) {
+  if (friction > 0) return DryFrictionStep(system, friction, duration_s);
+  return HeldForceStep(system, duration_s);
 }
 
 OperatorModel::OperatorModel(const OperatorSettings& settings, double tick_s, const DeviceResistance& device)
@@ -82,13 +74,12 @@ void OperatorModel::prepare(double grip, double duration_s) {
   if (step_ && grip == grip_ && duration_s == duration_s_) return;
   grip_ = grip, duration_s_ = duration_s;
   const double open = 1 - grip;
-  step_.emplace(MassOnSpring{s_.mass_kg, grip * s_.stiffness_N_per_m, grip * s_.damping_Ns_per_m,
-                             open * s_.damping_Ns_per_m + device_.damping_Ns_per_m},
-                device_.friction_N, duration_s);
-  turning_step_.emplace(
-      MassOnSpring{s_.inertia_kg_m2, grip * s_.rotational_stiffness_Nm_per_rad,
-                   grip * s_.rotational_damping_Nms_per_rad,
-                   open * s_.rotational_damping_Nms_per_rad + device_.rotational_damping_Nms_per_rad},
+  step_ = step({s_.mass_kg, grip * s_.stiffness_N_per_m, grip * s_.damping_Ns_per_m,
+                open * s_.damping_Ns_per_m + device_.damping_Ns_per_m},
+               device_.friction_N, duration_s);
+  turning_step_ = step(
+      {s_.inertia_kg_m2, grip * s_.rotational_stiffness_Nm_per_rad, grip * s_.rotational_damping_Nms_per_rad,
+       open * s_.rotational_damping_Nms_per_rad + device_.rotational_damping_Nms_per_rad},
       device_.friction_torque_Nm, duration_s);
 }
 
@@ -101,8 +92,9 @@ DeviceState OperatorModel::move(const DeviceState& intended, double time_s, cons
     const Vector6 apart = displacement(pose_, intended_);
     start_ = {apart.head<3>(), velocity_, path_velocity.head<3>(), device_wrench.force_N};
     turning_start_ = {apart.tail<3>(), angular_velocity_, path_velocity.tail<3>(), device_wrench.torque_Nm};
-    const HeldForceStep::Motion moving = step_->motion(start_),
-                                turning = turning_step_->motion(turning_start_);
+    const auto moving = std::visit([&](const auto& step) { return step.motion(start_); }, *step_);
+    const auto turning =
+        std::visit([&](const auto& step) { return step.motion(turning_start_); }, *turning_step_);
     velocity_ = moving.velocity, angular_velocity_ = turning.velocity;
     Vector6 motion;
     motion << moving.displacement, turning.displacement;
@@ -118,8 +110,8 @@ DeviceState OperatorModel::move(const DeviceState& intended, double time_s, cons
 
 StepEnergy OperatorModel::last_energy() const {
   if (!step_) return {};
-  StepEnergy energy = step_->energy(start_);
-  return energy += turning_step_->energy(turning_start_);
+  StepEnergy energy = std::visit([&](const auto& step) { return step.energy(start_); }, *step_);
+  return energy += std::visit([&](const auto& step) { return step.energy(turning_start_); }, *turning_step_);
 }
 
 SimulatedHand::SimulatedHand(const std::optional<OperatorSettings>& operator_settings,

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "analysis/trace/hand_and_slave_state.h"
@@ -57,14 +58,9 @@ class OperatorModel {
   StepEnergy last_energy() const;
 
  private:
-  // The step of the translation, or of the rotation, with the friction of the device.
-  struct Step {
-    Step(const MassOnSpring& system, double friction, double duration_s);
-    HeldForceStep::Motion motion(const HeldForceStep::Start& start) const;
-    StepEnergy energy(const HeldForceStep::Start& start) const;
-    HeldForceStep without_friction;
-    std::optional<DryFrictionStep> with_friction;  // none: the device has no dry friction
-  };
+  // The step of the translation, or of the rotation, without and with dry friction of the device.
+  using Step = std::variant<HeldForceStep, DryFrictionStep>;
+  static Step step(const MassOnSpring& system, double friction, double duration_s);
   void prepare(double grip, double duration_s);
   std::uint32_t buttons(double time_s) const;
 

@@ -61,9 +61,7 @@ using LoadedToolInnerSpheres = ToolFromMesh<InnerSphereParameters>;
 
 template <class MotionSettings>
 Parameters parameters(MovedToolSettings<MotionSettings>& s) {
-  Parameters all = parameters(s.tool);
-  for (Parameter& p : parameters(s.motion)) all.push_back(std::move(p));
-  return all;
+  return appended(parameters(s.tool), parameters(s.motion));
 }
 template <class MotionSettings>
 std::string validate(const MovedToolSettings<MotionSettings>& s) {
