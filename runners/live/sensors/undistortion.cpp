@@ -23,14 +23,14 @@ constexpr float kMaxStep = 0.02f;
 constexpr int kMaxSide_px = 8192;
 
 // The first and the last of `count` pixels that see something, with their rays.
-struct Ends {
+struct SeenEnds {
   int first = 0, last = 0;
   Vector2d first_ray = Vector2d::Zero(), last_ray = Vector2d::Zero();
 };
 
 template <class PixelAt>
-std::optional<Ends> ends_of(int count, const Lens& lens, PixelAt pixel_at) {
-  Ends ends{0, count - 1};
+std::optional<SeenEnds> ends_of(int count, const Lens& lens, PixelAt pixel_at) {
+  SeenEnds ends{0, count - 1};
   std::optional<Vector2d> first, last;
   while (ends.first < count && !(first = lens.ray_of_pixel(pixel_at(ends.first)))) ++ends.first;
   while (ends.last > ends.first && !(last = lens.ray_of_pixel(pixel_at(ends.last)))) --ends.last;

@@ -72,7 +72,7 @@ struct PcdHeader {
 };
 
 // Returns a word of the file for a message: quoted, short and printable, even if the file is not text at all.
-std::string shown(std::string_view word) {
+std::string shown_word(std::string_view word) {
   std::string text(word.substr(0, 32));
   for (char& c : text) c = c >= ' ' && c <= '~' ? c : '?';
   return "'" + text + (word.size() > 32 ? "...'" : "'");
@@ -95,7 +95,7 @@ std::size_t integer_value(const std::string& file, const std::string& keyword, s
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size() || value < 1 || value > max)
-    refuse(file, keyword, " = ", shown(word), ": expected 1 to ", max);
+    refuse(file, keyword, " = ", shown_word(word), ": expected 1 to ", max);
   return value;
 }
 
@@ -109,8 +109,8 @@ Entries read_entries(const std::string& file, PcdText& rest) {
     if (std::find(kKeywords.begin(), kKeywords.end(), words[0]) == kKeywords.end()) {
       std::string allowed;
       for (const std::string_view keyword : kKeywords) allowed.append(" ").append(keyword);
-      refuse(file + ":" + std::to_string(rest.line), shown(words[0]), " is not a PCD header entry: expected",
-             allowed);
+      refuse(file + ":" + std::to_string(rest.line), shown_word(words[0]),
+             " is not a PCD header entry: expected", allowed);
     }
     entries[words[0] == "COLUMNS" ? "FIELDS" : words[0]].assign(words.begin() + 1, words.end());
   }
@@ -140,9 +140,10 @@ void read_fields(const std::string& file, const Entries& entries, PcdHeader& hea
   for (std::size_t f = 0; f < n; ++f) {
     PcdField field{names[f], types[f].front(), integer_value(file, "SIZE", sizes[f], 8)};
     field.count = integer_value(file, "COUNT", counts[f], std::numeric_limits<int>::max());
-    if (!std::has_single_bit(field.size)) refuse(file, "SIZE = ", shown(sizes[f]), ": expected 1, 2, 4, 8");
+    if (!std::has_single_bit(field.size))
+      refuse(file, "SIZE = ", shown_word(sizes[f]), ": expected 1, 2, 4, 8");
     if (types[f] != "F" && types[f] != "I" && types[f] != "U")
-      refuse(file, "TYPE = ", shown(types[f]), ": expected F, I, U");
+      refuse(file, "TYPE = ", shown_word(types[f]), ": expected F, I, U");
     field.first_byte = header.point_bytes, header.point_bytes += field.size * field.count;
     field.first_value = header.point_values, header.point_values += field.count;
     header.fields.push_back(field);
@@ -181,7 +182,7 @@ void read_lengths(const std::string& file, const Entries& entries, PcdHeader& he
   const std::size_t product = header.width * header.height;
   header.points = integer_value(file, "POINTS", points, std::numeric_limits<std::size_t>::max());
   if (header.points == product) return;
-  refuse(file, "POINTS = ", shown(points), ": expected WIDTH * HEIGHT = ", product);
+  refuse(file, "POINTS = ", shown_word(points), ": expected WIDTH * HEIGHT = ", product);
 }
 
 // Reads tx ty tz qw qx qy qz. Some programs write zeros for "unknown", which means no rotation if the
@@ -194,7 +195,7 @@ std::optional<RigidTransform> read_viewpoint(const std::string& file, const Entr
     const std::string_view word = words[i];
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value[i]);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value[i]))
-      refuse(file, "VIEWPOINT has ", shown(word), ": expected numbers");
+      refuse(file, "VIEWPOINT has ", shown_word(word), ": expected numbers");
   }
   const Vec3 position(value[0], value[1], value[2]);
   const Eigen::Quaterniond turn(value[3], value[4], value[5], value[6]);
@@ -212,7 +213,7 @@ PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   const Entries entries = read_entries(file, rest);
   const std::string_view version = entry(file, entries, "VERSION", 1)[0];
   if (std::find(kVersions.begin(), kVersions.end(), version) == kVersions.end())
-    refuse(file, "VERSION = ", shown(version), ": expected 0.5, 0.6 or 0.7");
+    refuse(file, "VERSION = ", shown_word(version), ": expected 0.5, 0.6 or 0.7");
   PcdHeader header;
   read_fields(file, entries, header);
   header.x = coordinate(file, header, "x");
@@ -223,7 +224,7 @@ PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   header.X_FV = read_viewpoint(file, entries);
   header.encoding = entry(file, entries, "DATA", 1)[0];
   if (header.encoding != "ascii" && header.encoding != "binary" && header.encoding != "binary_compressed")
-    refuse(file, "DATA = ", shown(header.encoding), ": expected ascii, binary, binary_compressed");
+    refuse(file, "DATA = ", shown_word(header.encoding), ": expected ascii, binary, binary_compressed");
   return header;
 }
 
@@ -263,7 +264,7 @@ void check_claimed_size(const std::string& file, const PcdHeader& header, std::s
 // about where for any other word.
 double real_number(const std::string& where, std::string_view word) {
   const std::optional<double> value = number_of_word(word);
-  if (!value) refuse(where, shown(word), ": expected a number or nan");
+  if (!value) refuse(where, shown_word(word), ": expected a number or nan");
   return *value;
 }
 
@@ -278,7 +279,7 @@ std::uint32_t ascii_colour(const std::string& where, const PcdField& field, std:
     const std::uint32_t colour = colour_of_float(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
     if (colour != kNoColour || !is_integer || word.find_first_of(".eE") != word.npos) return colour;
   }
-  if (!is_integer) refuse(where, shown(word), ": expected a 32-bit colour");
+  if (!is_integer) refuse(where, shown_word(word), ": expected a 32-bit colour");
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(value)) & kRgb;
 }
 

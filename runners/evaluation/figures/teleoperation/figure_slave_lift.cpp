@@ -18,7 +18,7 @@ constexpr double kFrame_s = 1 / kSlaveFrameRate_hz;
 
 constexpr double kLiftEnd_s = 0.2;  // the end of the run, in which the plane accelerates
 
-struct Lift {
+struct SlaveLift {
   RemoteSide remote;
   double force_N = 0, derived_N = 0;  // mean over the window
   double peak_N = 0;                  // of the whole run
@@ -71,8 +71,8 @@ double command_error_m(const Trace& trace) {
       });
 }
 
-std::vector<Lift> lifts(FigureContext& context) {
-  std::vector<Lift> all;
+std::vector<SlaveLift> lifts(FigureContext& context) {
+  std::vector<SlaveLift> all;
   std::vector<Experiment> runs;
   for (const double frequency_hz : kSlaveFrequencies_hz)
     for (const double delay_s : kLinkDelays_s) {
@@ -109,26 +109,27 @@ Panel course_panel(Figure& figure, FigureContext& context) {
                {"course", "time", "slave", CurveStyle::line, "slave"}});
 }
 
-Panel force_panel(Figure& figure, const std::vector<Lift>& all) {
+Panel force_panel(Figure& figure, const std::vector<SlaveLift>& all) {
   Panel panel{"Mean force of the last 0.2 s", "delay of the commands (s)", "force (N)"};
   for (const double frequency_hz : kSlaveFrequencies_hz) {
-    std::vector<Lift> list;
-    for (const Lift& lift : all)
+    std::vector<SlaveLift> list;
+    for (const SlaveLift& lift : all)
       if (lift.remote.frequency_hz == frequency_hz) list.push_back(lift);
     const std::string hz = std::to_string(std::lround(frequency_hz)), name = "force_" + hz + "_hz";
-    figure.tables.push_back(table_over<Lift>(
+    figure.tables.push_back(table_over<SlaveLift>(
         name, "a slave of " + hz + " Hz", list,
-        {{"delay", "s", "delay of the commands", [](const Lift& l) { return l.remote.delay_s; }},
-         {"force", "N", "mean force on the slave in the last 0.2 s", [](const Lift& l) { return l.force_N; }},
-         {"derived", "N", "derived mean force", [](const Lift& l) { return l.derived_N; }},
-         {"peak", "N", "largest force on the slave", [](const Lift& l) { return l.peak_N; }}}));
+        {{"delay", "s", "delay of the commands", [](const SlaveLift& l) { return l.remote.delay_s; }},
+         {"force", "N", "mean force on the slave in the last 0.2 s",
+          [](const SlaveLift& l) { return l.force_N; }},
+         {"derived", "N", "derived mean force", [](const SlaveLift& l) { return l.derived_N; }},
+         {"peak", "N", "largest force on the slave", [](const SlaveLift& l) { return l.peak_N; }}}));
     panel.curves.push_back({name, "delay", "derived", CurveStyle::line, hz + " Hz, derived"});
     panel.curves.push_back({name, "delay", "force", CurveStyle::dots, hz + " Hz"});
   }
   return panel;
 }
 
-void add_claims(Figure& figure, const std::vector<Lift>& all) {
+void add_claims(Figure& figure, const std::vector<SlaveLift>& all) {
   std::vector<double> errors_m, differences, growths;
   for (std::size_t i = 0; i < all.size(); ++i) {
     errors_m.push_back(all[i].error_m);
@@ -158,7 +159,7 @@ Figure figure_slave_lift(FigureContext& context) {
       "frame. The upper panel shows plane, command and slave in one run. The lower panel shows the mean "
       "force of the plane on the slave, measured (dots) and derived from momentum (lines). Simulated."};
   figure.source = "the theory of a linear slave";
-  const std::vector<Lift> all = lifts(context);
+  const std::vector<SlaveLift> all = lifts(context);
   figure.panels = {course_panel(figure, context), force_panel(figure, all)};
   add_claims(figure, all);
   return figure;

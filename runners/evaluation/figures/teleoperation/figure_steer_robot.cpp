@@ -16,7 +16,7 @@ namespace remote_touch {
 namespace {
 
 // Settings of the experiment steer-robot.
-constexpr double kAmplitude_m = 0.02, kShake_hz = 0.5, kFrameRate_hz = 30, kTick_s = 0.001;
+constexpr double kAmplitude_m = 0.02, kOrganShake_hz = 0.5, kOrganFrameRate_hz = 30, kTick_s = 0.001;
 
 // --- the radius that is needed ---
 
@@ -26,7 +26,7 @@ struct Link {
 
 // The slave reaches a command at the end of the tick after its arrival.
 double violation_m(const Link& link, double age_s) {
-  return following_error_m({kAmplitude_m, kShake_hz, link.frequency_hz, link.delay_s + kTick_s + age_s});
+  return following_error_m({kAmplitude_m, kOrganShake_hz, link.frequency_hz, link.delay_s + kTick_s + age_s});
 }
 
 // Bounds of the radius without noise: the organ is seen at once, or a frame interval late.
@@ -34,7 +34,7 @@ double least_radius_m(const Link& link) {
   return violation_m(link, 0);
 }
 double latest_radius_m(const Link& link) {
-  return violation_m(link, 1 / kFrameRate_hz);
+  return violation_m(link, 1 / kOrganFrameRate_hz);
 }
 
 struct Needed {

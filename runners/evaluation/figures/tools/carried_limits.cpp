@@ -81,7 +81,7 @@ void add_limit_panel(Figure& figure, const Table& limits, const DerivedLimit& de
 
 namespace {
 
-constexpr double kSpacing_m = 0.0015;
+constexpr double kPlateSpacing_m = 0.0015;
 
 // The surface under a plate that reaches half_m to either side.
 using Under = std::function<UnderPlate(double half_m)>;
@@ -99,8 +99,8 @@ double jump_m(Carrier rule, double thickness_m, const UnderPlate& under) {
 Jump derived(Carrier rule, double thickness_m, const Under& under) {
   const double half_m = kHalfPlate_m - (rule == Carrier::voxels ? ToolSettings{}.voxel_m : 0);
   const double disk_m =
-      rule == Carrier::voxels ? ToolSettings{}.voxel_m : ToolParameters{}.disk_radius_ratio * kSpacing_m;
-  const double jumps_m[] = {jump_m(rule, thickness_m, under(half_m - kSpacing_m)),
+      rule == Carrier::voxels ? ToolSettings{}.voxel_m : ToolParameters{}.disk_radius_ratio * kPlateSpacing_m;
+  const double jumps_m[] = {jump_m(rule, thickness_m, under(half_m - kPlateSpacing_m)),
                             jump_m(rule, thickness_m, under(half_m + disk_m))};
   const double bound_m = jump_m(rule, thickness_m, under(half_m));
   return {std::min({jumps_m[0], jumps_m[1], bound_m}), bound_m, std::max({jumps_m[0], jumps_m[1], bound_m})};
@@ -111,7 +111,7 @@ Jump derived(Carrier rule, double thickness_m, const Under& under) {
 std::vector<NoisyPoint> noisy_points(Shape::Kind kind, double half_m, double sigma_m) {
   Shape::Settings settings;
   settings.kind = kind, settings.slope_deg = kSlope_deg, settings.radius_m = kRadius_m;
-  const Grid grid{60, 60, kSpacing_m, 0, 0};
+  const Grid grid{60, 60, kPlateSpacing_m, 0, 0};
   const Shape shape(settings, grid);
   const auto below = [&](double x) { return 0.5 * std::erfc(-x / sigma_m * std::sqrt(0.5)); };
   const auto within = [&](double x) { return below(half_m - x) - below(-half_m - x); };
@@ -156,8 +156,9 @@ Jump on_corner(Carrier rule, double thickness_m, double slope_deg) {
 Jump on_ball(Carrier rule, double thickness_m, double radius_m) {
   return derived(rule, thickness_m, [&](double half_m) {
     const double seen_m = std::sqrt(2.0) * half_m;
-    return under_ball(
-        radius_m, half_m < kHalfPlate_m - kSpacing_m / 2 ? std::min(seen_m, radius_m - kSpacing_m) : seen_m);
+    return under_ball(radius_m, half_m < kHalfPlate_m - kPlateSpacing_m / 2
+                                    ? std::min(seen_m, radius_m - kPlateSpacing_m)
+                                    : seen_m);
   });
 }
 
@@ -169,8 +170,8 @@ Jump on_plane(Carrier rule, double extent_m) {
 // as without noise.
 Jump on_noise(Carrier rule, Shape::Kind kind, double sigma_m) {
   const double disk_m =
-      rule == Carrier::voxels ? ToolSettings{}.voxel_m : ToolParameters{}.disk_radius_ratio * kSpacing_m;
-  return {noise_jump_m(rule, kind, sigma_m, -kSpacing_m), noise_bound_m(rule, kind, sigma_m),
+      rule == Carrier::voxels ? ToolSettings{}.voxel_m : ToolParameters{}.disk_radius_ratio * kPlateSpacing_m;
+  return {noise_jump_m(rule, kind, sigma_m, -kPlateSpacing_m), noise_bound_m(rule, kind, sigma_m),
           noise_jump_m(rule, kind, sigma_m, disk_m)};
 }
 
