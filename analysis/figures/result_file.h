@@ -9,7 +9,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/trace/column.h"
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

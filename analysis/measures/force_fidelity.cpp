@@ -8,7 +8,7 @@
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/trace.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 namespace {

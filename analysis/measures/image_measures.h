@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/measures/no_value.h"
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/run_events.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/trace/column.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

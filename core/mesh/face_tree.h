@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/vector.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

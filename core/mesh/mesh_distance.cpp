@@ -9,8 +9,8 @@
 #include <tuple>
 #include <utility>
 
-#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "core/geometry/rotation.h"
-#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/triangle_tree.h"
+#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

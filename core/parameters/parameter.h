@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/guidance_target.h"
-#include "core/geometry/vector.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

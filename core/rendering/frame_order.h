@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/kernels/kernels.h"
+#include "core/points/neighbour_search.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
-#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <optional>
 
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 #include "core/rendering/frame.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -29,11 +29,11 @@
 #include <span>
 #include <string>
 
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
+#include "core/points/neighbour_search.h"
+#include "core/points/vector.h"
 #include "core/rivals/rival_renderer.h"
-#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 

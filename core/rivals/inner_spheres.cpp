@@ -7,9 +7,9 @@
 #include <queue>
 #include <utility>
 
-#include "core/geometry/vector.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/parameters/input_error.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -23,8 +23,8 @@
 // in core/kernels/kernels.h, and all other operations are + - * / and square roots. r_f of points is ignored.
 #pragma once
 
-#include "core/geometry/vector.h"
-#include "core/search/neighbourhood.h"
+#include "core/points/neighbourhood.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/points_view.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

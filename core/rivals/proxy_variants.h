@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/neighbour_search.h"
+#include "core/points/vector.h"
 #include "core/rivals/point_normals.h"
-#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 

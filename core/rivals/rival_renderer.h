@@ -8,9 +8,9 @@
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "core/parameters/parameter.h"
+#include "core/points/neighbourhood.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
-#include "core/search/neighbourhood.h"
 
 namespace remote_touch {
 

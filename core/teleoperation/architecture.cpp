@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "core/teleoperation/slave.h"
 
 namespace remote_touch {

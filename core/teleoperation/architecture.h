@@ -27,8 +27,8 @@
 #include <optional>
 #include <string>
 
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 #include "core/teleoperation/dead_band.h"
 #include "core/teleoperation/passivity_control.h"
 #include "core/teleoperation/slave.h"

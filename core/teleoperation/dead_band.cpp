@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 namespace {

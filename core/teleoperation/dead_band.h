@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 #include "core/rendering/frame.h"
 
 namespace remote_touch {

@@ -8,8 +8,8 @@
 
 #include <string>
 
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <variant>
 
-#include "core/geometry/vector.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

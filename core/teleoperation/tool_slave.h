@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/points/vector.h"
 #include "core/teleoperation/slave.h"
 
 namespace remote_touch {

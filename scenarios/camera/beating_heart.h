@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 #include "scenarios/camera/depth_camera.h"
 #include "scenarios/interface/scenario.h"
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/camera.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 namespace {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/noise_kernels.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/camera.h"
 #include "scenarios/camera/depth_camera.h"
 
 namespace remote_touch {

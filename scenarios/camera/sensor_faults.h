@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 
 namespace remote_touch {
 namespace {

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/geometry/rotation.h"
 #include "core/mesh/mesh_check.h"
+#include "core/points/rotation.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

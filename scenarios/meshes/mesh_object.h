@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/mesh/mesh_distance.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"
 #include "scenarios/text_files/text_file.h"

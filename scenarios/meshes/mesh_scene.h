@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "scenarios/camera/depth_sensor.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/mesh_object.h"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/mesh_object.h"
 

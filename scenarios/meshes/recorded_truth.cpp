@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/colour.h"
+#include "core/points/camera.h"
+#include "core/points/colour.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"
 #include "scenarios/recordings/images_and_clouds/depth_images.h"

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "scenarios/meshes/mesh_object.h"
 
 namespace remote_touch {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/recordings/bags/frames_from_messages.h"
 #include "scenarios/recordings/bags/messages.h"

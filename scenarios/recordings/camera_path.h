@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/pose_file.h"
 #include "scenarios/recordings/recording.h"

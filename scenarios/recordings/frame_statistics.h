@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording.h"
 

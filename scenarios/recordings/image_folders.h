@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

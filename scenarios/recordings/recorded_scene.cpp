@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/text_files/text_file.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
 #include "core/parameters/parameter.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/camera_path.h"

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/bags/bag_file.h"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
 #include "core/parameters/input_error.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/bag_frames.h"
 

@@ -4,12 +4,12 @@
 #include <limits>
 #include <memory>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 #include "scenarios/synthetic/grid_scene.h"
 #include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/shape.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/synthetic/grid_scene.h"
 

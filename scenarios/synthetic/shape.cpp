@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 

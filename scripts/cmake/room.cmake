@@ -18,7 +18,7 @@ function(without_coverage name path)
   endif()
 endfunction()
 
-# room(USES core/geometry core/kernels ... [LINKS PNG::PNG ...] [SOURCES generated.cpp ...] [COLD])
+# room(USES core/points core/kernels ... [LINKS PNG::PNG ...] [SOURCES generated.cpp ...] [COLD])
 #   USES     the rooms whose headers this folder includes
 #   LINKS    libraries from outside; they stay private, since no public header includes one
 #   SOURCES  files beyond the .cpp files of the folder

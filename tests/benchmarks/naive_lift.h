@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/dissertation/proxy/proxy_step.h"
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "scenarios/synthetic/lifts.h"
 
 namespace remote_touch::naive {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/dissertation/proxy/proxy_step.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch::naive {

@@ -9,7 +9,7 @@
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch::benchmarks {
 

@@ -9,7 +9,7 @@
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/kernels/isa.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/tool_scene.h"
 #include "tests/support/formatted.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

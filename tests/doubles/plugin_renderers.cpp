@@ -6,7 +6,7 @@
 
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/kernels/isa.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 #include "runners/interfaces/plugins/remote_touch_plugin.h"
 
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch::scenes {
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 
 namespace remote_touch::scenes {
 

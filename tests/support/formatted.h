@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/parameters/input_error.h"
+#include "core/points/camera.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/geometry/vector.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

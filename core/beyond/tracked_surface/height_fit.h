@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 namespace remote_touch {
 

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/geometry/vector.h"
 #include "core/kernels/patch_kernels.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -11,7 +11,7 @@
 #include "core/beyond/tracked_surface/height_map.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 namespace remote_touch {
 

@@ -26,11 +26,11 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/geometry/camera.h"
-#include "core/geometry/point_cloud.h"
 #include "core/kernels/depth_kernels.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
+#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::equations {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::equations {
 

@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "core/dissertation/proxy/proxy_step.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
+#include "core/points/neighbourhood.h"
+#include "core/points/vector.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "core/rendering/surface_velocity.h"
-#include "core/search/neighbourhood.h"
 
 namespace remote_touch {
 

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "core/parameters/parameter.h"
+#include "core/points/neighbourhood.h"
+#include "core/points/vector.h"
 #include "core/rendering/renderer.h"
-#include "core/search/neighbourhood.h"
 
 namespace remote_touch {
 

@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "core/dissertation/proxy/proxy_step.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/points_view.h"
-#include "core/search/neighbourhood.h"
+#include "core/points/neighbourhood.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 namespace remote_touch {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/region_kernels.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

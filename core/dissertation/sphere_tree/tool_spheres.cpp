@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
-#include "core/geometry/vector.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/numeric/counting_sort.h"
 #include "core/parameters/input_error.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/geometry/vector.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

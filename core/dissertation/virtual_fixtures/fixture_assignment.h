@@ -12,7 +12,7 @@
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/dissertation/virtual_fixtures/guidance_target.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

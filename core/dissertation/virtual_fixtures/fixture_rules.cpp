@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "core/geometry/colour.h"
 #include "core/parameters/input_error.h"
+#include "core/points/colour.h"
 
 namespace remote_touch {
 

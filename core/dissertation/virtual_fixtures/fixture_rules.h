@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
 #include "core/parameters/parameter.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

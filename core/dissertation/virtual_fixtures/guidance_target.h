@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

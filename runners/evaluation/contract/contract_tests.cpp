@@ -10,9 +10,9 @@
 #include <set>
 
 #include "analysis/trace/trace.h"
-#include "core/geometry/camera.h"
-#include "core/geometry/point_cloud.h"
 #include "core/parameters/input_error.h"
+#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/evaluation/contract/flat_scene.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"

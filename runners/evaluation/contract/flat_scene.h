@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/kernels/isa.h"
+#include "core/points/neighbour_search.h"
 #include "core/rendering/frame.h"
-#include "core/search/neighbour_search.h"
 
 namespace remote_touch::scenes {
 

@@ -9,8 +9,8 @@
 
 #include "analysis/measures/no_value.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/rotation.h"
+#include "core/points/point_cloud.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/figure_pictures.h"

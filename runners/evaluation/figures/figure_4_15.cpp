@@ -2,7 +2,7 @@
 // with the proxy's path over the true profile. The photo of 4.15 a has no counterpart.
 #include <cmath>
 
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

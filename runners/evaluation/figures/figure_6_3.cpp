@@ -5,7 +5,7 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/box_contacts.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

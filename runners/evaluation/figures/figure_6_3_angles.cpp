@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/statistics/means_and_extremes.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 

@@ -8,7 +8,7 @@
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/theory/exact_contacts.h"
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 

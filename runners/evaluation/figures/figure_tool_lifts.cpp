@@ -4,7 +4,7 @@
 
 #include "analysis/statistics/means_and_extremes.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/carried_limits.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

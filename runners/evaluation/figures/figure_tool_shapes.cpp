@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/statistics/interval_estimates.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/carried_limits.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

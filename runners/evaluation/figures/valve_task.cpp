@@ -10,7 +10,7 @@
 #include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/tools/figure_pictures.h"
 
 namespace remote_touch {

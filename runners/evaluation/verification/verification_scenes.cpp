@@ -6,9 +6,9 @@
 #include <limits>
 #include <memory>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/rotation.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/camera.h"
+#include "core/points/neighbour_search.h"
+#include "core/points/rotation.h"
 #include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

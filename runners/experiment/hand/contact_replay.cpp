@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <string_view>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
+#include "core/points/point_cloud.h"
+#include "core/points/rotation.h"
 #include "scenarios/text_files/file_order.h"
 #include "scenarios/text_files/text_file.h"
 

@@ -27,8 +27,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/rotation.h"
-#include "core/geometry/vector.h"
+#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -2,7 +2,7 @@
 // friction.
 #pragma once
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

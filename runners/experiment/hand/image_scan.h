@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/parameters/parameter.h"
+#include "core/points/camera.h"
 #include "runners/experiment/hand/image_surface.h"
 #include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/hand/trajectory.h"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "core/geometry/rotation.h"
 #include "core/numeric/noise.h"
+#include "core/points/rotation.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

@@ -9,11 +9,11 @@
 #include <optional>
 #include <utility>
 
-#include "core/geometry/rotation.h"
-#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_distance.h"
 #include "core/mesh/mesh_sides.h"
+#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/text_files/text_file.h"

@@ -1,6 +1,6 @@
 #include "runners/experiment/sessions/live_settings.h"
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 

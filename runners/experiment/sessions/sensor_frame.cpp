@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 
 namespace remote_touch {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "analysis/trace/trace.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 namespace remote_touch {
 namespace {

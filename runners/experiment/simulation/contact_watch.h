@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analysis/measures/run_events.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
+#include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 #include "scenarios/interface/scenario.h"
 

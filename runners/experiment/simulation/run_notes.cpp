@@ -11,7 +11,7 @@
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/numeric/order_statistic.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 namespace remote_touch {
 namespace {

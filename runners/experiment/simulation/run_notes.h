@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"

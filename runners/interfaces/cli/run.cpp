@@ -4,8 +4,8 @@
 
 #include "analysis/figures/result_file.h"
 #include "analysis/trace/sequence_log.h"
-#include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
+#include "core/points/rotation.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"

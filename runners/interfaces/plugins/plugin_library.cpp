@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 #include "runners/evaluation/verification/contact_model.h"
 
 namespace remote_touch {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/geometry/colour.h"
 #include "core/parameters/input_error.h"
+#include "core/points/colour.h"
 
 namespace remote_touch {
 

@@ -10,8 +10,8 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/trace/column.h"
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/geometry/point_cloud.h"
 #include "core/kernels/noise_kernels.h"
 #include "core/parameters/input_error.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/interfaces/python/bindings.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 #include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/clouds.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

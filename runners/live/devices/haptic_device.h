@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "core/geometry/vector.h"
 #include "core/parameters/input_error.h"
+#include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 #include "runners/live/devices/clock.h"
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "runners/libraries/shared_library.h"
 #include "runners/live/devices/haptic_device.h"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "analysis/trace/formatted.h"
-#include "core/geometry/camera.h"
-#include "core/geometry/colour.h"
-#include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
+#include "core/points/camera.h"
+#include "core/points/colour.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 namespace {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/geometry/colour.h"
-#include "core/geometry/vector.h"
+#include "core/points/colour.h"
+#include "core/points/vector.h"
 #include "runners/live/view/page_requests.h"
 
 namespace remote_touch {

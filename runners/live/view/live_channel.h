@@ -14,8 +14,8 @@
 
 #include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
-#include "core/geometry/point_cloud.h"
 #include "core/kernels/kernels.h"
+#include "core/points/point_cloud.h"
 #include "core/rendering/frame.h"
 #include "runners/live/devices/browser_device.h"
 #include "runners/live/devices/device_placement.h"

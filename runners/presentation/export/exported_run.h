@@ -15,8 +15,8 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/geometry/point_cloud.h"
 #include "core/kernels/kernels.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 #include "runners/presentation/export/exported_run.h"
 #include "runners/presentation/export/result_tables.h"
 #include "scenarios/text_files/text_file.h"

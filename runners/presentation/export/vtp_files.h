@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/trace/trace.h"
-#include "core/geometry/colour.h"
 #include "core/parameters/input_error.h"
+#include "core/points/colour.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -12,9 +12,9 @@
 #include "analysis/storage/hdf5_file.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "core/rendering/frame.h"
 #include "runners/experiment/catalog/experiment.h"
 

@@ -11,7 +11,7 @@
 
 #include "core/dissertation/sphere_tree/tool_spheres.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/text_files/text_file.h"
 

@@ -7,8 +7,8 @@
 
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
+#include "core/points/vector.h"
 #include "runners/presentation/view/shown_meshes.h"
 #include "scenarios/text_files/text_file.h"
 

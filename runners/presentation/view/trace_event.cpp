@@ -5,7 +5,7 @@
 
 #include "analysis/measures/run_events.h"
 #include "analysis/trace/formatted.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 

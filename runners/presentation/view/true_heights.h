@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 #include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "scenarios/text_files/text_file.h"
 

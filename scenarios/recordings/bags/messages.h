@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -19,7 +19,7 @@
 #include <new>
 #include <utility>
 
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

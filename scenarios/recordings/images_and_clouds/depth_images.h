@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

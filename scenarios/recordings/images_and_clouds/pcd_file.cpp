@@ -18,8 +18,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/geometry/colour.h"
-#include "core/geometry/vector.h"
+#include "core/points/colour.h"
+#include "core/points/vector.h"
 #include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "scenarios/text_files/text_file.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

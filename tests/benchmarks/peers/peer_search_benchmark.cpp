@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/kernels/isa.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/camera.h"
+#include "core/points/neighbour_search.h"
 #include "tests/benchmarks/checked_benchmark.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::god_object_renderer_test {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/numeric/noise.h"
+#include "core/points/camera.h"
 #include "scenarios/synthetic/grid_scene.h"
 #include "tests/support/scenes.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/search/neighbourhood.h"
+#include "core/points/neighbourhood.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::point_normals_test {

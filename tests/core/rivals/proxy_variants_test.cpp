@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::proxy_variants_test {

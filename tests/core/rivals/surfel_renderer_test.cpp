@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::surfel_renderer_test {

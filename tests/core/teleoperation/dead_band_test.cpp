@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/rotation.h"
 #include "core/kernels/isa.h"
 #include "core/numeric/noise.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch::dead_band_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch::slave_test {
 namespace {

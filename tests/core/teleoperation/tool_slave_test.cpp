@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch::tool_slave_test {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/colour.h"
-#include "core/geometry/rotation.h"
+#include "core/points/colour.h"
+#include "core/points/rotation.h"
 #include "tests/support/depth_scenes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scenes.h"

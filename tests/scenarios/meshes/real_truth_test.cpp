@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/images_and_clouds/depth_images.h"

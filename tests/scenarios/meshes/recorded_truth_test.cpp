@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 

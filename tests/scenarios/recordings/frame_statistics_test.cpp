@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/colour.h"
+#include "core/points/camera.h"
+#include "core/points/colour.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "tests/support/test_files.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/dissertation/tool/dynamics/motion_program.h"
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "core/dissertation/tool/contact/touch_finder.h"
+#include "core/points/neighbour_search.h"
 #include "core/rendering/renderer.h"
-#include "core/search/neighbour_search.h"
 
 namespace remote_touch {
 

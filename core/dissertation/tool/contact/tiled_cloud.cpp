@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
-#include "core/geometry/vector.h"
 #include "core/numeric/order_statistic.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

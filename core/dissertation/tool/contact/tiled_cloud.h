@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/tool_kernels.h"
 #include "core/numeric/whole_lines.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -14,7 +14,7 @@
 #include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/kernels/kernels.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 namespace remote_touch {
 

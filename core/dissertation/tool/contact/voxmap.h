@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

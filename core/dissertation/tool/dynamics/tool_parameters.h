@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "core/geometry/vector.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

@@ -6,8 +6,8 @@
 
 #include <optional>
 
-#include "core/geometry/rotation.h"
-#include "core/geometry/vector.h"
+#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "core/rendering/frame.h"
 
 namespace remote_touch {

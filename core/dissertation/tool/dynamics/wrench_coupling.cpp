@@ -1,6 +1,6 @@
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

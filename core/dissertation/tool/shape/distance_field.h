@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/tool_kernels.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -7,8 +7,8 @@
 
 #include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxelisation.h"
-#include "core/geometry/vector.h"
 #include "core/parameters/input_error.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

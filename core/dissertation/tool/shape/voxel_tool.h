@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/vector.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

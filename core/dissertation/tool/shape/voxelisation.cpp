@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

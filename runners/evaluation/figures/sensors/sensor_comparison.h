@@ -9,9 +9,9 @@
 
 #include "analysis/measures/image_measures.h"
 #include "analysis/trace/column.h"
-#include "core/geometry/camera.h"
 #include "core/kernels/kernels.h"
 #include "core/numeric/noise.h"
+#include "core/points/camera.h"
 #include "scenarios/camera/depth_sensor.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/mesh_scene.h"

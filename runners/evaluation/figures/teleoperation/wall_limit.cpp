@@ -4,7 +4,7 @@
 #include <string>
 
 #include "analysis/statistics/means_and_extremes.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "analysis/trace/trace.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/json_parameters.h"

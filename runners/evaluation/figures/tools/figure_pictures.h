@@ -9,7 +9,7 @@
 #include "analysis/figures/result_file.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/geometry/point_cloud.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 
 namespace remote_touch {

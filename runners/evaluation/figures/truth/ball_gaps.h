@@ -10,9 +10,9 @@
 
 #include "analysis/measures/no_value.h"
 #include "analysis/trace/trace.h"
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/kernels.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "scenarios/interface/scenario.h"
 

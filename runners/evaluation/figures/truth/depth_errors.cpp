@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/geometry/rotation.h"
 #include "core/numeric/order_statistic.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/figures/truth/true_contacts.h"
 #include "runners/experiment/hand/image_surface.h"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/hand/image_surface.h"
 #include "scenarios/recordings/recorded_scene.h"

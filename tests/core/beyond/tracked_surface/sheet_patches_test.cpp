@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"

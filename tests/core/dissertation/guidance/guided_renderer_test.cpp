@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/core/dissertation/guidance/guided_scene.h"
 

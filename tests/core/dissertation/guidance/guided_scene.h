@@ -11,7 +11,7 @@
 
 #include "core/dissertation/guidance/guided_renderer.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 

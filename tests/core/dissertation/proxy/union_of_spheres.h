@@ -8,8 +8,8 @@
 #include <optional>
 #include <random>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::spheres {
 

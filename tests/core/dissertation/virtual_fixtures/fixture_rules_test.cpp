@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/geometry/camera.h"
-#include "core/geometry/colour.h"
+#include "core/points/camera.h"
+#include "core/points/colour.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

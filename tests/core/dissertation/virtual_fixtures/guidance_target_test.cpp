@@ -13,7 +13,7 @@
 
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::guidance_target_test {

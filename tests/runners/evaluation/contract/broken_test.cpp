@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "analysis/trace/trace.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 #include "runners/evaluation/contract/contract_tests.h"
 #include "runners/evaluation/contract/flat_scene.h"
 #include "runners/evaluation/verification/contact_model.h"

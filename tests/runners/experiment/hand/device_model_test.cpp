@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch::device_model_test {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
-#include "core/geometry/camera.h"
-#include "core/geometry/colour.h"
+#include "core/points/camera.h"
+#include "core/points/colour.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
 
 namespace remote_touch::coloured_frames {

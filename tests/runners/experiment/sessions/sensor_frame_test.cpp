@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch::sensor_frame_test {
 namespace {

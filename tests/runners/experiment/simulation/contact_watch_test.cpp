@@ -11,7 +11,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/measures/run_events.h"
 #include "analysis/theory/pop_through_limits.h"
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

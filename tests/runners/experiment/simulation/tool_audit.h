@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/geometry/point_cloud.h"
 #include "core/mesh/triangle_tree.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

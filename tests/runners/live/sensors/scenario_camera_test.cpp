@@ -6,10 +6,10 @@
 #include <functional>
 #include <string>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/colour.h"
-#include "core/geometry/rotation.h"
 #include "core/parameters/input_error.h"
+#include "core/points/camera.h"
+#include "core/points/colour.h"
+#include "core/points/rotation.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/sessions/sensor_frame.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::pcd_file_test {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::contact_thinning_test {

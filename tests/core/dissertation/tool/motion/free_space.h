@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "core/search/neighbourhood.h"
+#include "core/points/neighbourhood.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "core/geometry/camera.h"
+#include "core/points/camera.h"
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 
 #include <algorithm>
 #include <cmath>

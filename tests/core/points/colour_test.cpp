@@ -1,5 +1,5 @@
 // Hue, saturation and lightness: known colours, and back to red, green and blue.
-#include "core/geometry/colour.h"
+#include "core/points/colour.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/geometry/rotation.h"
+#include "core/points/rotation.h"
 
 #include <cmath>
 

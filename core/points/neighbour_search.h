@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/point_cloud.h"
-#include "core/geometry/vector.h"
 #include "core/kernels/gather_kernels.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/points_view.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

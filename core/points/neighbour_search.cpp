@@ -1,4 +1,4 @@
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 #include <algorithm>
 #include <cmath>

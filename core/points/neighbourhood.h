@@ -4,7 +4,7 @@
 #include <array>
 #include <memory>
 
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "core/geometry/vector.h"
+#include "core/points/vector.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "core/search/neighbour_search.h"
+#include "core/points/neighbour_search.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/vector.h"
+#include "core/points/camera.h"
+#include "core/points/vector.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::neighbour_search_test {
