@@ -8,10 +8,10 @@
 
 #include <span>
 
+#include "core/dissertation/tool/dynamics/quadratic_program.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/numeric/quadratic_program.h"
 
 namespace remote_touch {
 

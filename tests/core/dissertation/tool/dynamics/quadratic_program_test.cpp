@@ -1,6 +1,6 @@
 // The contract of QuadraticProgram: accuracy, inputs that must not matter, small cases worked out by hand,
 // elastic use. program_proof_test.cpp shows that its answers are right in general.
-#include "core/numeric/quadratic_program.h"
+#include "core/dissertation/tool/dynamics/quadratic_program.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "runners/evaluation/contract/allocation_counter.h"
-#include "tests/core/numeric/program_problems.h"
+#include "tests/core/dissertation/tool/dynamics/program_problems.h"
 
 namespace remote_touch::quadratic_program_test {
 namespace {

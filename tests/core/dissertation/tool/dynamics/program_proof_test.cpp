@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numeric/quadratic_program.h"
-#include "tests/core/numeric/program_problems.h"
+#include "core/dissertation/tool/dynamics/quadratic_program.h"
+#include "tests/core/dissertation/tool/dynamics/program_problems.h"
 #ifdef REMOTE_TOUCH_NLOPT
-#include "tests/core/numeric/nlopt_program.h"
+#include "tests/core/dissertation/tool/dynamics/nlopt_program.h"
 #endif
 
 namespace remote_touch::program_proof_test {

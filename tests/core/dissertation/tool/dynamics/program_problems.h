@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/core/numeric/program_peers.h"
+#include "tests/core/dissertation/tool/dynamics/program_peers.h"
 
 namespace remote_touch::programs {
 

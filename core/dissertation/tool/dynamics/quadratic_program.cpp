@@ -1,4 +1,4 @@
-#include "core/numeric/quadratic_program.h"
+#include "core/dissertation/tool/dynamics/quadratic_program.h"
 
 #include <emmintrin.h>
 

@@ -3,7 +3,7 @@
 
 #include <nlopt.h>
 
-#include "tests/core/numeric/program_peers.h"
+#include "tests/core/dissertation/tool/dynamics/program_peers.h"
 
 namespace remote_touch::peers {
 

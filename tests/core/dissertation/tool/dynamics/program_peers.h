@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/numeric/quadratic_program.h"
+#include "core/dissertation/tool/dynamics/quadratic_program.h"
 
 namespace remote_touch::peers {
 
