@@ -6,7 +6,7 @@
 
 #include "analysis/measures/no_value.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "core/numeric/order_statistic.h"
+#include "core/points/order_statistic.h"
 
 namespace remote_touch {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/statistics/interval_estimates.h"
-#include "core/numeric/order_statistic.h"
+#include "core/points/order_statistic.h"
 
 namespace remote_touch {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "analysis/statistics/curve_fits.h"
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 
 namespace remote_touch {
 

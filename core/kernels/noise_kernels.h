@@ -1,4 +1,4 @@
-// Standard normals of the counter-based generator; core/numeric/noise.h defines its keys.
+// Standard normals of the counter-based generator; core/points/noise.h defines its keys.
 #pragma once
 
 #include <cstddef>

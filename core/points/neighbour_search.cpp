@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/numeric/counting_sort.h"
+#include "core/points/counting_sort.h"
 
 namespace remote_touch {
 namespace {

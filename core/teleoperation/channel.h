@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/noise.h"
 
 namespace remote_touch {
 

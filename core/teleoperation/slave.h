@@ -7,8 +7,8 @@
 #include <string>
 #include <variant>
 
-#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/noise.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

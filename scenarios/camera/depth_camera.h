@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
+#include "core/points/noise.h"
 
 namespace remote_touch {
 

@@ -8,9 +8,9 @@
 
 #include "core/kernels/kernels.h"
 #include "core/kernels/noise_kernels.h"
-#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
+#include "core/points/noise.h"
 #include "scenarios/camera/depth_camera.h"
 
 namespace remote_touch {

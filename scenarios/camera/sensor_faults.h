@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
 

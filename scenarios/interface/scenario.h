@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "core/numeric/noise.h"
 #include "core/points/neighbour_search.h"
+#include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/numeric/order_statistic.h"
+#include "core/points/order_statistic.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/image_folders.h"

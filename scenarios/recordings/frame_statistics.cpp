@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numeric/order_statistic.h"
 #include "core/points/colour.h"
+#include "core/points/order_statistic.h"
 #include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "core/kernels/kernels.h"
-#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
+#include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <span>
 
-#include "core/numeric/order_statistic.h"
+#include "core/points/order_statistic.h"
 
 namespace remote_touch {
 namespace {

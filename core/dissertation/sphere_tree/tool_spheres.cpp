@@ -10,8 +10,8 @@
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
 #include "core/mesh/triangle_tree.h"
-#include "core/numeric/counting_sort.h"
 #include "core/parameters/input_error.h"
+#include "core/points/counting_sort.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 
 #include "analysis/statistics/means_and_extremes.h"
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/figure_pictures.h"

@@ -9,8 +9,8 @@
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/kernels/kernels.h"
-#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/noise.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/hand/trajectory.h"

@@ -9,7 +9,7 @@
 
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/sessions/sensor_frame.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numeric/order_statistic.h"
+#include "core/points/order_statistic.h"
 #include "scenarios/recordings/recording.h"
 #include "scenarios/text_files/text_file.h"
 

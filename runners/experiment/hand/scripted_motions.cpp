@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 #include "core/points/rotation.h"
 #include "scenarios/text_files/text_file.h"
 

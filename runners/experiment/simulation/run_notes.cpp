@@ -10,8 +10,8 @@
 #include "analysis/measures/force_fidelity.h"
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/trace/trace.h"
-#include "core/numeric/order_statistic.h"
 #include "core/points/neighbour_search.h"
+#include "core/points/order_statistic.h"
 
 namespace remote_touch {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "analysis/trace/hand_and_slave_state.h"
-#include "core/numeric/noise.h"
 #include "core/parameters/parameter.h"
+#include "core/points/noise.h"
 #include "core/rendering/renderer.h"
 #include "core/teleoperation/architecture.h"
 #include "core/teleoperation/channel.h"

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/kernels/kernels.h"
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 #include "core/rendering/renderer.h"
 #include "runners/interfaces/python/arrays.h"
 #include "scenarios/interface/scenario.h"

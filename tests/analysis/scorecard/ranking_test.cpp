@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 
 namespace remote_touch::ranking_test {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/kernels/isa.h"
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 #include "core/points/rotation.h"
 
 namespace remote_touch::dead_band_test {

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::sensor_errors_test {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
-#include "core/numeric/order_statistic.h"
 #include "core/points/neighbour_search.h"
+#include "core/points/order_statistic.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

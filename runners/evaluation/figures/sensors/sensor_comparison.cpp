@@ -7,8 +7,8 @@
 
 #include "analysis/statistics/curve_fits.h"
 #include "analysis/statistics/means_and_extremes.h"
-#include "core/numeric/order_statistic.h"
 #include "core/parameters/input_error.h"
+#include "core/points/order_statistic.h"
 #include "runners/experiment/hand/image_surface.h"
 #include "scenarios/recordings/recorded_scene.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numeric/order_statistic.h"
+#include "core/points/order_statistic.h"
 
 namespace remote_touch {
 

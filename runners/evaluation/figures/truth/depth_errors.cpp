@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/numeric/order_statistic.h"
+#include "core/points/order_statistic.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/truth/true_contacts.h"
 #include "runners/experiment/hand/image_surface.h"

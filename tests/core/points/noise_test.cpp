@@ -1,4 +1,4 @@
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 #include "core/kernels/isa.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "core/numeric/counting_sort.h"
+#include "core/points/counting_sort.h"
 
 #include <gtest/gtest.h>
 

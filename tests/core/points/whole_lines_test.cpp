@@ -1,4 +1,4 @@
-#include "core/numeric/whole_lines.h"
+#include "core/points/whole_lines.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/numeric/order_statistic.h"
+#include "core/points/order_statistic.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/numeric/noise.h"
+#include "core/points/noise.h"
 
 #include <algorithm>
 #include <cmath>
