@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/guidance_target.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
+#include "core/rendering/guidance_target.h"
 
 namespace remote_touch {
 

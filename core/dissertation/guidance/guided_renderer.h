@@ -14,9 +14,9 @@
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/dissertation/virtual_fixtures/guidance_target.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame_order.h"
+#include "core/rendering/guidance_target.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

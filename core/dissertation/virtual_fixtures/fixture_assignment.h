@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/dissertation/virtual_fixtures/guidance_target.h"
 #include "core/points/point_cloud.h"
+#include "core/rendering/guidance_target.h"
 
 namespace remote_touch {
 

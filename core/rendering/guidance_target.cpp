@@ -1,4 +1,4 @@
-#include "core/dissertation/virtual_fixtures/guidance_target.h"
+#include "core/rendering/guidance_target.h"
 
 #include <Eigen/Eigenvalues>
 
