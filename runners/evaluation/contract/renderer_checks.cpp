@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/dissertation/guidance/guided_renderer.h"
+#include "core/dissertation/virtual_fixtures/guided_renderer.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/evaluation/contract/contract_tests.h"
 #include "runners/evaluation/contract/flat_scene.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/guidance/guided_renderer.h"
+#include "core/dissertation/virtual_fixtures/guided_renderer.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/renderer.h"
 #include "core/teleoperation/dead_band.h"

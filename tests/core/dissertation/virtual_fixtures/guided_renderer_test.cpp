@@ -1,4 +1,4 @@
-#include "core/dissertation/guidance/guided_renderer.h"
+#include "core/dissertation/virtual_fixtures/guided_renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 
 #include "core/points/rotation.h"
 #include "runners/evaluation/contract/allocation_counter.h"
-#include "tests/core/dissertation/guidance/guided_scene.h"
+#include "tests/core/dissertation/virtual_fixtures/guided_scene.h"
 
 namespace remote_touch::guided_renderer_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/dissertation/guidance/guided_renderer.h"
+#include "core/dissertation/virtual_fixtures/guided_renderer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/guidance/guided_renderer.h"
-#include "tests/core/dissertation/guidance/guided_scene.h"
+#include "core/dissertation/virtual_fixtures/guided_renderer.h"
+#include "tests/core/dissertation/virtual_fixtures/guided_scene.h"
 
 namespace remote_touch::guidance_over_time_test {
 namespace {

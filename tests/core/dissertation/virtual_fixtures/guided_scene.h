@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/guidance/guided_renderer.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/dissertation/virtual_fixtures/guided_renderer.h"
 #include "core/points/rotation.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
