@@ -17,7 +17,7 @@
 #include "runners/sweep/answer_display.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_parts.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

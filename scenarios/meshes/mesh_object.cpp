@@ -8,7 +8,7 @@
 
 #include "core/mesh/mesh_check.h"
 #include "core/points/rotation.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

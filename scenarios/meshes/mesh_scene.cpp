@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "core/points/colour.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

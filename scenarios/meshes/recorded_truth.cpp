@@ -11,11 +11,11 @@
 
 #include "core/points/camera.h"
 #include "core/points/colour.h"
+#include "scenarios/files/depth_images.h"
+#include "scenarios/files/file_order.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
-#include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "core/parameters/input_error.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/recordings/bags/frames_from_messages.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

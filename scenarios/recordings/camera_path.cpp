@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "core/points/order_statistic.h"
+#include "scenarios/files/file_order.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/image_folders.h"
-#include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

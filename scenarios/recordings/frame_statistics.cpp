@@ -5,7 +5,7 @@
 
 #include "core/points/colour.h"
 #include "core/points/order_statistic.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

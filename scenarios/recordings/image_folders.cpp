@@ -10,9 +10,9 @@
 #include <set>
 #include <utility>
 
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
-#include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/depth_images.h"
+#include "scenarios/files/file_order.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

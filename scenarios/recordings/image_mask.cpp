@@ -1,8 +1,8 @@
 #include "scenarios/recordings/image_mask.h"
 
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
+#include "scenarios/files/depth_images.h"
 
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

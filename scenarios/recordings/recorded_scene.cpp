@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "core/points/rotation.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/recordings/bag_frames.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -9,15 +9,15 @@
 #include <utility>
 
 #include "core/points/camera.h"
+#include "scenarios/files/depth_images.h"
+#include "scenarios/files/file_order.h"
+#include "scenarios/files/pcd_file.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/recordings/camera_path.h"
 #include "scenarios/recordings/image_folders.h"
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
-#include "scenarios/recordings/images_and_clouds/pcd_file.h"
-#include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@ set(rooms_under_address
   analysis/storage core/points runners/experiment/opencl runners/experiment/mesh_files runners/experiment/tool_files
   runners/interfaces/plugins
   runners/live/devices runners/live/sensors scenarios/recordings scenarios/recordings/bags
-  scenarios/recordings/images_and_clouds)
+  scenarios/files)
 # Rooms whose threads share memory.
 set(rooms_under_thread
   runners/experiment/opencl runners/live/devices runners/live/loop runners/live/sensors)

@@ -1,5 +1,5 @@
 // PNG files, read as a depth image and as a colour image, and depth images in NumPy files.
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
+#include "scenarios/files/depth_images.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"
 

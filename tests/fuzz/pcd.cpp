@@ -1,5 +1,5 @@
 // PCD files: ascii, binary, binary_compressed.
-#include "scenarios/recordings/images_and_clouds/pcd_file.h"
+#include "scenarios/files/pcd_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"
 

@@ -10,7 +10,7 @@
 #include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

@@ -16,7 +16,7 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/embedded_data.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

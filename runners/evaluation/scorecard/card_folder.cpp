@@ -15,7 +15,7 @@
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

@@ -12,7 +12,7 @@
 #include "analysis/scorecard/scorecard.h"
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

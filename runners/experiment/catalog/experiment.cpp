@@ -15,7 +15,7 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/tool_files/tool_loading.h"
 #include "scenarios/camera/depth_sensor.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

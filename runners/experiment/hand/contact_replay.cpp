@@ -9,8 +9,8 @@
 #include "core/parameters/input_error.h"
 #include "core/points/point_cloud.h"
 #include "core/points/rotation.h"
-#include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/file_order.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runners/experiment/hand/image_surface.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "core/points/order_statistic.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

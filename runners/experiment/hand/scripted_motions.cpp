@@ -7,7 +7,7 @@
 
 #include "core/points/noise.h"
 #include "core/points/rotation.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -15,8 +15,8 @@
 #include "core/points/rotation.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

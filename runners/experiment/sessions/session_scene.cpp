@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/recordings/frame_statistics.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

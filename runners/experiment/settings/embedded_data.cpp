@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/input_error.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

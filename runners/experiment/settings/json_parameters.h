@@ -10,7 +10,7 @@
 
 #include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

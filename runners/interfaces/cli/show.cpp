@@ -32,7 +32,7 @@
 #include "runners/presentation/view/sweep_page.h"
 #include "runners/presentation/view/trace_page.h"
 #include "runners/sweep/stored_sweep.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

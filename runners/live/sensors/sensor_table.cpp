@@ -7,8 +7,8 @@
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/sensors/adapters.h"
+#include "scenarios/files/file_order.h"
 #include "scenarios/recordings/recorded_scene.h"
-#include "scenarios/text_files/file_order.h"
 
 namespace remote_touch {
 

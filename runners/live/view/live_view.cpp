@@ -8,8 +8,8 @@
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/presentation/view/shown_meshes.h"
 #include "runners/presentation/view/view_page.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -8,7 +8,7 @@
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/presentation/view/shown_frames.h"
 #include "runners/presentation/view/shown_meshes.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

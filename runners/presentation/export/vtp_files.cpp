@@ -8,7 +8,7 @@
 #include "core/points/colour.h"
 #include "runners/presentation/export/exported_run.h"
 #include "runners/presentation/export/result_tables.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -11,7 +11,7 @@
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/dissertation/sphere_tree/tool_spheres.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/points/vector.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

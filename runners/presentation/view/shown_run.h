@@ -10,7 +10,7 @@
 #include "core/kernels/kernels.h"
 #include "core/points/vector.h"
 #include "runners/presentation/view/shown_meshes.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

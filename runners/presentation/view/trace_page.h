@@ -7,7 +7,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "runners/presentation/view/view_page.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "scenarios/files/text_file.h"
 #include "scenarios/recordings/bags/bag_file.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

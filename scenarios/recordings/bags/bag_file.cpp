@@ -16,9 +16,9 @@
 #include <new>
 #include <utility>
 
+#include "scenarios/files/file_order.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/recordings/bags/bag_chunk.h"
-#include "scenarios/text_files/file_order.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "core/parameters/input_error.h"
+#include "scenarios/files/text_file.h"
 #include "scenarios/recordings/bags/bag_chunk.h"
 #include "scenarios/recordings/bags/messages.h"
-#include "scenarios/text_files/text_file.h"
 
 namespace remote_touch {
 namespace {

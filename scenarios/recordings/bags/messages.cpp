@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 

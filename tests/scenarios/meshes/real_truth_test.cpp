@@ -11,8 +11,8 @@
 
 #include "core/points/camera.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
+#include "scenarios/files/depth_images.h"
 #include "scenarios/meshes/recorded_truth.h"
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
 #include "tests/support/recorded_data.h"
 
 namespace remote_touch::real_truth_test {

@@ -1,4 +1,4 @@
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
+#include "scenarios/files/depth_images.h"
 
 #include <png.h>
 
@@ -20,7 +20,7 @@
 #include <utility>
 
 #include "core/points/colour.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -1,6 +1,6 @@
-#include "scenarios/text_files/file_order.h"
+#include "scenarios/files/file_order.h"
 
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenarios/recordings/images_and_clouds/pcd_file.h"
+#include "scenarios/files/pcd_file.h"
 
 #include <lzf.h>
 
@@ -20,8 +20,8 @@
 
 #include "core/points/colour.h"
 #include "core/points/vector.h"
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/depth_images.h"
+#include "scenarios/files/text_file.h"
 
 namespace remote_touch {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenarios/text_files/file_order.h"
+#include "scenarios/files/file_order.h"
 
 #include <gtest/gtest.h>
 

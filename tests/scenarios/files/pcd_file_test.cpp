@@ -1,4 +1,4 @@
-#include "scenarios/recordings/images_and_clouds/pcd_file.h"
+#include "scenarios/files/pcd_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 #include <gtest/gtest.h>
 #include <pthread.h>

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/recordings/images_and_clouds/pcd_file.h"
+#include "scenarios/files/pcd_file.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::pcd_viewpoint_test {

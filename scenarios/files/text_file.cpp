@@ -1,4 +1,4 @@
-#include "scenarios/text_files/text_file.h"
+#include "scenarios/files/text_file.h"
 
 #include <fcntl.h>
 #include <poll.h>

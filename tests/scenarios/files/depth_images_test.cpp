@@ -1,4 +1,4 @@
-#include "scenarios/recordings/images_and_clouds/depth_images.h"
+#include "scenarios/files/depth_images.h"
 
 #include <gtest/gtest.h>
 
