@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/paired_test.h"
+#include "analysis/measures/paired_test.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/column.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "core/points/order_statistic.h"
 
 namespace remote_touch {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analysis/measures/contact_measures.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/trace.h"
 #include "core/points/rotation.h"
 

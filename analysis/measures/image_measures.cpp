@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/statistics/interval_estimates.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/points/order_statistic.h"
 
 namespace remote_touch {

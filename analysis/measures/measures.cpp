@@ -7,10 +7,10 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/force_fidelity.h"
 #include "analysis/measures/force_measures.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/no_value.h"
 #include "analysis/measures/run_events.h"
 #include "analysis/measures/tool_and_slave_measures.h"
-#include "analysis/statistics/means_and_extremes.h"
 
 namespace remote_touch {
 

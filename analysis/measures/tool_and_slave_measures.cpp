@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analysis/measures/contact_measures.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/run_events.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "core/points/rotation.h"
 
 namespace remote_touch {

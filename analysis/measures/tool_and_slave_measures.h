@@ -3,8 +3,8 @@
 
 #include <type_traits>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

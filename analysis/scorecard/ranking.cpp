@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 
-#include "analysis/statistics/interval_estimates.h"
-#include "analysis/statistics/means_and_extremes.h"
-#include "analysis/statistics/paired_test.h"
+#include "analysis/measures/interval_estimates.h"
+#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/paired_test.h"
 
 namespace remote_touch {
 

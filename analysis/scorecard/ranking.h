@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/interval_estimates.h"
 
 namespace remote_touch {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "analysis/measures/interval_estimates.h"
+#include "analysis/measures/paired_test.h"
 #include "analysis/scorecard/card_summaries.h"
-#include "analysis/statistics/interval_estimates.h"
-#include "analysis/statistics/paired_test.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "analysis/statistics/interval_estimates.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/sweeps/sweep_means.h"
 #include "analysis/sweeps/sweep_result.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/statistics/interval_estimates.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/trace/column.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "analysis/statistics/curve_fits.h"
+#include "analysis/measures/curve_fits.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

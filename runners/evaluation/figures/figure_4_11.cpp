@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/measures/limit.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/limit.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 #include "runners/experiment/settings/embedded_data.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "analysis/measures/contact_measures.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/experiment/settings/embedded_data.h"

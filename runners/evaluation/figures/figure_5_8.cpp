@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/statistics/curve_fits.h"
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/curve_fits.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/recorded_fixture.h"

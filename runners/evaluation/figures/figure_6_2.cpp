@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/points/noise.h"
 #include "runners/evaluation/figures/figures.h"

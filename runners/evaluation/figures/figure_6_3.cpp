@@ -3,8 +3,8 @@
 #include <cmath>
 #include <span>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/box_contacts.h"

@@ -1,7 +1,7 @@
 // Fig 7.5: the left valve is forbidden; guidance, activated by a button at 3 s, leads to the right one.
 #include <algorithm>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/figure_pictures.h"
 #include "runners/evaluation/figures/valve_task.h"

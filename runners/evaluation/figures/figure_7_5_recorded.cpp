@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/sequence_log.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/figure_pictures.h"

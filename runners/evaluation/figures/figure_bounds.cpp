@@ -2,8 +2,8 @@
 // lifts.
 #include <cmath>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

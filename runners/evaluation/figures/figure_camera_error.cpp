@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/theory/pop_through_limits.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 

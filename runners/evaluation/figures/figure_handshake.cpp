@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "analysis/measures/curve_fits.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/curve_fits.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/fixture_run.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

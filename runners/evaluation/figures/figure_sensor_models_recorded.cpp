@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/sensors/sensor_comparison.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

@@ -2,7 +2,7 @@
 // it, and how do thickness, tilt, rotation and noise change that? Simulated; not in the dissertation.
 #include <algorithm>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "analysis/statistics/interval_estimates.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/carried_limits.h"

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "analysis/measures/interval_estimates.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/interval_estimates.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "runners/evaluation/figures/pop_through_map.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "analysis/measures/image_measures.h"
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/evaluation/figures/tools/figure_pictures.h"

@@ -5,10 +5,10 @@
 #include <iterator>
 #include <map>
 
+#include "analysis/measures/interval_estimates.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/statistics/interval_estimates.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/embedded_data.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/statistics/curve_fits.h"
+#include "analysis/measures/curve_fits.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/theory/pop_through_limits.h"
 #include "runners/evaluation/figures/figures.h"

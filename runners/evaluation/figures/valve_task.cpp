@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/points/rotation.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <new>
 #include <optional>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/hand/device_model.h"
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <utility>
 
-#include "analysis/statistics/interval_estimates.h"
-#include "analysis/statistics/paired_test.h"
+#include "analysis/measures/interval_estimates.h"
+#include "analysis/measures/paired_test.h"
 #include "tests/analysis/comparison/example_sweeps.h"
 
 namespace remote_touch::sweep_comparison_test {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analysis/statistics/interval_estimates.h"
+#include "analysis/measures/interval_estimates.h"
 
 namespace remote_touch::image_measures_test {
 namespace {

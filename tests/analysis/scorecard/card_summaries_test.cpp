@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "analysis/statistics/interval_estimates.h"
+#include "analysis/measures/interval_estimates.h"
 #include "tests/analysis/scorecard/example_cards.h"
 
 namespace remote_touch::card_summaries_test {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics/interval_estimates.h"
-#include "analysis/statistics/paired_test.h"
+#include "analysis/measures/interval_estimates.h"
+#include "analysis/measures/paired_test.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch::sweep_means_test {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/statistics/curve_fits.h"
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/curve_fits.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "core/parameters/input_error.h"
 #include "core/points/order_statistic.h"
 #include "runners/experiment/hand/image_surface.h"

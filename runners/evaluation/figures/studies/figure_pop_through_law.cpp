@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/tally/sweep_tally.h"
 #include "runners/evaluation/figures/context/figure_context.h"
 #include "runners/evaluation/figures/studies/stored_study.h"

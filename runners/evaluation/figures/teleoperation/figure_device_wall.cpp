@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 #include "runners/evaluation/figures/context/figure_context.h"
 #include "runners/evaluation/figures/teleoperation/wall_limit.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

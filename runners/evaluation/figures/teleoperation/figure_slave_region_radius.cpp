@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/tool_and_slave_measures.h"
-#include "analysis/statistics/means_and_extremes.h"
 #include "analysis/theory/haptic_loops.h"
 #include "runners/evaluation/figures/context/figure_context.h"
 #include "runners/evaluation/figures/teleoperation/slave_tasks.h"

@@ -1,4 +1,4 @@
-#include "analysis/statistics/limit.h"
+#include "analysis/measures/limit.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "analysis/statistics/curve_fits.h"
+#include "analysis/measures/curve_fits.h"
 #include "core/points/noise.h"
 
 namespace remote_touch {

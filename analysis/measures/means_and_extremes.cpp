@@ -1,4 +1,4 @@
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 
 #include <algorithm>
 #include <numeric>

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/means_and_extremes.h"
 
 namespace remote_touch {
 

@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "analysis/statistics/interval_estimates.h"
-#include "analysis/statistics/limit.h"
-#include "analysis/statistics/paired_test.h"
+#include "analysis/measures/interval_estimates.h"
+#include "analysis/measures/limit.h"
+#include "analysis/measures/paired_test.h"
 
 namespace remote_touch::estimates_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/statistics/curve_fits.h"
+#include "analysis/measures/curve_fits.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "analysis/statistics/interval_estimates.h"
+#include "analysis/measures/interval_estimates.h"
 
 namespace remote_touch {
 namespace {

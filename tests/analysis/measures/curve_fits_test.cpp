@@ -1,4 +1,4 @@
-#include "analysis/statistics/curve_fits.h"
+#include "analysis/measures/curve_fits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Tests and intervals for pairs: closed forms, published examples, enumeration and simulation.
-#include "analysis/statistics/paired_test.h"
+#include "analysis/measures/paired_test.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/statistics/interval_estimates.h"
+#include "analysis/measures/interval_estimates.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "analysis/statistics/paired_test.h"
+#include "analysis/measures/paired_test.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
-#include "analysis/statistics/interval_estimates.h"
-#include "analysis/statistics/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
+#include "analysis/measures/means_and_extremes.h"
 
 namespace remote_touch {
 
