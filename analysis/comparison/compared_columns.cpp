@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/hash64.h"
 

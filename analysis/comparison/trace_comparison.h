@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/comparison/compared_columns.h"
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 
 namespace remote_touch {
 

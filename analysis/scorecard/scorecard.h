@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/scorecard/ranking.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 
 namespace remote_touch {
 

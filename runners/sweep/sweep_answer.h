@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/tally/sweep_tally.h"
 

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <new>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
+#include "analysis/storage/result_file.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"

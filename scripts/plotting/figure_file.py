@@ -1,4 +1,4 @@
-"""Reads a figure file: HDF5 of the schema remote-touch-figure/3, which analysis/figures/result_file.cpp writes."""
+"""Reads a figure file: HDF5 of the schema remote-touch-figure/3, which analysis/storage/result_file.cpp writes."""
 import dataclasses
 import math
 import re

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <random>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/hash64.h"
 #include "analysis/trace/trace.h"
 

@@ -10,10 +10,10 @@
 #include <set>
 
 #include "analysis/comparison/compared_columns.h"
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/other_processes.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/formatted.h"
 #include "analysis/trace/hash64.h"

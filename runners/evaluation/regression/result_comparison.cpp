@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "analysis/comparison/compared_columns.h"
-#include "analysis/figures/result_file.h"
 #include "analysis/measures/no_value.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/column.h"

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"

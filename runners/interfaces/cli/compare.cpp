@@ -10,8 +10,8 @@
 
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/comparison/trace_comparison.h"
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"

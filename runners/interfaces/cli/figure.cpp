@@ -10,8 +10,8 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"

@@ -14,9 +14,9 @@
 #include <new>
 #include <stdexcept>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/opencl/depth_device.h"

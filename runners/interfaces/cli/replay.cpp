@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "analysis/comparison/compared_columns.h"
-#include "analysis/figures/result_file.h"
 #include "analysis/scorecard/scorecard.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/hash64.h"

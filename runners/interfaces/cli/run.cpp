@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/parameters/input_error.h"
 #include "core/points/rotation.h"

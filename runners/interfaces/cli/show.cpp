@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/scorecard/scorecard.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/sequence_log.h"
 #include "core/kernels/isa.h"

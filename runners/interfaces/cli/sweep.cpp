@@ -12,9 +12,9 @@
 #include <numeric>
 #include <optional>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/other_processes.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/tally/tally_file.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"

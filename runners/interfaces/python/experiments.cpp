@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/other_processes.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/tally/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"

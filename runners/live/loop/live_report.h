@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/run_report.h"
 #include "runners/live/loop/live_log.h"

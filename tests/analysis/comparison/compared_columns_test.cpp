@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analysis/comparison/trace_comparison.h"
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/hash64.h"
 #include "analysis/trace/trace.h"

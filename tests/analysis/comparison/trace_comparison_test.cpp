@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "tests/analysis/comparison/changed_traces.h"
 #include "tests/support/test_files.h"
 

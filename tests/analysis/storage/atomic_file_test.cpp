@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/other_processes.h"
+#include "analysis/storage/result_file.h"
 #include "tests/analysis/storage/system_answers.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"

@@ -8,9 +8,9 @@
 #include <cstring>
 #include <string>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/other_processes.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"

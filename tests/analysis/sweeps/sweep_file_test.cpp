@@ -10,9 +10,9 @@
 #include <limits>
 #include <numeric>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <random>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
+#include "analysis/storage/result_file.h"
 #include "tests/analysis/tally/example_tally.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"

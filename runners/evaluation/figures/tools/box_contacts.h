@@ -1,7 +1,7 @@
 // Fig 6.3: the number of points that touch the tool at once, over the spacing of the points.
 #pragma once
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "scenarios/synthetic/shape.h"

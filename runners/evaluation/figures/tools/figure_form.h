@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/points/point_cloud.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/measures/no_value.h"
+#include "analysis/storage/result_file.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "runners/evaluation/figures/truth/depth_errors.h"
 #include "runners/evaluation/figures/truth/true_contacts.h"

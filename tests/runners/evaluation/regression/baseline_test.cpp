@@ -5,8 +5,8 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/stored_result.h"

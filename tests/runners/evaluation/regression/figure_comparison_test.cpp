@@ -1,7 +1,7 @@
 // Comparison of files of figures.
 #include <gtest/gtest.h>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "tests/runners/evaluation/regression/compared_files.h"
 
 namespace remote_touch::figure_comparison_test {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "runners/evaluation/regression/baselines.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/embedded_data.h"

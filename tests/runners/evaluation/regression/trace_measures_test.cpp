@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/evaluation/regression/compared_files.h"

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/scorecard/card_summaries.h"
+#include "analysis/storage/result_file.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "scenarios/files/text_file.h"

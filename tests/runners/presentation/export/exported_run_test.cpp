@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/export/export_formats.h"

@@ -8,7 +8,7 @@
 #include <random>
 #include <sstream>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/simulation/simulation.h"

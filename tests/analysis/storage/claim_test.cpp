@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 
 namespace remote_touch::claim_test {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
+#include "analysis/storage/result_file.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/figures/result_file.h"
 #include "analysis/storage/digest.h"
+#include "analysis/storage/result_file.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"

@@ -1,4 +1,4 @@
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 
 #include <limits>
 #include <sstream>

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "analysis/figures/result_file.h"
+#include "analysis/storage/result_file.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
