@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {

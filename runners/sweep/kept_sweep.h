@@ -8,7 +8,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 
 #include "analysis/measures/run_events.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/simulation/run_notes.h"

@@ -12,7 +12,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

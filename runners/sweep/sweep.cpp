@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/changed_settings.h"

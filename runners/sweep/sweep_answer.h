@@ -6,7 +6,7 @@
 
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 
 namespace remote_touch {
 

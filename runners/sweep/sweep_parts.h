@@ -22,7 +22,7 @@ namespace remote_touch {
 // The key "keep": what a sweep keeps of its runs.
 
 // runs: the measures of each run. tally: counts, exact sums, extremes and quantiles of each
-// cell (analysis/tally). events: a tally, and the numbers of the runs in which an event happened.
+// cell (analysis/sweeps). events: a tally, and the numbers of the runs in which an event happened.
 enum class Keep { runs, tally, events };
 
 // Reads the key "keep" of a sweep; runs if it is missing. Throws InputError for another value, for a sweep

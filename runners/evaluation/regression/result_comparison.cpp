@@ -7,7 +7,7 @@
 #include "analysis/measures/no_value.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
 #include "analysis/trace/hash64.h"

@@ -11,7 +11,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"

@@ -15,7 +15,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/provenance/provenance.h"

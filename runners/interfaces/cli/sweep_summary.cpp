@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/interfaces/cli/commands.h"

@@ -10,7 +10,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -11,7 +11,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"

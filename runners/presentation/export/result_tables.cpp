@@ -7,7 +7,7 @@
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "core/parameters/input_error.h"
 #include "runners/sweep/stored_sweep.h"
 

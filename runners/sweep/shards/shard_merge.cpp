@@ -10,7 +10,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/run_spool.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_parts.h"
 #include "runners/sweep/sweep_session.h"

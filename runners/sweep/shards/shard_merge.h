@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "analysis/trace/column.h"
 #include "core/parameters/input_error.h"
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "analysis/measures/means_and_extremes.h"
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "runners/evaluation/figures/context/figure_context.h"
 #include "runners/evaluation/figures/studies/stored_study.h"
 #include "runners/evaluation/figures/tools/figure_form.h"

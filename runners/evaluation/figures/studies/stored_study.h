@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/sweeps/event_limits.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "analysis/theory/pop_through_limits.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 #include "core/kernels/isa.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/stored_sweep.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/sweeps/cell_tally.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/tally/cell_tally.h"
 #include "analysis/trace/column.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "analysis/trace/column.h"
 
 namespace remote_touch {

@@ -1,5 +1,5 @@
 // The files of tallies: what is written is read back, equal tallies are equal bytes, and damage is noticed.
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
-#include "tests/analysis/tally/example_tally.h"
+#include "tests/analysis/sweeps/example_tally.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

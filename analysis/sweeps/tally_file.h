@@ -5,7 +5,7 @@
 #include <string>
 
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 
 namespace remote_touch {
 

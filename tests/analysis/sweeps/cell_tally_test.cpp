@@ -1,4 +1,4 @@
-#include "analysis/tally/cell_tally.h"
+#include "analysis/sweeps/cell_tally.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numeric>
 #include <random>
 
-#include "tests/analysis/tally/example_tally.h"
-#include "tests/analysis/tally/fixed_point_sum.h"
+#include "tests/analysis/sweeps/example_tally.h"
+#include "tests/analysis/sweeps/fixed_point_sum.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::cell_tally_test {

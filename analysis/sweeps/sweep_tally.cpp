@@ -1,4 +1,4 @@
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 
 #include <algorithm>
 #include <cstring>

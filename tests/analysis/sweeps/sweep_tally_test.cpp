@@ -1,4 +1,4 @@
-#include "analysis/tally/sweep_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "tests/analysis/tally/example_tally.h"
+#include "tests/analysis/sweeps/example_tally.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_tally_test {

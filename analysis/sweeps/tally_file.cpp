@@ -1,4 +1,4 @@
-#include "analysis/tally/tally_file.h"
+#include "analysis/sweeps/tally_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/tally/tally_arrays.h"
+#include "analysis/sweeps/tally_arrays.h"
 #include "core/parameters/input_error.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "analysis/tally/cell_tally.h"
+#include "analysis/sweeps/cell_tally.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "analysis/tally/tally_arrays.h"
+#include "analysis/sweeps/tally_arrays.h"
 
 #include <algorithm>
 #include <array>
