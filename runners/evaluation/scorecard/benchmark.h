@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/scorecard/scorecard.h"
+#include "runners/evaluation/scorecard/scorecard.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {

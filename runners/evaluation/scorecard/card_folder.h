@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/scorecard/card_summaries.h"
 #include "analysis/storage/hdf5_file.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 
 namespace remote_touch {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/scorecard/scorecard.h"
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/scorecard.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analysis/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 
 namespace remote_touch {

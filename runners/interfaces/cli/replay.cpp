@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "analysis/comparison/compared_columns.h"
-#include "analysis/scorecard/scorecard.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/result_file.h"
@@ -17,6 +16,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/stored_result.h"
+#include "runners/evaluation/scorecard/scorecard.h"
 #include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/interfaces/cli/figure.h"

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "analysis/scorecard/scorecard.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
@@ -17,6 +16,7 @@
 #include "core/points/rotation.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/regression/stored_result.h"
+#include "runners/evaluation/scorecard/scorecard.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/provenance/cache_file.h"

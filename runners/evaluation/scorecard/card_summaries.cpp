@@ -1,4 +1,4 @@
-#include "analysis/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/card_summaries.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "analysis/scorecard/scorecard.h"
+#include "runners/evaluation/scorecard/scorecard.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/scorecard/card_summaries.h"
-#include "tests/analysis/scorecard/example_cards.h"
+#include "runners/evaluation/scorecard/card_summaries.h"
+#include "tests/runners/evaluation/scorecard/example_cards.h"
 
 namespace remote_touch::scorecard_test {
 namespace {

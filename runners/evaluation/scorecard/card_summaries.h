@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analysis/measures/force_measures.h"
-#include "analysis/scorecard/scorecard.h"
+#include "runners/evaluation/scorecard/scorecard.h"
 
 namespace remote_touch {
 

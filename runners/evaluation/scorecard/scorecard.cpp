@@ -1,4 +1,4 @@
-#include "analysis/scorecard/scorecard.h"
+#include "runners/evaluation/scorecard/scorecard.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/paired_test.h"
-#include "analysis/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/card_summaries.h"
 
 namespace remote_touch {
 

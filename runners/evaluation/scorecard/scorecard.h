@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/scorecard/ranking.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "runners/evaluation/scorecard/ranking.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "analysis/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/card_summaries.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "analysis/measures/interval_estimates.h"
-#include "tests/analysis/scorecard/example_cards.h"
+#include "tests/runners/evaluation/scorecard/example_cards.h"
 
 namespace remote_touch::card_summaries_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/scorecard/ranking.h"
+#include "runners/evaluation/scorecard/ranking.h"
 
 #include <gtest/gtest.h>
 
