@@ -13,7 +13,7 @@
 #include "core/kernels/kernels.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep.h"
-#include "runners/sweep/threads/work_pool.h"
+#include "runners/sweep/work_pool.h"
 
 namespace remote_touch {
 

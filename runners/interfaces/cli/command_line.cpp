@@ -14,7 +14,7 @@
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/plugins/plugin_library.h"
-#include "runners/sweep/threads/work_pool.h"
+#include "runners/sweep/work_pool.h"
 
 namespace remote_touch {
 namespace {

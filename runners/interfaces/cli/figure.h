@@ -10,7 +10,7 @@
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/sweep/threads/work_pool.h"
+#include "runners/sweep/work_pool.h"
 
 namespace remote_touch {
 

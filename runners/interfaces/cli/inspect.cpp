@@ -19,7 +19,7 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/sweep/shards/shard_checks.h"
+#include "runners/sweep/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {

@@ -24,7 +24,7 @@
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/sweep/kept_sweep.h"
-#include "runners/sweep/shards/shard_checks.h"
+#include "runners/sweep/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_run.h"

@@ -19,7 +19,7 @@
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/presentation/view/trace_page.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/threads/work_pool.h"
+#include "runners/sweep/work_pool.h"
 
 namespace remote_touch {
 namespace {

@@ -12,7 +12,7 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
-#include "runners/sweep/threads/work_pool.h"
+#include "runners/sweep/work_pool.h"
 
 namespace remote_touch {
 

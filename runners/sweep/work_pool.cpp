@@ -1,4 +1,4 @@
-#include "runners/sweep/threads/work_pool.h"
+#include "runners/sweep/work_pool.h"
 
 #include <fcntl.h>
 #include <omp.h>

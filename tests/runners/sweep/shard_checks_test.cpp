@@ -1,4 +1,4 @@
-#include "runners/sweep/shards/shard_checks.h"
+#include "runners/sweep/shard_checks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runners/sweep/shards/shard_merge.h"
+#include "runners/sweep/shard_merge.h"
 
 #include <algorithm>
 #include <map>
