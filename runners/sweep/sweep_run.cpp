@@ -9,7 +9,7 @@
 #include "analysis/storage/result_file.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_parts.h"

@@ -7,8 +7,8 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch {

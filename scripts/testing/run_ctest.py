@@ -154,7 +154,7 @@ def cache_of(build):
     sources would else be hidden by tools that were made without it."""
     digest = hashlib.sha256()
     for folder in ("core/dissertation/tool", "core/dissertation/sphere_tree", "runners/experiment/tool_files",
-                   "runners/experiment/provenance"):
+                   "runners/experiment/settings"):
         for file in sorted((ROOT / folder).rglob("*.[hc]*")):
             digest.update(file.read_bytes())
     here = build / "tools" / digest.hexdigest()[:16]

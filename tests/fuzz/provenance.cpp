@@ -1,6 +1,6 @@
 // Reads the origin that a result states: recipe, hashes of inputs, configuration. The input is two texts,
 // separated by a line "---".
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"

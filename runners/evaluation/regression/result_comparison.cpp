@@ -15,8 +15,8 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 

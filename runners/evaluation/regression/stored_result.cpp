@@ -5,9 +5,9 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/regression/result_comparison.h"
-#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/sweep/sweep_answer.h"
 #include "scenarios/files/text_file.h"
 

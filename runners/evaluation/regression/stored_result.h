@@ -9,7 +9,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/column.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {

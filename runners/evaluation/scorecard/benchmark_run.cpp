@@ -8,8 +8,8 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/sweep/sweep_session.h"
 #include "scenarios/recordings/recording.h"
 

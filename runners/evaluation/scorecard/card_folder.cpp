@@ -13,8 +13,8 @@
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/scorecard/report_json.h"
-#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/provenance.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/mesh/triangle_mesh.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
-#include "runners/experiment/provenance/cache_file.h"
+#include "runners/experiment/settings/cache_file.h"
 
 namespace remote_touch {
 

@@ -14,7 +14,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/subcommands.h"

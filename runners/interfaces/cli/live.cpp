@@ -20,7 +20,7 @@
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/opencl/depth_device.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/subcommands.h"

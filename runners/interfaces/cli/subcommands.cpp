@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
 #include "runners/experiment/settings/changed_settings.h"
+#include "runners/experiment/settings/provenance.h"
 
 namespace remote_touch {
 

@@ -18,7 +18,7 @@
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"

@@ -6,7 +6,7 @@
 
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/verification/contact_model.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/clouds.h"

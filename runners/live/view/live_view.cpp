@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/presentation/view/shown_meshes.h"
 #include "runners/presentation/view/view_page.h"
 #include "scenarios/files/text_file.h"

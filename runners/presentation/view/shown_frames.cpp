@@ -9,7 +9,7 @@
 #include "core/parameters/input_error.h"
 #include "core/points/colour.h"
 #include "runners/experiment/catalog/frame_stream.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/files/text_file.h"
 

@@ -9,7 +9,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"

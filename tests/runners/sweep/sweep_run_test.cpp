@@ -13,7 +13,7 @@
 #include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_session.h"

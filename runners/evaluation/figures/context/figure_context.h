@@ -8,7 +8,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "runners/experiment/provenance/cache_file.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/cache_file.h"
+#include "runners/experiment/settings/provenance.h"
 #include "scenarios/recordings/recording.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/storage/result_file.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/export/export_formats.h"
 #include "tests/support/scenes.h"

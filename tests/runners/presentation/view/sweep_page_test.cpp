@@ -8,7 +8,7 @@
 
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/view/view_page.h"
 #include "runners/sweep/sweep_run.h"

@@ -7,7 +7,7 @@
 
 #include "analysis/storage/result_file.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/view/view_page.h"
 #include "tests/runners/presentation/view/read_page.h"

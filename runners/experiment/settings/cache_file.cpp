@@ -1,4 +1,4 @@
-#include "runners/experiment/provenance/cache_file.h"
+#include "runners/experiment/settings/cache_file.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/experiment/provenance/cache_file.h"
+#include "runners/experiment/settings/cache_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

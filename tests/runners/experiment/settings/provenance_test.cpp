@@ -1,4 +1,4 @@
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 
 #include <gtest/gtest.h>
 
@@ -202,7 +202,7 @@ TEST_F(Maker, NamesThePlugins) {
 }
 
 // Hashes, in result files, of the recordings that the results were made from. The hashes below are from
-// sha256sum, as runners/experiment/provenance/provenance.h describes. The test
+// sha256sum, as runners/experiment/settings/provenance.h describes. The test
 // tests/system/command_line/inputs runs it on real files.
 
 namespace fs = std::filesystem;

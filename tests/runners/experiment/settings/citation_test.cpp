@@ -1,10 +1,10 @@
-#include "runners/experiment/provenance/citation.h"
+#include "runners/experiment/settings/citation.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::citation_test {

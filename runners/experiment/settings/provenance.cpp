@@ -1,4 +1,4 @@
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 
 #include <algorithm>
 #include <fstream>

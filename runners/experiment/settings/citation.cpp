@@ -1,4 +1,4 @@
-#include "runners/experiment/provenance/citation.h"
+#include "runners/experiment/settings/citation.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/parameters/input_error.h"
-#include "runners/experiment/provenance/provenance.h"
+#include "runners/experiment/settings/provenance.h"
 
 namespace remote_touch {
 
