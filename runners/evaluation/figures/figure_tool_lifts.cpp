@@ -8,7 +8,7 @@
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/tools/carried_limits.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/experiment/tool_files/tool_loading.h"
+#include "runners/experiment/mesh_files/tool_loading.h"
 
 namespace remote_touch {
 

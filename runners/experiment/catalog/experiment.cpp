@@ -10,10 +10,10 @@
 #include "analysis/storage/digest.h"
 #include "runners/experiment/catalog/section_rules.h"
 #include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/mesh_files/tool_loading.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/tool_files/tool_loading.h"
 #include "scenarios/camera/depth_sensor.h"
 #include "scenarios/files/text_file.h"
 

@@ -15,10 +15,10 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/settings/embedded_data.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/tool_files/loaded_tool.h"
 #include "runners/sweep/sweep.h"
 
 namespace remote_touch {

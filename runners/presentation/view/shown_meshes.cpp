@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "analysis/trace/formatted.h"
+#include "runners/experiment/mesh_files/tool_loading.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/tool_files/tool_loading.h"
 
 namespace remote_touch {
 

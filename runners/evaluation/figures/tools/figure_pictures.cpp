@@ -8,8 +8,8 @@
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/mesh_files/tool_loading.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/experiment/tool_files/tool_loading.h"
 
 namespace remote_touch {
 

@@ -12,7 +12,7 @@
 #include "core/kernels/isa.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/factory.h"
-#include "runners/experiment/tool_files/loaded_tool.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 
 namespace remote_touch {
 

@@ -13,7 +13,7 @@
 #include "core/dissertation/tool/motion/penalty_motion.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/rivals/inner_sphere_motion.h"
-#include "runners/experiment/tool_files/tool_loading.h"
+#include "runners/experiment/mesh_files/tool_loading.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/experiment/tool_files/loaded_tool.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 
 #include <type_traits>
 

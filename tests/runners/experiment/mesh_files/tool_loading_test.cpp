@@ -1,4 +1,4 @@
-#include "runners/experiment/tool_files/tool_loading.h"
+#include "runners/experiment/mesh_files/tool_loading.h"
 
 #include <gtest/gtest.h>
 
