@@ -18,7 +18,7 @@
 // over both ports is the energy in the channel. Sources: D. A. Lawrence, IEEE Trans. Robotics and Automation
 // 9(5), 1993; G. Niemeyer and J.-J. E. Slotine, IEEE J. Oceanic Engineering 16(1), 1991, and Int. J. Robotics
 // Research 23(9), 2004; passivity_control.h. Compared by E. J. Rodriguez-Seda, D. Lee and M. W. Spong, IEEE
-// Trans. Robotics 25(4), 2009. Numbers and bounds: README.md of runners/experiment/teleoperation.
+// Trans. Robotics 25(4), 2009. Numbers and bounds: README.md of runners/experiment/hand.
 //
 // All positions, forces and waves here are in the frame in which the hand works. Nothing allocates in a tick.
 #pragma once

@@ -1,6 +1,6 @@
 // Time-domain passivity control of a channel with delay between a hand and a slave: a controller at each port
 // changes its signal, as little as possible, so that no more energy leaves the channel there than the far
-// port has sent as its credit. Derivation, bound and sources: README.md of runners/experiment/teleoperation.
+// port has sent as its credit. Derivation, bound and sources: README.md of runners/experiment/hand.
 //
 // All forces act on the body at the port. Energy that enters the channel in a tick is -F . d at the hand and
 // f . d at the slave, where d is the displacement of the hand, or of the slave's command.

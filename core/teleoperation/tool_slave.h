@@ -101,7 +101,7 @@ class SlaveToolTree {
 //
 // There is no friction, and no contact where distance or normal are not known. is_force_known is false if
 // points are behind the surface and the normal is known at none of them. What follows from these equations,
-// and how the scene is queried: README.md of runners/experiment/teleoperation.
+// and how the scene is queried: README.md of runners/experiment/hand.
 class ToolSlave {
  public:
   static constexpr double kRounding_m = 5e-5;

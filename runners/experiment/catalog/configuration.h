@@ -13,9 +13,9 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/hand/simulated_hand.h"
+#include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/sessions/live_settings.h"
-#include "runners/experiment/teleoperation/teleoperation.h"
 #include "scenarios/camera/sensor_faults.h"
 
 namespace remote_touch {

@@ -10,8 +10,8 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "runners/experiment/catalog/configuration.h"
+#include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/settings/embedded_data.h"
-#include "runners/experiment/teleoperation/teleoperation.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

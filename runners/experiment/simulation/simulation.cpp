@@ -8,9 +8,9 @@
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/frame_stream.h"
+#include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/simulation/contact_watch.h"
 #include "runners/experiment/simulation/run_notes.h"
-#include "runners/experiment/teleoperation/teleoperation.h"
 
 namespace remote_touch {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/simulation/contact_watch.h"
-#include "runners/experiment/teleoperation/teleoperation.h"
 #include "runners/live/loop/camera_feed.h"
 #include "runners/live/loop/live_log.h"
 #include "runners/live/loop/live_run.h"

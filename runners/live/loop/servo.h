@@ -10,7 +10,7 @@
 
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/configuration.h"
-#include "runners/experiment/teleoperation/teleoperation.h"
+#include "runners/experiment/hand/teleoperation.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/safety_gate.h"
 #include "runners/live/devices/triple_buffer.h"

@@ -10,8 +10,8 @@
 #include "core/points/rotation.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/experiment/teleoperation/teleoperation.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::steered_tool_test {

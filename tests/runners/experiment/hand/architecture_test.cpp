@@ -18,8 +18,8 @@
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/simulated_hand.h"
+#include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/experiment/teleoperation/teleoperation.h"
 
 namespace remote_touch::architecture_test {
 namespace {

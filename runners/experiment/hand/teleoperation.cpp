@@ -1,4 +1,4 @@
-#include "runners/experiment/teleoperation/teleoperation.h"
+#include "runners/experiment/hand/teleoperation.h"
 
 #include <algorithm>
 #include <cmath>

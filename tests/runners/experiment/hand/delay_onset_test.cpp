@@ -7,7 +7,7 @@
 
 #include "analysis/theory/haptic_loops.h"
 #include "runners/experiment/hand/simulated_hand.h"
-#include "runners/experiment/teleoperation/teleoperation.h"
+#include "runners/experiment/hand/teleoperation.h"
 
 namespace remote_touch::delay_onset_test {
 namespace {
