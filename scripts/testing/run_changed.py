@@ -26,7 +26,7 @@ OF_THE_PROGRAM = [
      ["command_line_.*"]),
     (r"runners/live/", ["command_line_live", "runners/live/loop.several_cameras_in_one_process"]),
     (r"runners/evaluation/(scorecard|figures)/|data/(methods|scenes|scorecard)", ["stored_scorecard", "figures_quick"]),
-    (r"runners/presentation/view/|tests/system/viewer/", ["command_line_view", "viewer_.*"]),
+    (r"runners/presentation/pages/|tests/system/viewer/", ["command_line_view", "viewer_.*"]),
     (r"runners/interfaces/python/|tests/runners/interfaces/python/", ["python_module"]),
     (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "plot_style", "scorecard_page", "figures_quick"]),
     (r"scripts/benchmark|data/benchmarks/|tests/benchmarks/README\.md$", ["benchmark_tables"]),

@@ -17,7 +17,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
-#include "runners/presentation/view/trace_page.h"
+#include "runners/presentation/pages/trace_page.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/work_pool.h"
 

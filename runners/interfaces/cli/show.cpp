@@ -29,8 +29,8 @@
 #include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/presentation/export/export_formats.h"
-#include "runners/presentation/view/sweep_page.h"
-#include "runners/presentation/view/trace_page.h"
+#include "runners/presentation/pages/sweep_page.h"
+#include "runners/presentation/pages/trace_page.h"
 #include "runners/sweep/stored_sweep.h"
 #include "scenarios/files/text_file.h"
 

@@ -6,8 +6,8 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/frame_stream.h"
-#include "runners/presentation/view/shown_frames.h"
-#include "runners/presentation/view/shown_meshes.h"
+#include "runners/presentation/pages/shown_frames.h"
+#include "runners/presentation/pages/shown_meshes.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-# The packages of runners/presentation/view/page, with those for tests, in a folder of the build; read by the scripts beside this one.
+# The packages of runners/presentation/pages/page, with those for tests, in a folder of the build; read by the scripts beside this one.
 
 not_tried() { echo "not tried: $*"; exit 77; }
 

@@ -9,7 +9,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "core/kernels/kernels.h"
 #include "core/points/vector.h"
-#include "runners/presentation/view/shown_meshes.h"
+#include "runners/presentation/pages/shown_meshes.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

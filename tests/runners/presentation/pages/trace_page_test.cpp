@@ -1,4 +1,4 @@
-#include "runners/presentation/view/trace_page.h"
+#include "runners/presentation/pages/trace_page.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/view/view_page.h"
-#include "tests/runners/presentation/view/read_page.h"
+#include "runners/presentation/pages/view_page.h"
+#include "tests/runners/presentation/pages/read_page.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

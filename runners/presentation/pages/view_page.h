@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "runners/presentation/view/shown_run.h"
+#include "runners/presentation/pages/shown_run.h"
 
 namespace remote_touch {
 
-// The viewer's script and style, which the build made from runners/presentation/view/page and embedded in the
-// program. Both empty in a program that was built without Node.
+// The viewer's script and style, which the build made from runners/presentation/pages/page and embedded in
+// the program. Both empty in a program that was built without Node.
 std::string_view viewer_script();
 std::string_view viewer_style();
 

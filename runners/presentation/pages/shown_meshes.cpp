@@ -1,4 +1,4 @@
-#include "runners/presentation/view/shown_meshes.h"
+#include "runners/presentation/pages/shown_meshes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runners/presentation/view/view_page.h"
+#include "runners/presentation/pages/view_page.h"
 
 #include <openssl/evp.h>
 #include <zlib.h>

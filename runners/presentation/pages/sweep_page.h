@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
-#include "runners/presentation/view/view_page.h"
+#include "runners/presentation/pages/view_page.h"
 
 namespace remote_touch {
 

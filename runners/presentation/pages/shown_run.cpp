@@ -1,4 +1,4 @@
-#include "runners/presentation/view/shown_run.h"
+#include "runners/presentation/pages/shown_run.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,10 +12,10 @@
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
-#include "runners/presentation/view/shown_frames.h"
-#include "runners/presentation/view/shown_meshes.h"
-#include "runners/presentation/view/trace_event.h"
-#include "runners/presentation/view/true_heights.h"
+#include "runners/presentation/pages/shown_frames.h"
+#include "runners/presentation/pages/shown_meshes.h"
+#include "runners/presentation/pages/trace_event.h"
+#include "runners/presentation/pages/true_heights.h"
 
 namespace remote_touch {
 

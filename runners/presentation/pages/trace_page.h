@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "runners/presentation/view/view_page.h"
+#include "runners/presentation/pages/view_page.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -1,10 +1,10 @@
-#include "runners/presentation/view/view_page.h"
+#include "runners/presentation/pages/view_page.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "tests/runners/presentation/view/read_page.h"
+#include "tests/runners/presentation/pages/read_page.h"
 
 namespace remote_touch::view_page_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "runners/presentation/view/trace_event.h"
+#include "runners/presentation/pages/trace_event.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runners/presentation/view/sweep_page.h"
+#include "runners/presentation/pages/sweep_page.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "runners/presentation/view/trace_page.h"
+#include "runners/presentation/pages/trace_page.h"
 
 #include <nlohmann/json.hpp>
 

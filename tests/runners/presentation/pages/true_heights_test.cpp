@@ -1,4 +1,4 @@
-#include "runners/presentation/view/true_heights.h"
+#include "runners/presentation/pages/true_heights.h"
 
 #include <gtest/gtest.h>
 
