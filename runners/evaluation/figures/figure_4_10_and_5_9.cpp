@@ -11,9 +11,9 @@
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/points/point_cloud.h"
 #include "core/points/rotation.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/figure_pictures.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_pictures.h"
 
 namespace remote_touch {
 

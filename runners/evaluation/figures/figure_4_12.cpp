@@ -1,6 +1,6 @@
 // Fig 4.12: a noisy cloud is lifted with acceleration.
 
-#include "runners/evaluation/figures/pop_through_map.h"
+#include "runners/evaluation/figures/parts/pop_through_map.h"
 #include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {

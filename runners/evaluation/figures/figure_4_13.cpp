@@ -5,7 +5,7 @@
 
 #include "analysis/measures/limit.h"
 #include "analysis/measures/no_value.h"
-#include "runners/evaluation/figures/pop_through_map.h"
+#include "runners/evaluation/figures/parts/pop_through_map.h"
 #include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {

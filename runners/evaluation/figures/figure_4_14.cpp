@@ -6,8 +6,8 @@
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/theory/exact_contacts.h"
 #include "core/kernels/isa.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 namespace remote_touch {
 

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "core/points/colour.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/fixture_run.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/figure_pictures.h"
-#include "runners/evaluation/figures/truth/ball_gaps.h"
+#include "runners/evaluation/figures/parts/ball_gaps.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/parts/fixture_run.h"
 #include "scenarios/camera/camera_scene.h"
 
 namespace remote_touch {

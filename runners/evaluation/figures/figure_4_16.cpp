@@ -5,8 +5,8 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
 #include "core/kernels/isa.h"
-#include "runners/evaluation/figures/fixture_run.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/fixture_run.h"
 
 namespace remote_touch {
 

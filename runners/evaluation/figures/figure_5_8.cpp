@@ -4,8 +4,8 @@
 
 #include "analysis/measures/curve_fits.h"
 #include "analysis/measures/means_and_extremes.h"
-#include "runners/evaluation/figures/fixture_run.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/fixture_run.h"
 
 namespace remote_touch {
 

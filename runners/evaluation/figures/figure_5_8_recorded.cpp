@@ -4,9 +4,9 @@
 
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "runners/evaluation/figures/fixture_run.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/recorded_fixture.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/fixture_run.h"
+#include "runners/evaluation/figures/parts/recorded_fixture.h"
 
 namespace remote_touch {
 

@@ -6,9 +6,9 @@
 #include "analysis/measures/means_and_extremes.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/points/noise.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/figure_pictures.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_pictures.h"
 #include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {

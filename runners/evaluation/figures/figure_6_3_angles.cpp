@@ -4,8 +4,8 @@
 
 #include "analysis/measures/means_and_extremes.h"
 #include "core/points/rotation.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 namespace remote_touch {
 

@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "analysis/measures/means_and_extremes.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/figure_pictures.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_pictures.h"
 
 namespace remote_touch {
 

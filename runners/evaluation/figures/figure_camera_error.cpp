@@ -6,8 +6,8 @@
 
 #include "analysis/measures/means_and_extremes.h"
 #include "core/parameters/input_error.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/truth/camera_errors.h"
 
 namespace remote_touch {

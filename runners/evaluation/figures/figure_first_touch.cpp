@@ -5,7 +5,7 @@
 
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/theory/pop_through_limits.h"
-#include "runners/evaluation/figures/pop_through_map.h"
+#include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {
 

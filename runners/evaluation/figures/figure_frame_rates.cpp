@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runners/evaluation/figures/pop_through_map.h"
+#include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {
 

@@ -6,11 +6,11 @@
 #include "analysis/measures/curve_fits.h"
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/fixture_run.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/figure_pictures.h"
-#include "runners/evaluation/figures/truth/ball_gaps.h"
+#include "runners/evaluation/figures/parts/ball_gaps.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/parts/fixture_run.h"
 
 namespace remote_touch {
 

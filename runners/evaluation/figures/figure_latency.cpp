@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "analysis/measures/means_and_extremes.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 namespace remote_touch {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "analysis/measures/means_and_extremes.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/sensors/sensor_comparison.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 

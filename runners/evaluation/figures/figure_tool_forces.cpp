@@ -9,8 +9,8 @@
 #include "analysis/theory/exact_contacts.h"
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/points/rotation.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 namespace remote_touch {
 

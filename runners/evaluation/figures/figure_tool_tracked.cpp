@@ -6,7 +6,7 @@
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "runners/evaluation/figures/pop_through_map.h"
+#include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {
 

@@ -4,9 +4,9 @@
 
 #include "analysis/measures/image_measures.h"
 #include "analysis/measures/means_and_extremes.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
-#include "runners/evaluation/figures/tools/figure_pictures.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_pictures.h"
 #include "scenarios/camera/valve_tank.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "runners/evaluation/figures/context/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
 
 namespace remote_touch {
 

@@ -1,5 +1,5 @@
 #include "runners/evaluation/figures/valve_task.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "analysis/trace/sequence_log.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/points/rotation.h"
-#include "runners/evaluation/figures/tools/figure_pictures.h"
+#include "runners/evaluation/figures/parts/figure_pictures.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
 #include "scenarios/camera/valve_tank.h"
 
 namespace remote_touch {

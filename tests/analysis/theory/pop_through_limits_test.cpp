@@ -9,7 +9,7 @@
 
 #include "analysis/measures/measures.h"
 #include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/pop_through_map.h"
+#include "runners/evaluation/figures/parts/pop_through_map.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 

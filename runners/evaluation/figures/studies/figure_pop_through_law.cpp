@@ -7,9 +7,9 @@
 
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/sweeps/sweep_tally.h"
-#include "runners/evaluation/figures/context/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/stored_study.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {

@@ -5,9 +5,9 @@
 
 #include "analysis/measures/force_fidelity.h"
 #include "analysis/measures/means_and_extremes.h"
-#include "runners/evaluation/figures/context/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/teleoperation/wall_limit.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 

@@ -6,9 +6,9 @@
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/theory/haptic_loops.h"
-#include "runners/evaluation/figures/context/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/teleoperation/slave_tasks.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/theory/haptic_loops.h"
-#include "runners/evaluation/figures/context/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
 
 namespace remote_touch {
 

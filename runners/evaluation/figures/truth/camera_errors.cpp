@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 namespace remote_touch {
 namespace {

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/tools/figure_pictures.h"
+#include "runners/evaluation/figures/parts/figure_pictures.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 
 #include "analysis/trace/trace.h"
 #include "core/points/rotation.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/mesh_files/tool_loading.h"
 #include "runners/experiment/settings/json_parameters.h"

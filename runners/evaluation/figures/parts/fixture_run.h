@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
 
 namespace remote_touch {
 

@@ -1,10 +1,10 @@
-#include "runners/evaluation/figures/fixture_run.h"
+#include "runners/evaluation/figures/parts/fixture_run.h"
 
 #include <utility>
 
 #include "analysis/measures/measures.h"
 #include "core/kernels/isa.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 namespace remote_touch {
 

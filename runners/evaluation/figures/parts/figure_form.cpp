@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/tools/recorded_fixture.h"
+#include "runners/evaluation/figures/parts/recorded_fixture.h"
 
 #include <algorithm>
 #include <cmath>

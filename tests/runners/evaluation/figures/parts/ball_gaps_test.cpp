@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/truth/ball_gaps.h"
+#include "runners/evaluation/figures/parts/ball_gaps.h"
 
 #include <gtest/gtest.h>
 

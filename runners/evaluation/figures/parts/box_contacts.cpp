@@ -1,9 +1,9 @@
-#include "runners/evaluation/figures/tools/box_contacts.h"
+#include "runners/evaluation/figures/parts/box_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 namespace remote_touch {
 

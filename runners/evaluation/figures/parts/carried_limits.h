@@ -10,7 +10,7 @@
 
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 #include "scenarios/synthetic/shape.h"
 
 namespace remote_touch {

@@ -10,8 +10,8 @@
 #include "analysis/measures/curve_fits.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/theory/pop_through_limits.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/tools/figure_form.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_form.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/context/figure_context.h"
+#include "runners/evaluation/figures/parts/figure_context.h"
 
 #include "core/parameters/input_error.h"
 #include "runners/sweep/sweep_run.h"
