@@ -8,7 +8,7 @@
 #include "core/parameters/input_error.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/evaluation/figures/truth/camera_errors.h"
+#include "runners/evaluation/figures/studies/camera_errors.h"
 
 namespace remote_touch {
 

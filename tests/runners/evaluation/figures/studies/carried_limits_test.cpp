@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/parts/carried_limits.h"
+#include "runners/evaluation/figures/studies/carried_limits.h"
 
 #include <gtest/gtest.h>
 

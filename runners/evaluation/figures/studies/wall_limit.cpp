@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/teleoperation/wall_limit.h"
+#include "runners/evaluation/figures/studies/wall_limit.h"
 
 #include <algorithm>
 #include <string>

@@ -1,8 +1,8 @@
-#include "runners/evaluation/figures/truth/depth_errors.h"
+#include "runners/evaluation/figures/studies/depth_errors.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/runners/evaluation/figures/truth/true_wall.h"
+#include "tests/runners/evaluation/figures/studies/true_wall.h"
 
 namespace remote_touch::depth_errors_test {
 namespace {

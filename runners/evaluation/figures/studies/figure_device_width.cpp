@@ -7,7 +7,7 @@
 #include "analysis/measures/means_and_extremes.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/evaluation/figures/teleoperation/wall_limit.h"
+#include "runners/evaluation/figures/studies/wall_limit.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/sensors/sensor_comparison.h"
+#include "runners/evaluation/figures/studies/sensor_comparison.h"
 
 #include <algorithm>
 #include <cmath>

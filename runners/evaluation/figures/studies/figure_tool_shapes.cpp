@@ -8,9 +8,9 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "core/points/rotation.h"
-#include "runners/evaluation/figures/parts/carried_limits.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/studies/carried_limits.h"
 
 namespace remote_touch {
 

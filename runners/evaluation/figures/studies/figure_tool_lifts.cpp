@@ -5,9 +5,9 @@
 #include "analysis/measures/means_and_extremes.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/points/rotation.h"
-#include "runners/evaluation/figures/parts/carried_limits.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/studies/carried_limits.h"
 #include "runners/experiment/mesh_files/tool_loading.h"
 
 namespace remote_touch {

@@ -1,13 +1,13 @@
-#include "runners/evaluation/figures/truth/true_contacts.h"
+#include "runners/evaluation/figures/studies/true_contacts.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "analysis/measures/contact_measures.h"
-#include "runners/evaluation/figures/truth/camera_errors.h"
+#include "runners/evaluation/figures/studies/camera_errors.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "tests/runners/evaluation/figures/truth/true_wall.h"
+#include "tests/runners/evaluation/figures/studies/true_wall.h"
 
 namespace remote_touch::true_contacts_test {
 namespace {

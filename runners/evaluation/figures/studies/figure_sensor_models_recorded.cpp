@@ -6,7 +6,7 @@
 #include "analysis/measures/means_and_extremes.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/evaluation/figures/sensors/sensor_comparison.h"
+#include "runners/evaluation/figures/studies/sensor_comparison.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/truth/true_contacts.h"
+#include "runners/evaluation/figures/studies/true_contacts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/truth/depth_errors.h"
+#include "runners/evaluation/figures/studies/depth_errors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/points/order_statistic.h"
 #include "core/points/rotation.h"
-#include "runners/evaluation/figures/truth/true_contacts.h"
+#include "runners/evaluation/figures/studies/true_contacts.h"
 #include "runners/experiment/hand/image_surface.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/teleoperation/slave_tasks.h"
+#include "runners/evaluation/figures/studies/slave_tasks.h"
 
 #include <cmath>
 

@@ -7,7 +7,7 @@
 #include "analysis/theory/haptic_loops.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/evaluation/figures/teleoperation/slave_tasks.h"
+#include "runners/evaluation/figures/studies/slave_tasks.h"
 
 namespace remote_touch {
 

@@ -1,6 +1,6 @@
 // A simulated sensor before recorded scenes: the scenes that are made of recordings against known
 // ones, and errors against true objects that are known.
-#include "runners/evaluation/figures/sensors/sensor_comparison.h"
+#include "runners/evaluation/figures/studies/sensor_comparison.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include "analysis/measures/no_value.h"
 #include "analysis/storage/result_file.h"
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "runners/evaluation/figures/truth/depth_errors.h"
-#include "runners/evaluation/figures/truth/true_contacts.h"
+#include "runners/evaluation/figures/studies/depth_errors.h"
+#include "runners/evaluation/figures/studies/true_contacts.h"
 
 namespace remote_touch {
 

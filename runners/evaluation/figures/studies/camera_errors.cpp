@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/truth/camera_errors.h"
+#include "runners/evaluation/figures/studies/camera_errors.h"
 
 #include <algorithm>
 #include <cmath>
