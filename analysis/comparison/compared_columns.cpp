@@ -9,7 +9,6 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
-#include "analysis/trace/hash64.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/trace/hash64.h"
+#include "analysis/trace/column.h"
 
 namespace remote_touch {
 namespace {

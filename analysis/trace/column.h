@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 
@@ -70,5 +73,50 @@ Tolerance tolerance_of(const Tolerances& tolerances, const std::string& name);
 // Returns true if the deviation is allowed. Numbers that are equal by == are allowed (so 0 and -0 are), and
 // so is NaN for NaN. NaN or infinity against any other number is outside, whatever the tolerance.
 bool within(const Tolerance& tolerance, double baseline, double candidate);
+
+// Cheap 64-bit hashes of the points of a frame, and of a run up to each tick. They show whether two frames or
+// runs are equal, or at which tick two runs first differ; the chance of an error is 1 in 1.8e19. Only the
+// SHA-256 of the file detects deliberate changes.
+
+// One step of a chain: multiplication by the odd constant of the golden ratio, high bits folded onto low
+// ones. The result is equal on every machine, and in every language with 64-bit integers that wrap around.
+constexpr std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+  return hash ^ (hash >> 32);
+}
+
+inline constexpr const char* kRunningHash = "tick_hash";  // its column in a trace
+
+// Hash of the number of points and of every coordinate, fixture radius, stiffness and normal of the cloud. It
+// does not depend on the order of the points, which each search chooses.
+std::uint64_t points_hash(const PointCloud& cloud);
+
+// Returns the running hash of columns of equal length. Row i holds hash_i = mixed(hash_(i-1), r_i), where r_i
+// is the chain over the words of row i of every column in turn. Both chains begin with 0. The word of a
+// double is its bits, with -0 as 0 and every NaN as 0x7ff8000000000000, so that equal rows have equal hashes.
+// The word of an integer is the sign-extended integer. Texts are ignored.
+// The hashes of two runs are equal up to the first tick at which anything differs, and different from there
+// on. Bisection therefore finds that tick from about log2(ticks) hashes of each run.
+std::vector<std::uint64_t> running_hash(const std::vector<Column>& columns);
+
+// The log of a task's steps, from the columns of a trace.
+
+struct Trace;
+
+// A step that has begun. Its times are times of ticks. ended_s is NaN if the step had not ended at the end of
+// the trace.
+struct SequenceEntry {
+  int step = 0;  // its number in the task
+  double began_s = 0;
+  double ended_s = std::numeric_limits<double>::quiet_NaN();
+  bool missed = false;  // true if the deadline ended the step
+  // Distance and angle from the tool to the step's goal when the step ended; NaN for a step without a goal.
+  // All steps that ended in the same tick have the values of the first of them with a goal.
+  double distance_m = std::numeric_limits<double>::quiet_NaN();
+  double angle_rad = std::numeric_limits<double>::quiet_NaN();
+};
+
+// Returns the entries in the order of the steps; empty for a trace without a task.
+std::vector<SequenceEntry> sequence_log(const Trace& trace);
 
 }  // namespace remote_touch

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "analysis/trace/hash64.h"
+#include "analysis/trace/column.h"
 
 namespace remote_touch {
 

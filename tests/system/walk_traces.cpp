@@ -8,7 +8,7 @@
 #include <random>
 
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/hash64.h"
+#include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
 
 namespace {

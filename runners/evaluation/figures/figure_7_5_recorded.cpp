@@ -4,7 +4,7 @@
 
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/no_value.h"
-#include "analysis/trace/sequence_log.h"
+#include "analysis/trace/column.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"
 #include "runners/evaluation/figures/valve_task.h"

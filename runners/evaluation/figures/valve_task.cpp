@@ -8,7 +8,7 @@
 
 #include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "analysis/trace/sequence_log.h"
+#include "analysis/trace/column.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"

@@ -10,7 +10,6 @@
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
-#include "analysis/trace/hash64.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/catalog.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <sstream>
 
-#include "analysis/trace/hash64.h"
+#include "analysis/trace/column.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/sessions/sensor_frame.h"

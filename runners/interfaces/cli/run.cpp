@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/sequence_log.h"
+#include "analysis/trace/column.h"
 #include "core/parameters/input_error.h"
 #include "core/points/rotation.h"
 #include "runners/experiment/catalog/catalog.h"

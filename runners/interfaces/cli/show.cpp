@@ -10,7 +10,6 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
-#include "analysis/trace/sequence_log.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/input_error.h"
 #include "core/points/rotation.h"

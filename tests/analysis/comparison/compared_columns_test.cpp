@@ -12,7 +12,6 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
-#include "analysis/trace/hash64.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"

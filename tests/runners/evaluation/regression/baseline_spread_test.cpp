@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/trace/hash64.h"
+#include "analysis/trace/column.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/spread.h"
