@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/trace/hand_and_slave_state.h"
+#include "analysis/trace/trace.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/trace/hand_and_slave_state.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "core/points/noise.h"
 #include "core/rendering/renderer.h"
