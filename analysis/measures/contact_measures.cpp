@@ -4,8 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/measures/means_and_extremes.h"
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/points/order_statistic.h"
 
 namespace remote_touch {

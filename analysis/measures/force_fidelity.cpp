@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/measures/means_and_extremes.h"
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/trace/trace.h"
 #include "core/points/rotation.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/points/camera.h"
 
 namespace remote_touch {

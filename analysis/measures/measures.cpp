@@ -7,8 +7,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/force_fidelity.h"
 #include "analysis/measures/force_measures.h"
-#include "analysis/measures/means_and_extremes.h"
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/run_events.h"
 #include "analysis/measures/tool_and_slave_measures.h"
 

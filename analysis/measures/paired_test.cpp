@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/means_and_extremes.h"
 
 namespace remote_touch {
 

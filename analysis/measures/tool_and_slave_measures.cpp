@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/run_events.h"
 #include "core/points/rotation.h"
 

@@ -3,8 +3,7 @@
 
 #include <type_traits>
 
-#include "analysis/measures/means_and_extremes.h"
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

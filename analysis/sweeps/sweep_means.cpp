@@ -7,7 +7,6 @@
 #include <map>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/paired_test.h"
 
 namespace remote_touch {

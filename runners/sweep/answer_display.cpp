@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/formatted.h"
 #include "core/parameters/input_error.h"

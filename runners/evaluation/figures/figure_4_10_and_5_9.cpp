@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/points/point_cloud.h"
 #include "core/points/rotation.h"

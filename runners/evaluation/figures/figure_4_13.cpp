@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/limit.h"
-#include "analysis/measures/no_value.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 #include "runners/experiment/settings/embedded_data.h"
 

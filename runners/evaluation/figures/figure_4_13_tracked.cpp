@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
-#include "analysis/measures/no_value.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/theory/exact_contacts.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/measures/means_and_extremes.h"
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/experiment/settings/embedded_data.h"

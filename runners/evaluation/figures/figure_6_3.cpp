@@ -3,7 +3,7 @@
 #include <cmath>
 #include <span>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/parts/box_contacts.h"

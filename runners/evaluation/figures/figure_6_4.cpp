@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/measures/force_measures.h"
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

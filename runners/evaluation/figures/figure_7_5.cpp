@@ -1,7 +1,7 @@
 // Fig 7.5: the left valve is forbidden; guidance, activated by a button at 3 s, leads to the right one.
 #include <algorithm>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"
 #include "runners/evaluation/figures/valve_task.h"

@@ -1,6 +1,6 @@
 // Fig 7.5 for other stiffnesses of guidance, with six motors and with five: where the hand is led.
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"

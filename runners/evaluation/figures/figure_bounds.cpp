@@ -2,8 +2,7 @@
 // lifts.
 #include <cmath>
 
-#include "analysis/measures/means_and_extremes.h"
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {

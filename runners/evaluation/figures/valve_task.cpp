@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
 #include "analysis/trace/column.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "analysis/comparison/compared_columns.h"
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/paired_test.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <new>
 #include <optional>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/hand/device_model.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/trace/formatted.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/devices/device_table.h"

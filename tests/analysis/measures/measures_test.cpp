@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/trace/trace.h"
 #include "tests/analysis/measures/measure_named.h"
 

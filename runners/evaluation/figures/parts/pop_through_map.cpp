@@ -6,9 +6,7 @@
 #include <map>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
-#include "analysis/measures/no_value.h"
 #include "core/parameters/input_error.h"
 #include "runners/experiment/settings/embedded_data.h"
 

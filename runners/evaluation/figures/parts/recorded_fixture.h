@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/no_value.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/storage/result_file.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "runners/evaluation/figures/studies/depth_errors.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/theory/haptic_loops.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

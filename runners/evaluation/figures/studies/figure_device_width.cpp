@@ -4,7 +4,7 @@
 #include <string>
 
 #include "analysis/measures/force_fidelity.h"
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/wall_limit.h"

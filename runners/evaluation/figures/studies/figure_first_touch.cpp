@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/theory/pop_through_limits.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 

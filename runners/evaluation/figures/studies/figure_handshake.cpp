@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "analysis/measures/curve_fits.h"
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
 #include "runners/evaluation/figures/parts/ball_gaps.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <sstream>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "analysis/theory/exact_contacts.h"
 #include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/points/rotation.h"

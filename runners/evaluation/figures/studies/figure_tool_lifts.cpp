@@ -2,7 +2,7 @@
 // it, and how do thickness, tilt, rotation and noise change that? Simulated; not in the dissertation.
 #include <algorithm>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

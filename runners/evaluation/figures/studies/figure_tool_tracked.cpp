@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/means_and_extremes.h"
 #include "analysis/measures/measures.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 

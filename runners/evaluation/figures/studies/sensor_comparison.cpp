@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/measures/curve_fits.h"
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/parameters/input_error.h"
 #include "core/points/order_statistic.h"
 #include "runners/experiment/hand/image_surface.h"

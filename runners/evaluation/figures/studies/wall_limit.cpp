@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "analysis/measures/means_and_extremes.h"
+#include "analysis/measures/interval_estimates.h"
 #include "core/points/rotation.h"
 
 namespace remote_touch {
