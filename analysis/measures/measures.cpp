@@ -8,7 +8,6 @@
 #include "analysis/measures/force_fidelity.h"
 #include "analysis/measures/force_measures.h"
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/run_events.h"
 #include "analysis/measures/tool_and_slave_measures.h"
 
 namespace remote_touch {

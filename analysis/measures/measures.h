@@ -33,7 +33,7 @@ double badness(double value, Better better);
 // else 0. The surface is that of judged_distance_m(). The centre is behind it if its distance is less than
 // -Trace::held_depth_m, which is 0 for a ball. The result is 0 also if it was behind when the first frame
 // came and stayed there. NaN if the distance is not known at the end, or was not known while the centre moved
-// to the back: beside an object it may have gone round the border. See run_events.h.
+// to the back: beside an object it may have gone round the border. See contact_measures.h.
 double popped_through(const Trace& trace);
 // Maximum distance of the proxy's centre behind the true surface, m, over the ticks with a frame and a known
 // truth. 0 if it never was behind the surface; NaN if there is no such tick.

@@ -6,7 +6,6 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/run_events.h"
 #include "core/points/rotation.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "analysis/measures/run_events.h"
+#include "analysis/measures/contact_measures.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/trace.h"

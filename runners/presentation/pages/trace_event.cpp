@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/run_events.h"
+#include "analysis/measures/contact_measures.h"
 #include "analysis/trace/formatted.h"
 #include "core/points/rotation.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
-#include "analysis/measures/run_events.h"
 #include "analysis/theory/pop_through_limits.h"
 #include "core/points/neighbour_search.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
