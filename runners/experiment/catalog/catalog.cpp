@@ -1,6 +1,6 @@
 #include "runners/experiment/catalog/catalog.h"
 
-#include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
+#include "core/beyond/tracked_surface/tracked_renderers.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/rivals/god_object_renderer.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/beyond/tracked_surface/tracked_tool_renderer.h"
+#include "core/beyond/tracked_surface/tracked_renderers.h"
 #include "core/dissertation/tool/motion/god_object_motion.h"
 #include "core/dissertation/tool/motion/penalty_motion.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"

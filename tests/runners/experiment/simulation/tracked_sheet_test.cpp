@@ -13,7 +13,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
-#include "core/beyond/tracked_surface/tracked_sheet_renderer.h"
+#include "core/beyond/tracked_surface/tracked_renderers.h"
 #include "core/kernels/isa.h"
 #include "runners/experiment/simulation/simulation.h"
 
