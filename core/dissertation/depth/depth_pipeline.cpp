@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 namespace remote_touch {
+
 namespace {
 
 std::string wrong_window(const char* name, int window) {

@@ -1,3 +1,39 @@
+// The bilateral filter of a depth image, (7.1) and (7.2), one statement each. The kernel of
+// core/kernels/depth_kernels.h filters many pixels at a time and is tested against this form.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
+#include "core/kernels/depth_kernels.h"
+#include "core/kernels/kernels.h"
+#include "core/parameters/parameter.h"
+#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
+
+namespace remote_touch::equations {
+
+// The weight phi of a point in the filter of the point p0, (7.2). Lengths are in m.
+inline double filter_weight(const Vec3& p, const Vec3& p0, double sigma_f_m) {
+  return std::exp(-(p - p0).squaredNorm() / (2 * sigma_f_m * sigma_f_m));  // (7.2)
+}
+
+// The filtered depth of the point p0, (7.1). window: the points of the pixels around it and its own, camera
+// frame.
+inline double filtered_depth(std::span<const Vec3> window, const Vec3& p0, double sigma_f_m) {
+  double sum = 0, total = 0;
+  for (const Vec3& p : window)
+    sum += filter_weight(p, p0, sigma_f_m) * p.z(), total += filter_weight(p, p0, sigma_f_m);
+  return sum / total;  // (7.1)
+}
+
+}  // namespace remote_touch::equations
+
 // Makes a cloud with normals from a depth frame: filter (7.1), (7.2) and the normals of 6.2.1.
 //
 // The filter smooths depths spatially: v0' = sum v_k phi(k) / sum phi(k) over a window of pixels, where
@@ -18,20 +54,6 @@
 // influence. The pipeline computes in single precision in the camera frame: normals are within 0.05 degrees
 // of those in double. The result has the same bits on every machine and for any number of threads. A
 // rectangle has the same bits as these pixels have in the whole frame.
-#pragma once
-
-#include <cstdint>
-#include <span>
-#include <string>
-#include <vector>
-
-#include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/kernels/depth_kernels.h"
-#include "core/kernels/kernels.h"
-#include "core/parameters/parameter.h"
-#include "core/points/camera.h"
-#include "core/points/point_cloud.h"
-
 namespace remote_touch {
 
 // Interface for computing a cloud with normals from a depth frame. DepthPipeline does it on the CPU; another

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/dissertation/depth/filter_equations.h"
+#include "core/dissertation/depth/depth_pipeline.h"
 #include "core/dissertation/proxy/proxy_equations.h"
 
 namespace remote_touch {
