@@ -13,7 +13,6 @@
 #include "core/dissertation/tool/contact/contact_thinning.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
 #include "core/dissertation/tool/motion/look_ahead_motion.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/kernels/kernels.h"

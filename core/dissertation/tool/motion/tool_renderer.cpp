@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
 
 namespace remote_touch {
 

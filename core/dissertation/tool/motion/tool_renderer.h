@@ -6,7 +6,7 @@
 
 #include "core/dissertation/tool/contact/contact_list.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
-#include "core/dissertation/tool/dynamics/wrench_coupling.h"
+#include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/motion/tool_motion.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
