@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame_order.h"

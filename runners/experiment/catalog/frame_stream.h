@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/dissertation/virtual_fixtures/fixture_assignment.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/points/noise.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"

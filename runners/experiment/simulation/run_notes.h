@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/fixture_assignment.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/trajectory.h"

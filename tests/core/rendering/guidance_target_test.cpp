@@ -11,7 +11,6 @@
 #include <random>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/fixture_assignment.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/points/rotation.h"
 #include "tests/support/scenes.h"

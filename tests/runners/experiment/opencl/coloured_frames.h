@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/virtual_fixtures/fixture_assignment.h"
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/points/camera.h"
 #include "core/points/colour.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
