@@ -15,7 +15,7 @@
 #include <stdexcept>
 
 #include "analysis/storage/atomic_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {

@@ -8,7 +8,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_handle.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_handle.h"
 #include "analysis/storage/hdf5_values.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {

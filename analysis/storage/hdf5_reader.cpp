@@ -15,7 +15,7 @@
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

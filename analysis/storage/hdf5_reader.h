@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_source.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

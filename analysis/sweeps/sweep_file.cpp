@@ -13,7 +13,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include "analysis/measures/limit.h"
 #include "analysis/storage/digest.h"
 #include "analysis/sweeps/sweep_means.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {

@@ -8,7 +8,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/tally_arrays.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/mesh/triangle_tree.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

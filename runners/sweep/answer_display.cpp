@@ -9,7 +9,6 @@
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {

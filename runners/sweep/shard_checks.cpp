@@ -14,7 +14,7 @@
 
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/other_processes.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
 #include "runners/sweep/sweep_session.h"

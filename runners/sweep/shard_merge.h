@@ -9,7 +9,7 @@
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/sweeps/sweep_tally.h"
 #include "analysis/trace/column.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/simulation/run_notes.h"
 
 namespace remote_touch {

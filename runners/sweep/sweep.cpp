@@ -11,7 +11,7 @@
 
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/run_notes.h"

@@ -9,7 +9,6 @@
 #include <optional>
 #include <set>
 
-#include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/sections.h"
 

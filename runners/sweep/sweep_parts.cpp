@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <new>
 
 #include "analysis/storage/atomic_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -17,7 +17,7 @@
 #include <string>
 #include <thread>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/recordings/bags/frames_from_messages.h"
 #include "scenarios/recordings/recording.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/bag_frames.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 
 namespace remote_touch {

@@ -1,7 +1,7 @@
 // The commands that tests compile with other compilers and options. They leave out figures and live runs.
 #include <CLI/CLI.hpp>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/subcommands.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
 #include "core/mesh/triangle_tree.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/counting_sort.h"
 #include "core/points/vector.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/colour.h"
 
 namespace remote_touch {

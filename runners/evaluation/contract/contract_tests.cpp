@@ -10,7 +10,7 @@
 #include <set>
 
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 #include "core/points/point_cloud.h"
 #include "runners/evaluation/contract/flat_scene.h"

@@ -18,7 +18,7 @@
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/spread.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"

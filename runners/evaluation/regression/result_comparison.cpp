@@ -11,7 +11,7 @@
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"

@@ -24,7 +24,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/column.h"
 #include "core/kernels/isa.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch {

@@ -12,7 +12,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/embedded_data.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"

@@ -11,7 +11,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"

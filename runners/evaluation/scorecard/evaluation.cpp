@@ -11,7 +11,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"

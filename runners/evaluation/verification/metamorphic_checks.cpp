@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/verification/metamorphic_relation.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analysis/measures/measures.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/factory.h"
 
 namespace remote_touch {

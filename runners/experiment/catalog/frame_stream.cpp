@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "analysis/trace/column.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/sessions/sensor_frame.h"
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "core/points/rotation.h"
 #include "scenarios/files/file_order.h"

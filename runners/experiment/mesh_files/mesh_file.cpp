@@ -18,7 +18,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/packed_values.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_text.h"
 #include "runners/experiment/mesh_files/ply_file.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/hdf5_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

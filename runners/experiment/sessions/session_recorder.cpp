@@ -11,7 +11,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/packed_values.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {

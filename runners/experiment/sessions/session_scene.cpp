@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/recordings/frame_statistics.h"
 

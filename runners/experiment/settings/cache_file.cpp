@@ -14,7 +14,7 @@
 #include <system_error>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 
 namespace remote_touch {

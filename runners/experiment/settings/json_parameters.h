@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 #include "scenarios/files/text_file.h"
 

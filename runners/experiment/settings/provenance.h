@@ -11,7 +11,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "core/kernels/kernels.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 
 #include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/simulation/contact_watch.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/atomic_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/experiment/settings/changed_settings.h"

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "analysis/storage/digest.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/embedded_data.h"

@@ -14,7 +14,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/junit_report.h"
 #include "runners/evaluation/regression/result_comparison.h"

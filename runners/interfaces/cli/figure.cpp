@@ -13,7 +13,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"

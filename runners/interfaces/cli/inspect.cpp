@@ -14,7 +14,7 @@
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/interfaces/cli/subcommands.h"

@@ -18,7 +18,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"

@@ -17,7 +17,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/progress.h"

@@ -13,7 +13,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/column.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/evaluation/scorecard/scorecard.h"

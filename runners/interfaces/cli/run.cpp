@@ -4,7 +4,7 @@
 
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/rotation.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/storage/atomic_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"

@@ -11,7 +11,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
 #include "core/kernels/isa.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/rotation.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/regression/stored_result.h"

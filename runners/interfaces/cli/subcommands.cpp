@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"
 

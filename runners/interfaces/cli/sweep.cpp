@@ -17,7 +17,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"

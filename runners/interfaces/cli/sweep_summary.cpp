@@ -7,7 +7,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"

@@ -8,7 +8,6 @@
 
 #include "analysis/trace/formatted.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/scorecard/benchmark.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/catalog.h"

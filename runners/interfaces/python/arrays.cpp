@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/colour.h"
 
 namespace remote_touch {

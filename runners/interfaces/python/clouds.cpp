@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/kernels/noise_kernels.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -11,7 +11,7 @@
 #include "analysis/storage/other_processes.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/tally_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/kernels/isa.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 
 namespace remote_touch {

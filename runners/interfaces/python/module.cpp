@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/verification/contact_model.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"

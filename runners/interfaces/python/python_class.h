@@ -10,7 +10,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
 

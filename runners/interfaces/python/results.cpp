@@ -13,7 +13,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"

@@ -9,7 +9,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"

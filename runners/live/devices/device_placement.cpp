@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/rotation.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 #include "runners/live/devices/clock.h"

@@ -3,7 +3,7 @@
 #include <array>
 #include <atomic>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {

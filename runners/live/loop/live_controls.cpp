@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

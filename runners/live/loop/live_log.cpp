@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/hand/device_model.h"
 
 namespace remote_touch {

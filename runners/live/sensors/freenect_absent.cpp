@@ -1,5 +1,5 @@
 // Stands in for freenect_camera.cpp where its library is not installed.
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/live/sensors/adapters.h"
 
 namespace remote_touch {

@@ -13,7 +13,7 @@
 #include <stop_token>
 #include <thread>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/live/sensors/driver_frames.h"
 
 namespace remote_touch {

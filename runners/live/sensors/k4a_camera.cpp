@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/live/sensors/adapters.h"
 #include "runners/live/sensors/driver_frames.h"
 #include "runners/live/sensors/undistortion.h"

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/libraries/lasting_thread.h"
 #include "runners/live/sensors/driver_frames.h"
 

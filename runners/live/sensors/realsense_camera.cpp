@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/sensors/adapters.h"
 #include "runners/live/sensors/driver_frames.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/trace/formatted.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 #include "core/points/colour.h"
 #include "core/points/rotation.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 

@@ -1,6 +1,6 @@
 #include "runners/live/view/view_server.h"
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 #ifdef REMOTE_TOUCH_VIEW_SERVER
 // The one file of this folder that includes Boost.Beast.

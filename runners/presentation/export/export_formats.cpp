@@ -1,7 +1,7 @@
 #include "runners/presentation/export/export_formats.h"
 
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/presentation/export/mcap_file.h"
 #include "runners/presentation/export/npz_file.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/presentation/pages/shown_frames.h"
 #include "runners/presentation/pages/shown_meshes.h"

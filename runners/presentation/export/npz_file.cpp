@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/presentation/export/exported_run.h"
 #include "runners/presentation/export/result_tables.h"
 #include "scenarios/files/text_file.h"

@@ -8,7 +8,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/colour.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/settings/provenance.h"

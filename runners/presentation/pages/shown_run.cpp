@@ -9,7 +9,7 @@
 #include "analysis/trace/column.h"
 #include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/presentation/pages/shown_frames.h"

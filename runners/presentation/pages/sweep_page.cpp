@@ -8,7 +8,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/stored_sweep.h"

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "scenarios/files/text_file.h"
 

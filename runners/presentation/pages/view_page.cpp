@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 #ifdef VIEWER_SCRIPT
 // The assembler reads the files; as texts in C++ they would take a minute to compile.

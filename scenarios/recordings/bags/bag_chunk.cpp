@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <new>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <set>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/recordings/bags/bag_chunk.h"
 #include "scenarios/recordings/bags/messages.h"

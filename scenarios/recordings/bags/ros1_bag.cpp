@@ -4,7 +4,7 @@
 #include <map>
 #include <mutex>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/recordings/bags/bag_chunk.h"
 

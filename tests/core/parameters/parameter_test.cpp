@@ -1,7 +1,6 @@
 #include "core/parameters/parameter.h"
 
 #include <gtest/gtest.h>
-
 #include <string>
 
 namespace remote_touch::parameter_test {
@@ -24,3 +23,80 @@ TEST(Unit, EveryUnitIsFoundByItsOwnEnding) {
 
 }  // namespace
 }  // namespace remote_touch::parameter_test
+
+namespace remote_touch::input_error_test {
+namespace {
+
+TEST(Printable, LeavesTextAsItIs) {
+  for (const char* text :
+       {"", "renderer.r1_m = 3: expected 0 to 1", "grün", "€", "\xF0\x9F\x98\x80", "\\x00"})
+    EXPECT_EQ(printable(text), text);
+}
+
+TEST(Printable, IsOneLine) {
+  EXPECT_EQ(printable("a\nb\tc\r\nd"), "a b c  d");
+}
+
+TEST(Printable, ShowsUnprintableBytesAsEscapes) {
+  EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(printable("\x1b[31m\x7f"), "\\x1b[31m\\x7f");
+}
+
+// A terminal obeys U+009B as it does ESC [, and some viewers begin a line at U+2028.
+TEST(Printable, ShowsControlCharactersAndLineEndsBeyondAscii) {
+  EXPECT_EQ(printable("z\xc2\x9b[z"), "z\\xc2\\x9b[z");
+  EXPECT_EQ(printable("\xc2\x80 \xc2\x9f"), "\\xc2\\x80 \\xc2\\x9f");
+  EXPECT_EQ(printable("z\xe2\x80\xa8z\xe2\x80\xa9"), "z\\xe2\\x80\\xa8z\\xe2\\x80\\xa9");
+  for (const char* text : {"\xc2\xa0", "\xe2\x80\xa7", "\xe2\x80\xaa", "\xc3\x9b"})
+    EXPECT_EQ(printable(text), text);
+}
+
+TEST(Printable, ShowsBytesThatAreNoUtf8) {
+  EXPECT_EQ(printable("\xff"), "\\xff");
+  EXPECT_EQ(printable("gr\xfcn"), "gr\\xfcn");
+  EXPECT_EQ(printable("\xc3"), "\\xc3");                             // cut
+  EXPECT_EQ(printable("\xc0\x80"), "\\xc0\\x80");                    // longer than it needs to be
+  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a pair of UTF-16
+  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond Unicode
+  EXPECT_EQ(printable("\xe2\x82x"), "\\xe2\\x82x");
+}
+
+TEST(Printable, ShortensWordsWithoutEnd) {
+  const std::string digits(100000, '7'), path(400, 'a');
+  EXPECT_EQ(printable("seed = " + digits + ": expected less"),
+            "seed = " + std::string(199, '7') + "..." + std::string(99, '7') + ": expected less");
+  EXPECT_EQ(printable("x " + path), "x " + path.substr(0, 199) + "..." + path.substr(0, 100));
+  EXPECT_EQ(printable(path + ": no file"), path.substr(0, 200) + "..." + path.substr(0, 99) + ": no file");
+  EXPECT_EQ(printable(path), path);
+  std::string euros;
+  for (int i = 0; i < 1000; ++i) euros += "€";
+  const std::string shorter = printable(euros);
+  EXPECT_LT(shorter.size(), 310u);
+  EXPECT_EQ(shorter.find("\\x"), std::string::npos);  // no character is cut
+  EXPECT_EQ(printable(shorter), shorter);
+}
+
+TEST(Printable, ShortensLinesOfManyWords) {
+  std::string words;
+  for (int i = 0; i < 1'000'000; ++i) words += "word ";
+  const std::string shorter = printable("scenario.topic = " + words + ": expected /points");
+  EXPECT_LE(shorter.size(), 1000u);
+  EXPECT_EQ(shorter.find("scenario.topic = word word"), 0u);
+  EXPECT_NE(shorter.find("wor...d word"), std::string::npos) << shorter;
+  EXPECT_TRUE(shorter.ends_with(": expected /points"));
+  EXPECT_EQ(printable(shorter), shorter);
+  std::string limit = words.substr(0, 1000);
+  EXPECT_EQ(printable(limit), limit);
+  std::string euros;
+  for (int i = 0; i < 1000; ++i) euros += "€ ";
+  EXPECT_EQ(printable(euros).find("\\x"), std::string::npos);  // no character is cut
+}
+
+// The message is a C string, so a zero byte would end it.
+TEST(InputErrorTest, KeepsItsWholeMessage) {
+  EXPECT_STREQ(InputError(std::string("a\0b", 3), "expected c").what(), "a\\x00b: expected c");
+  EXPECT_STREQ(InputError("a\xff: expected\nb").what(), "a\\xff: expected b");
+}
+
+}  // namespace
+}  // namespace remote_touch::input_error_test

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch::fuzz {
 

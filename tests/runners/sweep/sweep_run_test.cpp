@@ -12,7 +12,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"

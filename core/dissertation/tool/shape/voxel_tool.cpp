@@ -7,7 +7,7 @@
 
 #include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxelisation.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

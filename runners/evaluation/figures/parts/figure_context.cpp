@@ -1,6 +1,6 @@
 #include "runners/evaluation/figures/parts/figure_context.h"
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/settings/embedded_data.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/camera_errors.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 

@@ -11,7 +11,6 @@
 #include <set>
 #include <sstream>
 
-#include "core/parameters/input_error.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/hand/image_scan.h"
 #include "runners/experiment/hand/scripted_motions.h"
 #include "scenarios/camera/beating_heart.h"

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/opencl/device_pipeline.h"
 #include "runners/experiment/opencl/opencl_devices.h"

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/opencl/device_frames.h"
 #include "runners/experiment/opencl/device_pipeline.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {

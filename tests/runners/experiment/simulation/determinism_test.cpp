@@ -11,7 +11,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/recordings/recording.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "tests/doubles/vendor_devices.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

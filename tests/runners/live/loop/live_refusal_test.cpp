@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/test_files.h"

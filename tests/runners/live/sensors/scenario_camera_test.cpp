@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 #include "core/points/colour.h"
 #include "core/points/rotation.h"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/mesh/mesh_check.h"
-#include "core/parameters/input_error.h"
+#include "core/parameters/parameter.h"
 #include "tests/support/meshes.h"
 
 namespace remote_touch::generated_tools_test {
