@@ -7,7 +7,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/trace/trace.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/interval_estimates.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

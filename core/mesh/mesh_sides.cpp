@@ -10,7 +10,6 @@
 
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/triangle_tree.h"
-#include "core/points/rotation.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

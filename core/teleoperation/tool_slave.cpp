@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "core/teleoperation/slave.h"
 
 namespace remote_touch {

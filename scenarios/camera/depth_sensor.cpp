@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

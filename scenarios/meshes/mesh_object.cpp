@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/mesh/mesh_check.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/recordings/bag_frames.h"

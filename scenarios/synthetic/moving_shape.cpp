@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

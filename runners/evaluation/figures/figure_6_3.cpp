@@ -5,7 +5,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/box_contacts.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"

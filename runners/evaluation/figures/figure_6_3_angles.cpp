@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 

@@ -5,7 +5,7 @@
 #include "analysis/measures/force_measures.h"
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"

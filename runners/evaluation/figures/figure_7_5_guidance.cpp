@@ -1,7 +1,7 @@
 // Fig 7.5 for other stiffnesses of guidance, with six motors and with five: where the hand is led.
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 

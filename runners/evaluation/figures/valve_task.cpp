@@ -10,7 +10,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/trace/column.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 
 #include "core/points/camera.h"
 #include "core/points/neighbour_search.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "scenarios/synthetic/grid_scene.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "scenarios/files/file_order.h"
 #include "scenarios/files/text_file.h"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/points/rotation.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/points/noise.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -12,7 +12,6 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_distance.h"
 #include "core/mesh/mesh_sides.h"
-#include "core/points/rotation.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/files/text_file.h"

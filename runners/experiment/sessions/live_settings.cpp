@@ -1,6 +1,6 @@
 #include "runners/experiment/sessions/live_settings.h"
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
 #include "core/parameters/parameter.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"

@@ -12,7 +12,7 @@
 #include "analysis/trace/column.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/parameter.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/evaluation/scorecard/scorecard.h"

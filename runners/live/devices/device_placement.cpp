@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/parameters/parameter.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 #include "core/points/colour.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

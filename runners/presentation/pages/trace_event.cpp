@@ -5,7 +5,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/trace/formatted.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

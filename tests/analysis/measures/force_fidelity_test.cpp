@@ -11,7 +11,7 @@
 
 #include "analysis/measures/measures.h"
 #include "analysis/trace/trace.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/analysis/measures/measure_named.h"
 
 namespace remote_touch::force_fidelity_test {

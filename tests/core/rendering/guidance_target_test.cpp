@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::guidance_target_test {

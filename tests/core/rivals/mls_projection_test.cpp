@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/core/rivals/mls_clouds.h"
 #include "tests/support/scenes.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "core/teleoperation/channel.h"
 #include "core/teleoperation/dead_band.h"
 

@@ -14,7 +14,7 @@
 
 #include "core/kernels/isa.h"
 #include "core/points/noise.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::dead_band_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::slave_test {
 namespace {

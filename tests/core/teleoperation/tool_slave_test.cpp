@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::tool_slave_test {
 namespace {

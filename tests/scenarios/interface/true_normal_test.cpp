@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "scenarios/camera/sensor_faults.h"
 #include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/moving_shape.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::mesh_object_test {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/points/colour.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/support/depth_scenes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scenes.h"

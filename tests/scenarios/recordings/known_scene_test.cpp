@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "scenarios/meshes/mesh_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "tests/support/meshes.h"

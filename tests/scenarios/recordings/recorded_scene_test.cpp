@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/support/note_kinds.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

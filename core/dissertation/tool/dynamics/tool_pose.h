@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
-#include "core/points/rotation.h"
 #include "core/points/vector.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "analysis/trace/trace.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/mesh_files/tool_loading.h"

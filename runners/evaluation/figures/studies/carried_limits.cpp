@@ -5,7 +5,7 @@
 
 #include "analysis/theory/exact_contacts.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/experiment/mesh_files/tool_loading.h"
 
 namespace remote_touch {

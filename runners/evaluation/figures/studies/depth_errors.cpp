@@ -5,7 +5,7 @@
 
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/points/order_statistic.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/studies/true_contacts.h"
 #include "runners/experiment/hand/image_surface.h"
 

@@ -4,7 +4,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/carried_limits.h"

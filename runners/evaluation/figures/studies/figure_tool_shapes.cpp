@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/carried_limits.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {

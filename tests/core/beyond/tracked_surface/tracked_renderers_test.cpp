@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"

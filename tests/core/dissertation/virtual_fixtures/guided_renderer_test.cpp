@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/core/dissertation/virtual_fixtures/guided_scene.h"
 

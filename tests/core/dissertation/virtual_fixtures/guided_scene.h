@@ -11,7 +11,7 @@
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/dissertation/virtual_fixtures/guided_renderer.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 

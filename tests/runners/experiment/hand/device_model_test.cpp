@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::device_model_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch::simulated_hand_test {

@@ -7,7 +7,7 @@
 
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/trace/trace.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/teleoperation.h"

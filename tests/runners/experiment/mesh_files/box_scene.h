@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch::sensor_frame_test {
 namespace {

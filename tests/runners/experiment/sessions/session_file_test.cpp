@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "analysis/storage/hdf5_file.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/runners/experiment/sessions/small_session.h"
 #include "tests/support/test_files.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/analysis/measures/measure_named.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "analysis/trace/trace.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch::tool_contact_test {

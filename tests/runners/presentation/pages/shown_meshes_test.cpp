@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "scenarios/meshes/mesh_scene.h"
 #include "tests/core/mesh/mesh_shapes.h"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <numbers>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::contact_thinning_test {

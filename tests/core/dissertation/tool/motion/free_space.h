@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 

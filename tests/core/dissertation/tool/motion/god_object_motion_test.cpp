@@ -9,7 +9,7 @@
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/core/dissertation/tool/motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"

@@ -12,7 +12,7 @@
 #include "core/dissertation/tool/contact/contact_list.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/formatted.h"
 #include "tests/support/scenes.h"

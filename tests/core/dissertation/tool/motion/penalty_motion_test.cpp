@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/dissertation/tool/motion/tool_renderer.h"
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/core/dissertation/tool/motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"

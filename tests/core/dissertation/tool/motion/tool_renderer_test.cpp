@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 #include "tests/core/dissertation/tool/motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"

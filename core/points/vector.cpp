@@ -1,4 +1,4 @@
-#include "core/points/rotation.h"
+#include "core/points/vector.h"
 
 #include <cmath>
 
