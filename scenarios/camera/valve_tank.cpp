@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"

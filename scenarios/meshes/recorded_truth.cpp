@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/points/camera.h"
-#include "core/points/colour.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/file_order.h"
 #include "scenarios/files/text_file.h"

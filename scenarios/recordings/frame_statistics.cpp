@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 #include "core/points/order_statistic.h"
 #include "scenarios/files/text_file.h"
 

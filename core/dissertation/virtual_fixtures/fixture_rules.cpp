@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 
 namespace remote_touch {
 

@@ -2,7 +2,7 @@
 // with the proxy's path over the true profile. The photo of 4.15 a has no counterpart.
 #include <cmath>
 
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 #include "runners/evaluation/figures/parts/ball_gaps.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/parameters/parameter.h"
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,6 @@
 #include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
-#include "core/points/colour.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 #include "core/points/vector.h"
 #include "runners/live/view/page_requests.h"
 

@@ -1,11 +1,109 @@
+// Hue, saturation and lightness: known colours, and back to red, green and blue.
+
 #include "core/points/camera.h"
 
 #include <gtest/gtest.h>
-
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+namespace remote_touch::colour_test {
+namespace {
+
+// Checks hue, saturation and lightness, the last two in [0, 1]. An undefined hue is expected as 0.
+void expect_colour(std::uint32_t rgb, double hue_deg, double saturation, double lightness) {
+  const HueSaturationLightness colour = hue_saturation_lightness(rgb);
+  EXPECT_NEAR(colour.hue_deg, hue_deg, 1e-12) << std::hex << rgb;
+  EXPECT_NEAR(colour.saturation, saturation, 1e-15) << std::hex << rgb;
+  EXPECT_NEAR(colour.lightness, lightness, 1e-15) << std::hex << rgb;
+}
+
+TEST(Colour, TheCornersOfTheCubeAreKnown) {
+  expect_colour(0xFF0000, 0, 1, 0.5);
+  expect_colour(0xFFFF00, 60, 1, 0.5);
+  expect_colour(0x00FF00, 120, 1, 0.5);
+  expect_colour(0x00FFFF, 180, 1, 0.5);
+  expect_colour(0x0000FF, 240, 1, 0.5);
+  expect_colour(0xFF00FF, 300, 1, 0.5);
+  expect_colour(0x000000, 0, 0, 0);
+  expect_colour(0xFFFFFF, 0, 0, 1);
+  expect_colour(0xAB00FF00, 120, 1, 0.5);  // bits above the three bytes are not part of the colour
+}
+
+// PCL writes 0x00RRGGBB, or opaque colours as 0xFFRRGGBB. The values from 0xFF800001 on are NaN as floats.
+TEST(Colour, AFloatHoldsAColourOrNone) {
+  for (const std::uint32_t rgb : {0x000000u, 0x0000FFu, 0x7F8000u, 0xC00001u, 0xFFFFFFu})
+    for (const std::uint32_t alpha : {0x00u, 0xFFu}) EXPECT_EQ(colour_of_float(alpha << 24 | rgb), rgb);
+  EXPECT_EQ(colour_of_float(0x00C00000), 0xC00000u);
+  for (const std::uint32_t none :
+       {0x7FC00000u, 0xFFC00000u, 0x7F800000u, 0x437F0000u, 0x4A808060u})  // nan -nan inf 255 4210736
+    EXPECT_EQ(colour_of_float(none), kNoColour) << std::hex << none;
+}
+
+TEST(Colour, UnknownIsShownAsGreyAndNotAsBlack) {
+  EXPECT_EQ(shown_colour(kNoColour), 0x808080u);
+  for (const std::uint32_t rgb : {0x000000u, 0xC00000u, 0xFFFFFFu}) EXPECT_EQ(shown_colour(rgb), rgb);
+}
+
+// Worked out by hand.
+TEST(Colour, MixedColoursAreKnown) {
+  expect_colour(0x7F7F7F, 0, 0, 127 / 255.0);
+  expect_colour(0xFF8000, 60 * 128 / 255.0, 1, 0.5);
+  expect_colour(0xFF0080, 360 - 60 * 128 / 255.0, 1, 0.5);
+  expect_colour(0xFFCCCC, 0, 1, 459 / 510.0);      // pale, but as pure as that lightness allows
+  expect_colour(0x330000, 0, 1, 51 / 510.0);       // dark, the same
+  expect_colour(0x996666, 0, 51 / 255.0, 0.5);     // a mix of red and grey
+  expect_colour(0x663399, 270, 0.5, 204 / 510.0);  // rebeccapurple of CSS: hsl(270, 50 %, 40 %)
+}
+
+// The inverse conversion of CSS Color 4, which has no cases by the largest channel.
+double channel(const HueSaturationLightness& colour, double n) {
+  const double k = std::fmod(n + colour.hue_deg / 30, 12);
+  const double a = colour.saturation * std::min(colour.lightness, 1 - colour.lightness);
+  return 255 * (colour.lightness - a * std::max(-1.0, std::min({k - 3, 9 - k, 1.0})));
+}
+
+TEST(Colour, TheInverseGivesTheSameColourBack) {
+  for (std::uint32_t colour = 0; colour <= 0xFFFFFF; colour += 997)
+    ASSERT_EQ(rgb(hue_saturation_lightness(colour)), colour) << std::hex << colour;
+  EXPECT_EQ(rgb({360, 1, 0.5}), 0xFF0000u);
+}
+
+TEST(Colour, ComesBackFromHueSaturationAndLightness) {
+  for (int red = 0; red < 256; red += 5)
+    for (int green = 0; green < 256; green += 3)
+      for (int blue = 0; blue < 256; blue += 5) {
+        const auto rgb = static_cast<std::uint32_t>(red << 16 | green << 8 | blue);
+        const HueSaturationLightness colour = hue_saturation_lightness(rgb);
+        ASSERT_NEAR(channel(colour, 0), red, 1e-9) << std::hex << rgb;
+        ASSERT_NEAR(channel(colour, 8), green, 1e-9) << std::hex << rgb;
+        ASSERT_NEAR(channel(colour, 4), blue, 1e-9) << std::hex << rgb;
+        ASSERT_TRUE(colour.hue_deg >= 0 && colour.hue_deg < 360) << std::hex << rgb;
+        ASSERT_TRUE(colour.saturation >= 0 && colour.saturation <= 1) << std::hex << rgb;
+        ASSERT_TRUE(colour.lightness >= 0 && colour.lightness <= 1) << std::hex << rgb;
+      }
+}
+
+// A colour's angle around the grey axis is another measure of hue. Both are equal at every sixth of the
+// circle and differ by at most 1.2 degrees in between.
+TEST(Colour, HueIsNearlyTheAngleAroundTheGreyAxis) {
+  for (int red = 0; red < 256; red += 15)
+    for (int green = 0; green < 256; green += 15)
+      for (int blue = 0; blue < 256; blue += 15) {
+        if (red == green && green == blue) continue;
+        const double angle =
+            std::atan2(std::sqrt(3.0) * (green - blue), 2.0 * red - green - blue) * 180 / std::numbers::pi;
+        const auto rgb = static_cast<std::uint32_t>(red << 16 | green << 8 | blue);
+        EXPECT_LT(std::abs(std::remainder(hue_saturation_lightness(rgb).hue_deg - angle, 360)), 1.2)
+            << std::hex << rgb;
+      }
+}
+
+}  // namespace
+}  // namespace remote_touch::colour_test
 
 namespace remote_touch::camera_test {
 namespace {

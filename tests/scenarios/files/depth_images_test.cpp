@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::depth_images_test {

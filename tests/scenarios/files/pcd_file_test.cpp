@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/points/colour.h"
+#include "core/points/camera.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::pcd_file_test {

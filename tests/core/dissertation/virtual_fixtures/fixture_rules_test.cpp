@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/points/camera.h"
-#include "core/points/colour.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

@@ -11,7 +11,6 @@
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/points/camera.h"
-#include "core/points/colour.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
 
 namespace remote_touch::coloured_frames {

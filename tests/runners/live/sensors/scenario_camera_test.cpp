@@ -8,7 +8,6 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
-#include "core/points/colour.h"
 #include "core/points/vector.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
