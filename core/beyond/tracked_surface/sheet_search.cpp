@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/points/counting_sort.h"
+#include "core/points/order_statistic.h"
 
 namespace remote_touch {
 namespace {

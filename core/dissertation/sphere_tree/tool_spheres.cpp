@@ -11,7 +11,7 @@
 #include "core/dissertation/tool/contact/contact_thinning.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/parameters/parameter.h"
-#include "core/points/counting_sort.h"
+#include "core/points/order_statistic.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -11,9 +11,9 @@
 
 #include "core/dissertation/tool/contact/contact_thinning.h"
 #include "core/kernels/tool_kernels.h"
+#include "core/points/order_statistic.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "core/points/whole_lines.h"
 
 namespace remote_touch {
 
