@@ -23,7 +23,7 @@
 // in core/kernels/kernels.h, and all other operations are + - * / and square roots. r_f of points is ignored.
 #pragma once
 
-#include "core/points/neighbourhood.h"
+#include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

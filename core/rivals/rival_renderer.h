@@ -8,7 +8,7 @@
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "core/parameters/parameter.h"
-#include "core/points/neighbourhood.h"
+#include "core/points/neighbour_search.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 

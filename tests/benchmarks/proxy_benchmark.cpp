@@ -14,7 +14,7 @@
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/dissertation/proxy/proxy_step.h"
 #include "core/kernels/isa.h"
-#include "core/points/neighbourhood.h"
+#include "core/points/neighbour_search.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/naive_proxy.h"
 #include "tests/benchmarks/program_benchmark.h"

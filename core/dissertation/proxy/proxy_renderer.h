@@ -7,7 +7,7 @@
 #include "core/dissertation/proxy/proxy_step.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
-#include "core/points/neighbourhood.h"
+#include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"

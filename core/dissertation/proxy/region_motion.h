@@ -6,7 +6,7 @@
 #include "core/dissertation/proxy/proxy_step.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/points_view.h"
-#include "core/points/neighbourhood.h"
+#include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/points/neighbourhood.h"
+#include "core/points/neighbour_search.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::point_normals_test {
