@@ -1,6 +1,12 @@
 #include "core/rivals/rival_renderer.h"
 
+#include <algorithm>
 #include <limits>
+#include <sstream>
+#include <utility>
+
+#include "core/dissertation/proxy/proxy_step.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 
@@ -51,6 +57,52 @@ RenderOutput RivalRenderer::step(const DeviceState& device, double time_s) {
   out.normal_W = normal_W_;
   out.status = order_.status(out.status);
   return out;
+}
+
+Parameters parameters(PenaltyParameters& p) {
+  return {
+      {"contact_radius_m", &p.contact_radius_m, 1e-6, 1,
+       "radius r_c of the ball around the HIP; the force is at most k_s r_c"},
+      {"r3_m", &p.r3_m, 1e-6, 1, "radius around the HIP in which points contribute to the normal (4.1)"},
+      {"stiffness_N_per_m", &p.stiffness_N_per_m, 0, 10000,
+       "stiffness k_s, multiplied by the depth of the nearest point in the ball", kLive},
+      {"damping_Ns_per_m", &p.damping_Ns_per_m, 0, 1000, "damping of the motion along the normal in contact"},
+  };
+}
+
+std::string validate(const PenaltyParameters& p) {
+  if (p.contact_radius_m < p.r3_m) return {};
+  std::ostringstream text;
+  text << "contact_radius_m = " << p.contact_radius_m << ": expected below r3_m = " << p.r3_m;
+  return text.str();
+}
+
+PenaltyRenderer::PenaltyRenderer(const PenaltyParameters& parameters, double haptic_rate_hz,
+                                 const Kernels& kernels)
+    : RivalOf(parameters, parameters.r3_m, kernels), haptic_rate_hz_(haptic_rate_hz) {}
+
+void PenaltyRenderer::touch(const Vec3& hip_W, RenderOutput& out) {
+  const double ticks = elapsed_ticks(std::exchange(previous_time_s_, time_s_), time_s_, haptic_rate_hz_);
+  const Vec3 velocity =
+      has_previous_ ? Vec3(haptic_rate_hz_ * (hip_W - previous_hip_W_) / ticks) : Vec3(Vec3::Zero());
+  previous_hip_W_ = proxy_W_ = hip_W;
+  has_previous_ = true;
+
+  const PointsView points = near_.around(hip_W).view();
+  const ProxyRegions regions{p_.contact_radius_m, p_.contact_radius_m, p_.r3_m, near_.sum_grid(),
+                             p_.stiffness_N_per_m};
+  const ContactQuery query = kernels_.proxy.contact_query(points, hip_W.data(), regions);
+  normal_W_ = unit_normal(query, normal_W_);
+  out.nearest_distance_m = query.nearest <= p_.r3_m ? query.nearest : std::numeric_limits<double>::infinity();
+  out.contact_count = static_cast<int>(query.touching_count);
+  out.steps = 1;
+  out.converged = true;
+  const double depth = p_.contact_radius_m - query.nearest;
+  if (!(depth > 0)) return;
+  out.state = ContactState::contact;
+  if (normal_W_.isZero(0)) out.status = RenderStatus::degenerate_normal;
+  const double push = stiffness_of(query) * depth - p_.damping_Ns_per_m * velocity.dot(normal_W_);
+  out.force_N = std::max(push, 0.0) * normal_W_;
 }
 
 }  // namespace remote_touch

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/rivals/penalty_renderer.h"
+#include "core/rivals/rival_renderer.h"
 #include "scenarios/synthetic/resting_clouds.h"
 #include "tests/support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "core/rivals/penalty_renderer.h"
+#include "core/rivals/rival_renderer.h"
 
 #include <gtest/gtest.h>
 
