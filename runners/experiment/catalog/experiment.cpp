@@ -8,7 +8,7 @@
 
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
-#include "runners/experiment/catalog/section_rules.h"
+#include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/mesh_files/tool_loading.h"
 #include "runners/experiment/sessions/session_scene.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "runners/experiment/catalog/section_rules.h"
+#include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {
