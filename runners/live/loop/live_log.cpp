@@ -6,7 +6,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "core/parameters/parameter.h"
-#include "runners/experiment/hand/device_model.h"
+#include "runners/experiment/hand/simulated_hand.h"
 
 namespace remote_touch {
 
