@@ -1,5 +1,5 @@
 // Sphere trees of tools in the cache. A file that is read is written as it was.
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 
 #include "tests/fuzz/shared/cache_target.h"
 

@@ -1,5 +1,5 @@
 // Tools in the cache. A file that is read is sound, and is written as it was.
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 
 #include "core/mesh/triangle_mesh.h"
 #include "tests/fuzz/shared/cache_target.h"

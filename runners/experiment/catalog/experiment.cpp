@@ -10,7 +10,7 @@
 #include "analysis/storage/digest.h"
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/catalog/sections.h"
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -1,21 +1,93 @@
-// 6-DOF renderers for experiments: a tool made from a mesh, and one of five motions. These are the motion of
-// chapter 6, the same on tracked sheets, and three motions for comparison: penalty, god-object and inner
-// spheres.
+// The tool that an experiment names: a built-in one or a mesh file, made once and then read from the cache.
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/beyond/tracked_surface/tracked_renderers.h"
+#include "core/dissertation/sphere_tree/tool_spheres.h"
 #include "core/dissertation/tool/motion/god_object_motion.h"
 #include "core/dissertation/tool/motion/penalty_motion.h"
 #include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/parameters/parameter.h"
 #include "core/rivals/inner_sphere_motion.h"
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
+
+// The cache of tools on disk, so that the runs of a sweep do not make their tool again.
+
+// Version of the layout of the file, in its first line.
+inline constexpr int kToolFormat = 2;
+
+// Returns the key of the tool in the cache: a hash of all that the tool depends on. This is the build of the
+// program, a SHA-256 of the mesh (or of the file from which it is read), and the settings, to the last bit.
+std::string tool_key(const std::string& mesh_sha256, const VoxelToolSettings& settings);
+std::string sha256_of_mesh(const TriangleMesh& mesh);
+
+// The content that is stored under a key: the tool, bit for bit, and the report from when it was made.
+struct StoredTool {
+  VoxelTool tool;
+  std::string report;
+};
+
+// Returns nothing if there is no such file, or if it is damaged, cut off, or of another key. The SHA-256 of
+// the file is verified.
+std::optional<StoredTool> read_tool(const std::filesystem::path& folder, const std::string& key);
+
+// Writes the file under a temporary name and renames it, so that other processes see the whole file or none.
+// Creates the folder. Returns false if the file cannot be written, which is not an error.
+bool write_tool(const std::filesystem::path& folder, const std::string& key, const StoredTool& stored);
+
+// The cache of the tools' sphere trees on disk, in the folder of the tools' cache.
+
+// Version of the layout of the file, in its first line.
+inline constexpr int kSpheresFormat = 1;
+
+// Returns the key of the spheres, from the key of the tool in its cache, which has the build, and max_leaves.
+std::string spheres_key(const std::string& tool_key, int max_leaves);
+
+// These functions do for spheres what read_tool() and write_tool() do for tools.
+std::optional<ToolSpheres> read_spheres(const std::filesystem::path& folder, const std::string& key);
+bool write_spheres(const std::filesystem::path& folder, const std::string& key, const ToolSpheres& spheres);
+
+struct ToolSettings {
+  std::string mesh = "husky";
+  double size_m = 0;
+  double voxel_m = 5e-4;
+  bool repair = false;
+  bool outer_field = false;  // no parameter: a renderer that needs it sets it
+};
+
+Parameters parameters(ToolSettings& settings);  // tool_mesh, tool_size_m, tool_voxel_m, tool_repair
+std::string validate(const ToolSettings& settings);
+
+// Returns the mesh file on which the result depends; none for a built-in tool.
+std::vector<InputPart> input_files(const ToolSettings& settings);
+
+// Returns the tool. A mesh file is searched for by find_input(). A built-in tool takes
+// precedence over a file of its name. Throws MissingInput if there is neither, InputError as read_mesh()
+// and make_voxel_tool() do. report: receives text(ToolReport) of the time when the tool was made; may be
+// null.
+std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& settings, std::string* report = nullptr);
+
+// The same tool with its sphere tree. The tree is made once for each number of leaves, and stored in the
+// cache beside the tool.
+struct ToolOfSpheres {
+  std::shared_ptr<const VoxelTool> tool;
+  std::shared_ptr<const ToolSpheres> spheres;
+};
+ToolOfSpheres load_tool_of_spheres(const ToolSettings& settings, int max_leaves,
+                                   std::string* report = nullptr);
+
+// 6-DOF renderers for experiments: a tool made from a mesh, and one of five motions. These are the motion of
+// chapter 6, the same on tracked sheets, and three motions for comparison: penalty, god-object and inner
+// spheres.
 
 // MotionSettings: ToolParameters, TrackedToolParameters, ToolPenaltyParameters, ToolGodObjectParameters or
 // InnerSphereParameters.

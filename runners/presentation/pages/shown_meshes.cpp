@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "analysis/trace/formatted.h"
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {

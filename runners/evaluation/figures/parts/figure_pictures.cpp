@@ -8,7 +8,7 @@
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {

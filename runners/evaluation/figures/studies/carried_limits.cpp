@@ -6,7 +6,7 @@
 #include "analysis/theory/exact_contacts.h"
 #include "core/dissertation/tool/dynamics/tool_parameters.h"
 #include "core/points/vector.h"
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 
 namespace remote_touch {
 

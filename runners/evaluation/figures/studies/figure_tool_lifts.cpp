@@ -8,7 +8,7 @@
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/carried_limits.h"
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 
 namespace remote_touch {
 

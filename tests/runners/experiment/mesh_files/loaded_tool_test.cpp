@@ -1,4 +1,4 @@
-#include "runners/experiment/mesh_files/tool_loading.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 
 #include <gtest/gtest.h>
 
