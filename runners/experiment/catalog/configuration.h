@@ -15,7 +15,7 @@
 #include "runners/experiment/hand/simulated_hand.h"
 #include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/opencl/depth_device.h"
-#include "runners/experiment/sessions/live_settings.h"
+#include "runners/experiment/sessions/session_file.h"
 #include "scenarios/camera/sensor_faults.h"
 
 namespace remote_touch {

@@ -3,7 +3,7 @@
 
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
-#include "runners/experiment/sessions/live_settings.h"
+#include "runners/experiment/sessions/session_file.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

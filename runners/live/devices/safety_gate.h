@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-#include "runners/experiment/sessions/live_settings.h"
+#include "runners/experiment/sessions/session_file.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

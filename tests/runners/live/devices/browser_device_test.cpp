@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "runners/experiment/sessions/live_settings.h"
+#include "runners/experiment/sessions/session_file.h"
 #include "tests/doubles/simulated_clock.h"
 
 namespace remote_touch::browser_device_test {
