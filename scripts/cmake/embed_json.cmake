@@ -1,7 +1,7 @@
 # Writes JSON files of data/ into the program, so that one binary is all a user has to carry. FILES: a list, OUTPUT: the
-# C++ file, FUNCTION: of runners/experiment/settings/embedded_data.h, which returns them. Each is named as its file,
+# C++ file, FUNCTION: of runners/experiment/settings/changed_settings.h, which returns them. Each is named as its file,
 # without the ending.
-set(text "// Written by the build from data/; edit those files.\n#include \"runners/experiment/settings/embedded_data.h\"\n\n")
+set(text "// Written by the build from data/; edit those files.\n#include \"runners/experiment/settings/changed_settings.h\"\n\n")
 string(APPEND text "namespace remote_touch {\n\nstd::span<const EmbeddedText> ${FUNCTION}() {\n  static constexpr EmbeddedText texts[] = {\n")
 foreach(file ${FILES})
   get_filename_component(name ${file} NAME)

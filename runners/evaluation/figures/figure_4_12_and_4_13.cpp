@@ -6,7 +6,7 @@
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/limit.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 
 namespace remote_touch {
 

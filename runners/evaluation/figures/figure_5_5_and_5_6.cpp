@@ -7,7 +7,7 @@
 #include "analysis/measures/interval_estimates.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 
 namespace remote_touch {
 

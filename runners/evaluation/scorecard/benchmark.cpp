@@ -14,7 +14,7 @@
 #include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "scenarios/files/text_file.h"
 

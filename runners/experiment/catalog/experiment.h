@@ -11,7 +11,7 @@
 #include "analysis/sweeps/sweep_result.h"
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/hand/teleoperation.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

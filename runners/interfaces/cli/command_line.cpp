@@ -8,7 +8,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/progress.h"

@@ -16,7 +16,7 @@
 #include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/sweep/sweep.h"
 

@@ -8,7 +8,7 @@
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
 #include "core/parameters/parameter.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/stored_result.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"
 #include "tests/support/result_files.h"

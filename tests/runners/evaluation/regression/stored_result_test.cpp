@@ -7,7 +7,7 @@
 
 #include "analysis/storage/result_file.h"
 #include "runners/evaluation/regression/baselines.h"
-#include "runners/experiment/settings/embedded_data.h"
+#include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
