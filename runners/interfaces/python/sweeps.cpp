@@ -13,7 +13,6 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
-#include "runners/interfaces/python/results.h"
 #include "runners/sweep/answer_display.h"
 #include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/sweep.h"

@@ -1,7 +1,6 @@
-#include "runners/interfaces/python/results.h"
+#include "runners/interfaces/python/bindings.h"
 
 #include <pybind11/stl.h>
-
 #include <array>
 #include <filesystem>
 #include <limits>
@@ -22,7 +21,6 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/descriptions/descriptions.h"
-#include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
 
 namespace remote_touch {
