@@ -11,7 +11,7 @@
 #include <cerrno>
 
 #include "runners/live/devices/deadline_socket.h"
-#include "runners/live/devices/haply_place.h"
+#include "runners/live/devices/haply_messages.h"
 #endif
 
 namespace remote_touch {

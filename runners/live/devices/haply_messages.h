@@ -1,17 +1,31 @@
-// The messages between Haply's Inverse service and its client, as JSON text: on connecting the service sends
-// an inventory, and after that one state for each command. Both are read in the same way. All values are in
-// the service's frame and units: x to the right, y away from the user, z up; m, m/s, N. Nothing here
-// allocates.
+// The host, port and target at which Haply's service listens.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "core/points/vector.h"
+#include "runners/live/devices/device_address.h"
 
 namespace remote_touch {
+
+struct HaplyPlace {
+  std::string host = "127.0.0.1", port = "10001", target = "/";
+
+  // Returns HOST:PORT, with an IPv6 address in brackets, as in an address of the Web.
+  std::string authority() const;
+};
+
+// place of the address: ws://HOST[:PORT][/PATH], or nothing. Throws InputError.
+HaplyPlace haply_place(const DeviceAddress& address);
+
+// The messages between Haply's Inverse service and its client, as JSON text: on connecting the service sends
+// an inventory, and after that one state for each command. Both are read in the same way. All values are in
+// the service's frame and units: x to the right, y away from the user, z up; m, m/s, N. Nothing here
+// allocates.
 
 // State of an Inverse3 from one message. The texts are views into the message.
 struct HaplyDeviceState {
