@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <memory>
 
+#include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/live/devices/triple_buffer.h"
 
 namespace remote_touch {
 

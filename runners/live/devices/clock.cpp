@@ -4,10 +4,10 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
-
 #include <cstring>
 
 namespace remote_touch {
+
 namespace {
 
 constexpr int kPriority = 80, kWatchPriority = 85;

@@ -11,9 +11,9 @@
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/hand/teleoperation.h"
+#include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/safety_gate.h"
-#include "runners/live/devices/triple_buffer.h"
 #include "runners/live/loop/live_controls.h"
 
 namespace remote_touch {

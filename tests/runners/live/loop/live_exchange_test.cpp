@@ -4,7 +4,7 @@
 #include <array>
 #include <thread>
 
-#include "runners/live/devices/triple_buffer.h"
+#include "runners/live/devices/clock.h"
 #include "runners/live/loop/live_controls.h"
 
 namespace remote_touch::live_exchange_test {
