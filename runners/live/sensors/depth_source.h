@@ -1,9 +1,15 @@
 // The interface of every depth camera.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "core/points/point_cloud.h"
 #include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/live/devices/clock.h"
 
@@ -31,6 +37,97 @@ class DepthSource {
  protected:
   SensorView view_;  // fixed when the constructor of the sensor ends
   std::string failure_;
+};
+
+// Frames as drivers deliver them: their numbers, their times and their rows of pixels.
+
+// Numbers frames by the camera's own count, which may restart, or by its time stamps.
+class FrameNumbers {
+ public:
+  // Returns the number of a frame that is `steps` after the one before. Steps that are not between 1 and
+  // kMaxGap, for instance after a reset of the camera, count as one.
+  int next(double steps) {
+    number_ += steps >= 1 && steps <= kMaxGap ? static_cast<int>(std::lround(steps)) : 1;
+    return number_;
+  }
+
+ private:
+  static constexpr double kMaxGap = 10000;
+
+  int number_ = 0;
+};
+
+// Conversion of times from the clock of a sensor to that of the host. Arrivals jitter by milliseconds with
+// the bus and the scheduler; the sensor's stamps are regular, but have their own origin. The difference
+// arrival - stamp is the wanted offset plus a delay that is never negative, so the smallest difference is
+// nearest to the offset. It still contains the delay common to all frames: exposure and transfer cannot be
+// measured on the host.
+class SensorClock {
+ public:
+  // Returns the time at which the frame with this stamp was captured, on the clock of the arrival: later than
+  // the frame before, and not later than the arrival. pre: called in the order of arrival.
+  double captured_s(double stamp_s, double arrived_s);
+
+ private:
+  bool has_begun_ = false;
+  double offset_s_ = 0;
+  double stamp_s_ = 0;     // time stamp of the frame before
+  double captured_s_ = 0;  // time of capture of the frame before
+};
+
+// Images as drivers deliver them: rows of pixels with gaps between them, sometimes mirrored.
+struct PixelRows {
+  const void* first = nullptr;
+  std::size_t bytes = 0;  // number of bytes that may be read
+  int width = 0, height = 0;
+  std::size_t stride = 0;  // bytes from row to row
+  bool is_mirrored = false;
+};
+
+// copy_depth() and copy_rgb() undo the mirroring. They return false, and read nothing, if the image has
+// another size than the camera's, or fewer bytes than it needs.
+bool copy_depth(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint16_t>& depth);
+// Each pixel has three bytes: red, green, blue.
+bool copy_rgb(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint32_t>& colour);
+
+// Converts depth images of a lens that distorts to those of a pinhole camera at the same position.
+
+// A lens as the library of its camera describes it. A ray is (x / z, y / z) in the optical frame; integers
+// are the centres of pixels. A map returns none if the lens sees nothing there.
+struct Lens {
+  using Map = std::function<std::optional<Eigen::Vector2d>(const Eigen::Vector2d&)>;
+  Map pixel_of_ray, ray_of_pixel;
+};
+
+// The pinhole image has the size of the camera's, and both have the same rays at the ends of the middle row
+// and of the middle column. So a lens without distortion changes nothing. The corners of a wide lens may be
+// lost, and the middle of its image has fewer pixels than in the camera's image.
+class Undistortion {
+ public:
+  // Throws InputError with this name if the lens maps rays and pixels in ways that contradict each other.
+  Undistortion(const std::string& name, int width, int height, const Lens& lens);
+
+  const CameraIntrinsics& camera() const { return camera_; }
+  // Converts the camera's depth along its axis to that of the pinhole image, in the same unit; 0: nothing
+  // measured. On a surface the depth is interpolated between the four nearest pixels. If one of them is
+  // missing or on another surface, the nearest is used, so that no point lies between two surfaces. seen: one
+  // number for each pixel of the camera.
+  void apply(const std::vector<std::uint16_t>& seen, std::vector<std::uint16_t>& depth) const;
+
+ private:
+  // The upper left one of four pixels, and the distance from it to the position, right and down, in pixels.
+  struct Place {
+    std::int32_t pixel;  // below 0: the lens sees nothing there
+    float right, down;
+  };
+
+  void choose_camera(const std::string& name, const Lens& lens);
+  std::optional<Eigen::Vector2d> seen_at(int u, int v, const Lens& lens) const;
+  Place place_of(const std::optional<Eigen::Vector2d>& seen) const;
+  std::uint16_t depth_at(const std::vector<std::uint16_t>& seen, const Place& place) const;
+
+  CameraIntrinsics camera_;
+  std::vector<Place> places_;  // one for every pixel; empty: the two images are the same
 };
 
 }  // namespace remote_touch

@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/sensors/driver_frames.h"
+#include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {
 

@@ -10,8 +10,7 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/live/sensors/adapters.h"
-#include "runners/live/sensors/driver_frames.h"
-#include "runners/live/sensors/undistortion.h"
+#include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch::k4a {
 namespace {

@@ -17,7 +17,7 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/libraries/lasting_thread.h"
-#include "runners/live/sensors/driver_frames.h"
+#include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {
 
