@@ -8,7 +8,7 @@
 
 #include "core/points/camera.h"
 #include "core/points/vector.h"
-#include "runners/live/view/page_requests.h"
+#include "runners/live/view/live_pages.h"
 
 namespace remote_touch {
 

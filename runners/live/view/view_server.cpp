@@ -30,7 +30,7 @@
 #include <random>
 #include <thread>
 
-#include "runners/live/view/page_requests.h"
+#include "runners/live/view/live_pages.h"
 #endif
 
 namespace remote_touch {

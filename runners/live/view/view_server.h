@@ -3,7 +3,7 @@
 //
 // The server is bound to 127.0.0.1. Its address contains a secret of 128 bits. It refuses a request without
 // the secret, a request that names another host (DNS rebinding), and a request from a page of another origin,
-// see page_requests.h. The refusal says what to do.
+// see live_pages.h. The refusal says what to do.
 // `channel?NAME` below the address is the WebSocket of the page that calls itself NAME: lower-case
 // hexadecimal digits, at most LivePages::kMaxName. `state` below the address reports why there is no channel,
 // see state_message().

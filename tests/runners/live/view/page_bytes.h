@@ -1,4 +1,4 @@
-// The bytes of a page's messages, see page_requests.h.
+// The bytes of a page's messages, see live_pages.h.
 #pragma once
 
 #include <cstdint>
