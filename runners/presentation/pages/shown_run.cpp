@@ -14,7 +14,7 @@
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/presentation/pages/shown_frames.h"
 #include "runners/presentation/pages/shown_meshes.h"
-#include "runners/presentation/pages/trace_event.h"
+#include "runners/presentation/pages/trace_page.h"
 #include "runners/presentation/pages/true_heights.h"
 
 namespace remote_touch {
