@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/camera/camera_scene.h"
+#include "scenarios/camera/depth_camera.h"
 #include "scenarios/camera/sensor_faults.h"
 #include "scenarios/synthetic/moving_shape.h"
 #include "tests/support/scenes.h"

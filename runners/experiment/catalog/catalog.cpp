@@ -17,7 +17,7 @@
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "scenarios/camera/beating_heart.h"
-#include "scenarios/camera/camera_scene.h"
+#include "scenarios/camera/depth_camera.h"
 #include "scenarios/camera/valve_tank.h"
 #include "scenarios/recordings/image_mask.h"
 #include "scenarios/synthetic/lifts.h"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "scenarios/camera/beating_heart.h"
-#include "scenarios/camera/camera_scene.h"
+#include "scenarios/camera/depth_camera.h"
 #include "scenarios/camera/valve_tank.h"
 #include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/moving_shape.h"
