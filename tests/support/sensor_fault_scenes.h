@@ -11,7 +11,7 @@
 
 #include "scenarios/camera/depth_camera.h"
 #include "scenarios/camera/sensor_faults.h"
-#include "scenarios/synthetic/moving_shape.h"
+#include "scenarios/synthetic/shape.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch {

@@ -21,9 +21,9 @@
 #include "scenarios/camera/valve_tank.h"
 #include "scenarios/recordings/image_mask.h"
 #include "scenarios/synthetic/lifts.h"
-#include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/panel_scenes.h"
 #include "scenarios/synthetic/resting_clouds.h"
+#include "scenarios/synthetic/shape.h"
 
 namespace remote_touch {
 namespace {

@@ -16,9 +16,9 @@
 #include "scenarios/camera/depth_camera.h"
 #include "scenarios/camera/valve_tank.h"
 #include "scenarios/synthetic/lifts.h"
-#include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/panel_scenes.h"
 #include "scenarios/synthetic/resting_clouds.h"
+#include "scenarios/synthetic/shape.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::scenario_test {

@@ -8,9 +8,9 @@
 #include "core/points/vector.h"
 #include "scenarios/camera/sensor_faults.h"
 #include "scenarios/synthetic/lifts.h"
-#include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/panel_scenes.h"
 #include "scenarios/synthetic/resting_clouds.h"
+#include "scenarios/synthetic/shape.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::true_normal_test {

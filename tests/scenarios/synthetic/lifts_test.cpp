@@ -12,7 +12,7 @@
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/synthetic/moving_shape.h"
+#include "scenarios/synthetic/shape.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

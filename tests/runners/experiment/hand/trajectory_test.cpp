@@ -12,8 +12,8 @@
 #include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/depth_camera.h"
 #include "scenarios/synthetic/lifts.h"
-#include "scenarios/synthetic/moving_shape.h"
 #include "scenarios/synthetic/resting_clouds.h"
+#include "scenarios/synthetic/shape.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::trajectory_test {
