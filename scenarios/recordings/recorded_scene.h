@@ -1,4 +1,5 @@
-// A recorded sequence of depth images or clouds, streamed at the recorded times or at a chosen rate.
+// Fixture rule that selects the points whose pixels are marked in a mask: an image that any segmentation may
+// have made.
 #pragma once
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
@@ -17,6 +19,31 @@
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
+
+class ImageMask final : public FixtureRule {
+ public:
+  struct Settings {
+    FixtureValues values;
+    std::string path;
+  };
+  // Reads the mask: a PNG of any kind that read_colour_png() accepts, of the size of the frames. A pixel that
+  // is neither black nor fully transparent selects its point. Throws InputError if the file cannot be read.
+  explicit ImageMask(const Settings& settings);
+  // Throws InputError unless the cloud is an image of the size of the mask.
+  void require(const PointCloud& cloud) const override;
+  std::vector<double> weights(const PointCloud& cloud) const override;
+
+ private:
+  std::string path_;
+  int width_ = 0, height_ = 0;
+  std::vector<std::uint32_t> mask_;
+};
+
+Parameters parameters(ImageMask::Settings& s);
+std::string validate(const ImageMask::Settings& s);
+InputPart input_files(const ImageMask::Settings& s);
+
+// A recorded sequence of depth images or clouds, streamed at the recorded times or at a chosen rate.
 
 // The surface that a depth image shows: a plane through the points around a pixel. Returns the distance of p
 // to a plane through the points of the cloud around p's pixel, within radius_m, m; positive towards the

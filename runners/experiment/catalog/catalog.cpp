@@ -19,7 +19,7 @@
 #include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/depth_camera.h"
 #include "scenarios/camera/valve_tank.h"
-#include "scenarios/recordings/image_mask.h"
+#include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/panel_scenes.h"
 #include "scenarios/synthetic/resting_clouds.h"
