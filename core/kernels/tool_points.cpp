@@ -1,12 +1,78 @@
-// Detection of points in the relevant cells of a tool, 6.2.2. Each point is transformed to the frame of the
-// cells, and the value of its cell is read. The operations of the transform have the same order on every
-// level, so the cell of a point is the same too.
+// Surface disks near a tool, 6.2.2: their positions, the trilinear distance field there, and a lower bound of
+// the distance of any position on a disk. The operations are those of voxel_tool.cpp and near_disks.cpp, in
+// the same order.
+
 #include <immintrin.h>
 
+#include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
 #include "core/kernels/tool_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
+
+namespace {
+
+// Returns 1 if x is positive, else 0. It is computed from the sign of -x.
+inline Flags is_positive(Doubles x) {
+  return (Flags)(0 - x) < 0 ? Flags{} + 1 : Flags{};
+}
+
+// Appends the lanes of `may` that are within the limits to the columns, from index `to` on. Returns their
+// number.
+inline std::size_t put_disks(const PositionsInField& positions, const DisksInField& disks, Flags may,
+                             const DiskLimits& limits, double cells_per_m, const DiskColumns& out,
+                             std::size_t to) {
+  const Packing packing(may & ((disks.lower <= limits.lower) | ~positions.at.is_known));
+  const std::size_t count = packing.count();
+  if (count == 0) return 0;
+  const Doubles3 &p = positions.p_T, &n = disks.n_T, &g = positions.at.gradient_T;
+  const auto put_three = [&](const Doubles3& a, double* const(&columns)[3]) {
+    packing.put(a.x, columns[0] + to), packing.put(a.y, columns[1] + to), packing.put(a.z, columns[2] + to);
+  };
+  put_three(p, out.p_T), put_three(n, out.n_T), put_three(g, out.gradient_T);
+  const Doubles distance = positions.at.distance, lower = disks.lower;
+  packing.put(disks.radius, out.radius + to);
+  packing.put(disks.extent, out.extent + to);
+  packing.put(distance, out.distance + to);
+  packing.put(disks.slope, out.slope + to);
+  packing.put(positions.at.is_known ? lower : broadcast(__builtin_nan("")), out.lower + to);
+  const Flags is_exact = (lower <= limits.search) & is_flat(disks.slope, disks.radius, disks.extent);
+  packing.put(is_exact ? distance : lower, out.bound + to);
+  const Flags octant = is_positive(g.x) << 2 | is_positive(g.y) << 1 | is_positive(g.z);
+  packing.put((Doubles)(cell_number(p, cells_per_m) << 3 | octant), out.cell + to);
+  return count;
+}
+
+}  // namespace
+
+std::size_t disks_in_field(const PointColumns& points, std::size_t count, DiskShape shape,
+                           const PosedField& f, const DiskLimits& limits, GroupDistances groups,
+                           const DiskColumns& out, std::size_t& outside_count) {
+  std::size_t found = 0;
+  outside_count = 0;
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    double& of_group = groups.nearest[i / kLanes];
+    if (!groups.is_new && of_group > limits.passed) continue;
+    Doubles min = broadcast(1e300);
+    for (std::size_t part = i; part < i + kLanes && part < count; part += kDoubles) {
+      const PositionsInField positions = positions_at(points, part, f);
+      const Flags is_point = lane_numbers() < static_cast<long>(count - part);
+      const Flags outside = is_point & ~positions.at.is_known;
+      min = positions.at.distance < min ? positions.at.distance : min;
+      const Flags may = (is_point & (positions.at.distance <= limits.reach)) | outside;
+      if (!is_any(may)) continue;
+      found += put_disks(positions, disks_at(points, part, shape.fraction, f, positions.at), may, limits,
+                         shape.cells_per_m, out, found);
+      outside_count += Packing(outside).count();
+    }
+    if (groups.is_new) of_group = least(min);
+  }
+  return found;
+}
+
+// Detection of points in the relevant cells of a tool, 6.2.2. Each point is transformed to the frame of the
+// cells, and the value of its cell is read. The operations of the transform have the same order on every
+// level, so the cell of a point is the same too.
 
 #if defined(__AVX512F__)
 
@@ -109,5 +175,135 @@ std::size_t points_in_cells(const double* x, const double* y, const double* z, c
 }
 
 #endif
+
+// Detection of the points near a tool, 6.2.2, and the trilinear distance field at them. The operations are
+// those of voxel_tool.cpp, in the same order.
+
+std::size_t points_in_field(const PointColumns& points, const std::uint32_t* groups, std::size_t group_count,
+                            const PosedField& f, const PointLimits& limits, GroupDistances distances,
+                            const PositionColumns& out, std::size_t& outside_count) {
+  std::size_t found = 0;
+  outside_count = 0;
+  for (std::size_t g = 0; g < group_count; ++g) {
+    if (distances.nearest[g] > limits.passed) continue;
+    Doubles min = broadcast(1e300);
+    const std::size_t first = kLanes * std::size_t{groups[g]};
+    for (std::size_t i = first; i < first + kLanes; i += kDoubles) {
+      const PositionsInField positions = positions_at(points, i, f);
+      const Doubles distance = positions.at.distance;
+      min = distance < min ? distance : min;
+      const Flags reached = distance <= limits.reach;
+      if (!is_any(reached)) continue;
+      const Packing packing(reached);
+      packing.put(positions.p_T.x, out.p_T[0] + found), packing.put(positions.p_T.y, out.p_T[1] + found);
+      packing.put(positions.p_T.z, out.p_T[2] + found);
+      packing.put(positions.at.is_known ? distance : broadcast(__builtin_nan("")), out.distance + found);
+      Doubles number;
+      for (std::size_t lane = 0; lane < kDoubles; ++lane) number[lane] = static_cast<double>(i + lane);
+      packing.put(number, out.number + found);
+      found += packing.count();
+      outside_count += Packing(reached & ~positions.at.is_known).count();
+    }
+    if (distances.is_new) distances.nearest[g] = least(min);
+  }
+  return found;
+}
+
+// The points of a cloud that a tool touches, 6.2.2: points that lie in voxels, and points outside the voxels
+// whose distance is small enough. Every touched point is counted. The operations are those of voxel_tool.cpp
+// and near_disks.cpp, in the same order.
+
+namespace {
+
+constexpr long kInterior = 2;  // the value of Voxel::interior
+
+// Reads the voxels of cells, one by one.
+inline Flags voxels_at(const CellTable& table, Counts cell) {
+  Flags voxels;
+  for (int lane = 0; lane < kDoubles; ++lane)
+    voxels[lane] = static_cast<std::uint8_t>(table.value[cell[lane]]);  // 0 to 2
+  return voxels;
+}
+
+// Returns the lanes whose disks may be as near as `touch`. The slope of the field in the plane of a normal n
+// is at most the length of its gradient times the larger of 1 and |1 - n.n|.
+inline Flags can_touch(const PointColumns& points, std::size_t i, double fraction, const TouchLimits& limits,
+                       Doubles distance) {
+  constexpr double kRounding = 1 + 1e-9;
+  const Doubles3 n{load(points.nx + i), load(points.ny + i), load(points.nz + i)};
+  const Doubles off = magnitude(1 - dot(n, n)), steep = off < 1 ? broadcast(1) : off;
+  const Doubles radius = fraction * load(points.spacing + i) + load(points.extent + i);
+  return ~(distance > limits.touch + kRounding * limits.slope * (steep * radius));  // true without a normal
+}
+
+class Summary {
+ public:
+  explicit Summary(TouchedSummary& out) : out_(out) {}
+
+  // Counts the touched lanes and stores the numbers of their clusters.
+  void add(Flags touched, Flags cluster) {
+    const Packing all(touched);
+    if (all.count() == 0) return;
+    out_.point_count += all.count();
+    const Packing others(touched & (cluster != last_cluster_));  // neighbours mostly follow each other
+    if (others.count() == 0) return;
+    others.put((Doubles)cluster, reinterpret_cast<double*>(out_.cluster + out_.clusters));
+    out_.clusters += others.count();
+    last_cluster_ = static_cast<long>(out_.cluster[out_.clusters - 1]);
+  }
+  void add_unclear(Flags unclear, std::size_t first) {
+    if (!is_any(unclear)) return;
+    for (std::size_t lane = 0; lane < kDoubles; ++lane)
+      if (unclear[lane]) out_.unclear[out_.unclear_count++] = static_cast<std::uint32_t>(first + lane);
+  }
+
+ private:
+  TouchedSummary& out_;
+  long last_cluster_ = -1;
+};
+
+}  // namespace
+
+void touched_points(const PointColumns& points, const std::uint32_t* groups, std::size_t group_count,
+                    DiskShape shape, const PosedField& f, const CellTable& voxels, const TouchLimits& limits,
+                    GroupDistances distances, TouchedSummary& out) {
+  constexpr double kInfinite = __builtin_inf();
+  out.point_count = out.clusters = out.unclear_count = 0;
+  Summary summary(out);
+  Doubles least_of_all = broadcast(kInfinite);
+  Flags inside{};
+  for (std::size_t g = 0; g < group_count; ++g) {
+    if (distances.nearest[g] > limits.passed) continue;
+    Doubles least_of_group = broadcast(kInfinite);
+    for (std::size_t i = kLanes * std::size_t{groups[g]}; i < kLanes * (std::size_t{groups[g]} + 1);
+         i += kDoubles) {
+      const PositionsInField positions = positions_at(points, i, f);
+      const Doubles distance = positions.at.distance;
+      least_of_group = distance < least_of_group ? distance : least_of_group;
+      const Flags reached = distance <= limits.reach;
+      if (!is_any(reached)) continue;
+      const Flags known = reached & positions.at.is_known;
+      const Doubles counted = known ? distance : broadcast(kInfinite);
+      least_of_all = counted < least_of_all ? counted : least_of_all;
+      const Flags voxel = (known & positions.at.in_cell & (distance <= limits.voxels))
+                              ? voxels_at(voxels, positions.at.cell)
+                              : Flags{};
+      inside |= voxel == kInterior;
+      Flags touched = voxel != 0, unclear = reached & ~known;
+      const Flags may = known & ~touched & can_touch(points, i, shape.fraction, limits, distance);
+      if (is_any(may)) {
+        const DisksInField disks = disks_at(points, i, shape.fraction, f, positions.at);
+        const Flags near = may & (disks.lower <= limits.touch);
+        touched |= near & (distance <= limits.touch);
+        unclear |= near & ~(distance <= limits.touch) & ~is_flat(disks.slope, disks.radius, disks.extent);
+      }
+      summary.add(touched, cell_number(positions.p_T, shape.cells_per_m));
+      summary.add_unclear(unclear, i);
+    }
+    if (distances.is_new) distances.nearest[g] = least(least_of_group);
+  }
+  out.nearest = least(least_of_all);
+  out.is_inside = is_any(inside);
+}
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL
