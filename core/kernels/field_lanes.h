@@ -2,7 +2,6 @@
 // sample_field(), in the same order.
 #pragma once
 
-#include "core/kernels/disk_search.h"
 #include "core/kernels/double_lanes.h"
 #include "core/kernels/tool_kernels.h"
 

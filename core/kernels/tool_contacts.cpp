@@ -1,8 +1,8 @@
 // The contacts of many disks at once. The operations are those of near_disks.cpp, in their order, and are
 // explained there.
-#include "core/kernels/disk_search.h"
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"
+#include "core/kernels/tool_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 

@@ -14,7 +14,7 @@
 #include "core/dissertation/tool/contact/touch_finder.h"
 #include "core/dissertation/tool/dynamics/motion_program.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/kernels/disk_search.h"
+#include "core/kernels/tool_kernels.h"
 
 namespace remote_touch {
 
