@@ -6,8 +6,8 @@
 // skipped.
 #include <immintrin.h>
 
-#include "core/kernels/gather_kernels.h"
 #include "core/kernels/level.h"
+#include "core/kernels/point_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 

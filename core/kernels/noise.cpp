@@ -5,8 +5,8 @@
 #include <immintrin.h>
 
 #include "core/kernels/level.h"
-#include "core/kernels/noise_kernels.h"
 #include "core/kernels/philox.h"
+#include "core/kernels/point_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 

@@ -1,7 +1,7 @@
 // The points of a tracked patch. Positions are rounded to a grid on which the sums are exact, so that neither
 // the order of the points nor the number of lanes matters.
 #include "core/kernels/level.h"
-#include "core/kernels/patch_kernels.h"
+#include "core/kernels/point_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 

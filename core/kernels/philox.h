@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/kernels/noise_kernels.h"
+#include "core/kernels/point_kernels.h"
 
 // The unnamed namespace gives each file its own copy: code that is compiled for a newer machine must not be
 // linked into a program for an older one.

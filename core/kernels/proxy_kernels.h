@@ -2,7 +2,7 @@
 // Positions and radii are in m, directions have unit length.
 #pragma once
 
-#include "core/kernels/points_view.h"
+#include "core/kernels/point_kernels.h"
 
 namespace remote_touch {
 

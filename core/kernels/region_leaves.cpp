@@ -6,7 +6,7 @@
 
 #include "core/kernels/double_lanes.h"
 #include "core/kernels/level.h"
-#include "core/kernels/region_kernels.h"
+#include "core/kernels/point_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
 

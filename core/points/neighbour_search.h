@@ -11,9 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernels/gather_kernels.h"
 #include "core/kernels/kernels.h"
-#include "core/kernels/points_view.h"
+#include "core/kernels/point_kernels.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 

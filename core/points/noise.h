@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/kernels/noise_kernels.h"
+#include "core/kernels/point_kernels.h"
 
 namespace remote_touch {
 

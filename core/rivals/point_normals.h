@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "core/kernels/points_view.h"
+#include "core/kernels/point_kernels.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
 

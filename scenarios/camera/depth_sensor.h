@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "core/kernels/noise_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 #include "core/points/noise.h"

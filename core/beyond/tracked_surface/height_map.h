@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/kernels/patch_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/kernels/region_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 

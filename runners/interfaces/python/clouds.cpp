@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/kernels/noise_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/catalog.h"

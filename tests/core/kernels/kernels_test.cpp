@@ -8,8 +8,8 @@
 #include <random>
 
 #include "core/dissertation/proxy/proxy_equations.h"
-#include "core/kernels/gather_kernels.h"
 #include "core/kernels/isa.h"
+#include "core/kernels/point_kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "tests/support/scenes.h"
 

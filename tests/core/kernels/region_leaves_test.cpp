@@ -8,7 +8,7 @@
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/kernels/isa.h"
-#include "core/kernels/region_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::region_leaves_test {

@@ -13,7 +13,7 @@
 
 #include "core/dissertation/sphere_tree/tool_spheres.h"
 #include "core/dissertation/tool/motion/look_ahead_motion.h"
-#include "core/kernels/region_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
