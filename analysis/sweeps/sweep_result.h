@@ -22,7 +22,7 @@ enum class RunState : std::int32_t {
   elsewhere = 4  // belongs to another shard, in a result that has an element for it
 };
 
-// What a sweep varies and measures. Cells are the nodes of the axes' grid, numbered with the last axis
+// The axes, cells and runs of a sweep. Cells are the nodes of the axes' grid, numbered with the last axis
 // running fastest; every cell has the same number of replicates. A run is one replicate of one cell.
 struct SweepGrid {
   std::vector<Column> axes;  // one row for each value; names are an enumeration

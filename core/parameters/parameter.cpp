@@ -1,6 +1,7 @@
 #include "core/parameters/parameter.h"
 
 #include <algorithm>
+#include <cstdarg>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -154,6 +155,17 @@ std::string printable(const std::string& text) {
     }
   }
   return with_short_middle(with_short_words(line));
+}
+
+// The compiler's own function: core does not include what prints.
+std::string formatted(const char* format, ...) {
+  std::va_list values, again;
+  va_start(values, format);
+  va_copy(again, values);
+  std::string text(static_cast<std::size_t>(__builtin_vsnprintf(nullptr, 0, format, values)), '\0');
+  __builtin_vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(values), va_end(again);
+  return text;
 }
 
 }  // namespace remote_touch

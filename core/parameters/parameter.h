@@ -118,4 +118,7 @@ class InputError : public std::runtime_error {
   explicit InputError(const std::string& line) : std::runtime_error(printable(line)) {}
 };
 
+// Returns the text of a format of std::printf with its values.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
 }  // namespace remote_touch

@@ -8,7 +8,6 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {

@@ -11,7 +11,6 @@
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/sweep/answer_display.h"

@@ -15,7 +15,7 @@ struct SweepAxis {
   // The dimension scale: numbers, or an enumeration of names. long_name is the path of the parameter, or the
   // paths of all parameters with ", " between them.
   Column coordinate;
-  // For each value the settings of a run: paths, as for --set, and values. These are the values of the first
+  // The settings of a run for each value: paths, as for --set, and values. These are the values of the first
   // round, and those between them that refinement may add.
   std::vector<std::vector<ChangedSetting>> settings;
   std::size_t stride = 1;     // index step between values of the first round

@@ -131,7 +131,7 @@ NoiseStream of_frame(const NoiseKey& key, int frame) {
   return noise_stream(key, NoiseUse::sensor_frame, static_cast<std::uint32_t>(frame));
 }
 
-// What faults do: they draw random numbers, they move points along the view, they lose or shear points.
+// A fault draws random numbers, moves points along the view, loses points or shears them.
 enum Effect : unsigned { draws = 1, moves = 2, loses = 4, shears = 8 };
 
 // Each fault: its parameter, its size, which is 0 without it, and what it does.

@@ -7,8 +7,6 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstdarg>
-#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -107,16 +105,6 @@ std::optional<Number> whole_word(std::string_view word) {
 }
 
 }  // namespace
-
-std::string formatted(const char* format, ...) {
-  va_list arguments, again;
-  va_start(arguments, format);
-  va_copy(again, arguments);
-  std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, arguments)), '\0');
-  std::vsnprintf(text.data(), text.size() + 1, format, again);
-  va_end(arguments), va_end(again);
-  return text;
-}
 
 std::string read_text_file(const std::filesystem::path& file, const std::string& expected) {
   const OpenFile open(file);

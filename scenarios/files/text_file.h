@@ -34,9 +34,6 @@ template <class... Parts>
   throw InputError(subject, problem);
 }
 
-// Returns the text that std::printf() would print.
-[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
-
 // A file of text, such as JSON or a list, read whole.
 
 inline constexpr std::size_t kMaxTextBytes = 16 << 20;

@@ -44,7 +44,7 @@ enum class SurfaceTime { newest_frame, moving };
 // Two times count as equal if they differ by less than this, because sums and quotients of times are rounded.
 inline constexpr double kSameTime_s = 5e-7;
 
-// How a frame reaches the renderer, if not as the transport of the run says.
+// The delivery of a frame to the renderer, where it is not that of the run's transport.
 struct FrameDelivery {
   // Time at which the frame leaves the sensor. Empty if that is the time of capture. A late frame has a later
   // time. A frame of a recorded live session has the time at which the renderer received it, infinite if it

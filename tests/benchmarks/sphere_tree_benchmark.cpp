@@ -16,7 +16,7 @@
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/region_scene.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 #include "tests/support/leaf_pairs.h"
 
 namespace remote_touch::benchmarks {
@@ -81,7 +81,7 @@ void add_tree(const PointCloud& cloud) {
 bool detection_right(const SphereTool& tool, const PointCloud& cloud, const ToolPose& pose,
                      const Kernels& kernels) {
   RegionContacts contacts(tool.leaves, kLookAhead_m, kernels);
-  contacts.on_frame(formatted<RegionTree>(cloud));
+  contacts.on_frame(in_form<RegionTree>(cloud));
   const SphereTree& regions = contacts.regions().spheres();
   const std::vector<LeafPair> expected = naive_pairs(*tool.leaves, pose, regions, kLookAhead_m);
   TreeCollision collision(*tool.leaves, kernels);
@@ -98,7 +98,7 @@ void add_detection(const SphereTool& tool, const PointCloud& cloud, const NamedP
         [=, &tool, &cloud] { return detection_right(tool, cloud, pose, *kernels); },
         [=, &tool, &cloud](benchmark::State& state) {
           RegionContacts contacts(tool.leaves, kLookAhead_m, *kernels);
-          contacts.on_frame(formatted<RegionTree>(cloud));
+          contacts.on_frame(in_form<RegionTree>(cloud));
           for (auto _ : state) benchmark::DoNotOptimize(contacts.near(pose, 0).contacts.size());
         });
   add("region_contacts_naive/" + named.name, [=, &tool, &cloud](benchmark::State& state) {
@@ -147,7 +147,7 @@ class Ride {
         contacts_(tool.leaves, kLookAhead_m, kernels),
         motion_({.detections_per_tick = kDetections, .rest_threshold_m = kAtRest_m}, *tool.body,
                 tool.reach_m) {
-    contacts_.on_frame(formatted<RegionTree>(wheels()));
+    contacts_.on_frame(in_form<RegionTree>(wheels()));
     pose_ = course.device(0);
     pose_.p_W.z() -= 0.3;
     for (int i = 0; i < 20; ++i) step(course.device(0));
@@ -155,7 +155,7 @@ class Ride {
   // The time of a tick does not include the frame.
   void begin(int tick) {
     const PointCloud* frame = course_.frame(tick);
-    if (frame) contacts_.on_frame(formatted<RegionTree>(*frame));
+    if (frame) contacts_.on_frame(in_form<RegionTree>(*frame));
     updated_ = frame != nullptr;
   }
   ToolMotionReport step(int tick) { return step(course_.device(tick)); }

@@ -12,7 +12,7 @@
 #include "core/points/neighbour_search.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/tool_scene.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 
 namespace remote_touch::benchmarks {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 void add_list(const ToolScene& scene, const std::string& where, const ToolPose& pose) {
   for (const Kernels* kernels : supported_kernels()) {
     const auto finder = std::make_shared<TouchFinder>(scene.tool, *kernels);
-    finder->on_frame(formatted<TiledCloud>(scene.cloud));
+    finder->on_frame(in_form<TiledCloud>(scene.cloud));
     add(
         "tool_list/" + scene.name + "_" + where + "/" + kernels->isa,
         [=, &scene] {

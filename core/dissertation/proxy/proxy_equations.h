@@ -51,7 +51,7 @@ std::optional<Roots<Number>> roots(const Vec<Number>& P, const Vec<Number>& x, c
   return Roots<Number>{foot - std::sqrt(rest), foot + std::sqrt(rest)};
 }
 
-// How far a free proxy may go before it meets the region: the root of (4.9) ahead of it.
+// Returns how far a free proxy may go before it meets the region: the root of (4.9) ahead of it.
 template <class Number>
 std::optional<Number> first_hit(const Vec<Number>& P, const Vec<Number>& x, const Vec<Number>& direction,
                                 Number radius) {
@@ -59,8 +59,8 @@ std::optional<Number> first_hit(const Vec<Number>& P, const Vec<Number>& x, cons
   return d && d->near > 0 ? std::optional<Number>(d->near) : std::nullopt;  // (4.9), (5.9)
 }
 
-// How far an entrenched proxy has to go until the region, whose inner radius is r1 + r_f, holds it at its
-// surface: the larger root of (4.10). 0 if the region does not entrench it.
+// Returns how far an entrenched proxy has to go until the region, whose inner radius is r1 + r_f, holds it
+// at its surface: the larger root of (4.10). 0 if the region does not entrench it.
 template <class Number>
 Number exit_distance(const Vec<Number>& P, const Vec<Number>& x, const Vec<Number>& direction, Number radius,
                      Number inner) {

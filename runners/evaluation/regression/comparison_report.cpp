@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "scenarios/files/text_file.h"
 

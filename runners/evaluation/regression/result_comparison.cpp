@@ -9,7 +9,6 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/column.h"
-#include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"

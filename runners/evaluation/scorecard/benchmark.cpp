@@ -11,7 +11,6 @@
 #include <typeinfo>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/changed_settings.h"

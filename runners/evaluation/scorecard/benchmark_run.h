@@ -77,7 +77,7 @@ struct BenchmarkPlan {
 // Resolves and checks every run. Throws InputError for what cannot be run.
 BenchmarkPlan plan_of(const Benchmark& benchmark);
 
-// What a scorecard compares: methods and scenes of a HIP, of a tool, or of teleoperation. A scene for tools
+// A scorecard compares methods and scenes of a HIP, of a tool, or of teleoperation. A scene for tools
 // names the tool; a scene of teleoperation has a slave. A method is for tools if its renderer has six degrees
 // of freedom, and for teleoperation if it has sections of the experiment.
 enum class Compared { hip, tools, teleoperation };

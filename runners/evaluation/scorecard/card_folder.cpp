@@ -10,7 +10,6 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/experiment/settings/json_parameters.h"

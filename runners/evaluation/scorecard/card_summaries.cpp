@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 #include <tuple>
-#include "analysis/trace/formatted.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {

@@ -1,4 +1,4 @@
-// What the checks of a renderer may ask of it.
+// The contact model of a renderer says what its checks may ask of it.
 #pragma once
 
 #include <string>

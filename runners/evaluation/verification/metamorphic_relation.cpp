@@ -310,7 +310,7 @@ struct Relation {
   const char* name;
   const char* meaning;
   bool (*vary)(Variation& run);
-  std::optional<Allowed> for_hip, for_tool;  // nothing: such renderers are not checked by it
+  std::optional<Allowed> for_hip, for_tool;  // none for renderers that it does not check
 };
 
 const Relation kRelations[] = {

@@ -1,5 +1,5 @@
-// What the subcommands share, and those that tests or other commands call. Each prints results on stdout,
-// reports errors as exceptions, and returns the exit code.
+// The parts that subcommands share, and those that tests or other commands call. Each command prints results
+// on stdout, reports errors as exceptions, and returns the exit code.
 #pragma once
 
 #include <atomic>

@@ -12,7 +12,6 @@
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/comparison_report.h"

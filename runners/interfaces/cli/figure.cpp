@@ -12,7 +12,6 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -17,7 +17,6 @@
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/settings/provenance.h"

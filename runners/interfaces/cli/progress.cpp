@@ -1,7 +1,7 @@
 #include "runners/interfaces/cli/progress.h"
 
 #include <unistd.h>
-#include "analysis/trace/formatted.h"
+#include "core/parameters/parameter.h"
 
 #include <cstdio>
 #include <nlohmann/json.hpp>

@@ -16,7 +16,6 @@
 #include "analysis/storage/other_processes.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/tally_file.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"

@@ -6,7 +6,6 @@
 
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "runners/interfaces/cli/commands.h"
 #include "runners/sweep/stored_sweep.h"

@@ -6,7 +6,6 @@
 #include <optional>
 #include <string_view>
 
-#include "analysis/trace/formatted.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figures.h"

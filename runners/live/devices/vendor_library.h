@@ -1,4 +1,5 @@
-// What the adapters of vendors' libraries share: availability, axes, rotations and the texts of faults.
+// The adapters of vendors' libraries share these parts: availability, axes, rotations and the texts of
+// faults.
 #pragma once
 
 #include <span>

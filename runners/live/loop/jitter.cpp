@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "analysis/trace/formatted.h"
+#include "core/parameters/parameter.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "analysis/trace/formatted.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/simulation/run_notes.h"
 

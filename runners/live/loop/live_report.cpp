@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/trace/formatted.h"
+#include "core/parameters/parameter.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/sensors/sensor_table.h"

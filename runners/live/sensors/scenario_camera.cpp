@@ -4,7 +4,6 @@
 #include <limits>
 #include <vector>
 
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 #include "core/points/vector.h"

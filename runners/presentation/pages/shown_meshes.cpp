@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "analysis/trace/formatted.h"
+#include "core/parameters/parameter.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/settings/json_parameters.h"
 

@@ -7,7 +7,6 @@
 
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/trace/column.h"
-#include "analysis/trace/formatted.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/measures/contact_measures.h"
-#include "analysis/trace/formatted.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/experiment/settings/provenance.h"

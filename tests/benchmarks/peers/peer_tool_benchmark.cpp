@@ -23,7 +23,7 @@
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peers/peer_tool.h"
 #include "tests/benchmarks/tool_scene.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 
 namespace remote_touch::benchmarks {
 namespace {
@@ -134,7 +134,7 @@ bool right(const peers::ToolPeer& peer, const Surface& surface) {
 void add_ours(const Surface& surface, const std::string& where, const ToolPose& pose) {
   for (const Kernels* kernels : supported_kernels()) {
     const auto finder = std::make_shared<TouchFinder>(surface.scene().tool, *kernels);
-    finder->on_frame(formatted<TiledCloud>(surface.scene().cloud));
+    finder->on_frame(in_form<TiledCloud>(surface.scene().cloud));
     add(
         "list/" + where + "/ours/" + kernels->isa, [=, &surface] { return ours_right(*finder, surface); },
         [=](benchmark::State& state) {

@@ -17,7 +17,7 @@
 #include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::sphere_tree_renderer_test {
@@ -319,7 +319,7 @@ struct Held {
         leaves(leaves_),
         contacts(leaves, ToolParameters{}.look_ahead_m, scenes::kernels()),
         motion({}, *tool, 0.05) {}
-  void frame(const PointCloud& cloud) { contacts.on_frame(formatted<RegionTree>(cloud)), updated = true; }
+  void frame(const PointCloud& cloud) { contacts.on_frame(in_form<RegionTree>(cloud)), updated = true; }
   // Renders ticks until the tool rests. Fails if it does not within 200.
   void move_to(const ToolPose& device) {
     for (int tick = 0; tick < 200; ++tick)
@@ -461,7 +461,7 @@ TEST(RegionContacts, TheContactsOfALeafRepresentAllItsPairs) {
   const PointCloud cloud = wheel(), motions = scenes::random_cloud(300, 1, 7);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
   RegionContacts contacts(one_leaf(0.006), look_ahead_m, scenes::kernels());
-  contacts.on_frame(formatted<RegionTree>(cloud));
+  contacts.on_frame(in_form<RegionTree>(cloud));
   int pairs = 0, kept = 0;
   for (int i = 0; i < 100; ++i) {
     const double a = 0.0628 * i, out_m = 0.0505 - 1e-5 * i;
@@ -490,13 +490,13 @@ TEST(RegionContacts, DoNotDependOnTheLevelOrOnEarlierQueries) {
   const PointCloud cloud = wheel(), directions = scenes::random_cloud(60, 0.05, 4);
   const double look_ahead_m = ToolParameters{}.look_ahead_m;
   RegionContacts slowest(spheres_of_box(), look_ahead_m, kernels_for(Isa::x86_64));
-  slowest.on_frame(formatted<RegionTree>(cloud));
+  slowest.on_frame(in_form<RegionTree>(cloud));
   std::size_t found = 0;
   for (const Kernels* kernels : supported_kernels()) {
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const ToolPose pose{directions.point(i), rotation(20 * directions.point(i))};
       RegionContacts fresh(spheres_of_box(), look_ahead_m, *kernels);
-      fresh.on_frame(formatted<RegionTree>(cloud));
+      fresh.on_frame(in_form<RegionTree>(cloud));
       const NearContacts a = fresh.near(pose, 0), b = slowest.near(pose, 0);
       EXPECT_EQ(a.deepest_m, b.deepest_m);
       ASSERT_EQ(a.contacts.size(), b.contacts.size());
@@ -537,7 +537,7 @@ TEST(RegionTouch, IsThatOfAllPairs) {
   const double look_ahead_m = ToolParameters{}.look_ahead_m, own = 600;
   const auto leaves = spheres_of_box();
   RegionContacts contacts(leaves, look_ahead_m, scenes::kernels());
-  contacts.on_frame(formatted<RegionTree>(cloud));
+  contacts.on_frame(in_form<RegionTree>(cloud));
   int touching = 0, clear = 0;
   for (int i = 0; i < 60; ++i) {
     const ToolPose pose{{0.04, 0.0555 - 2e-4 * i + (i % 4 == 0 ? 0.02 : 0), 0.01},

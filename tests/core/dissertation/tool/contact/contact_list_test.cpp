@@ -10,7 +10,7 @@
 
 #include "core/kernels/isa.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::contact_list_test {
@@ -35,7 +35,7 @@ struct Found {
 // Computes the contact of every disk within the look-ahead, one after the other.
 std::vector<Found> all_contacts(const PointCloud& cloud, const ToolParameters& p, double side = 0) {
   TouchFinder finder(kTool, scenes::kernels());
-  finder.on_frame(formatted<TiledCloud>(cloud));
+  finder.on_frame(in_form<TiledCloud>(cloud));
   std::vector<Found> all;
   const Eigen::Matrix3d R_TW = kPose.q_WT.conjugate().toRotationMatrix();
   for (std::uint32_t i = 0; i < finder.cloud().padded_size(); ++i) {
@@ -68,7 +68,7 @@ TEST(ContactList, HasTheSameBitsOnEveryInstructionSet) {
       ASSERT_GT(all.size(), 5u);
       for (const Kernels* kernels : supported_kernels()) {
         ContactList list(kTool, p, *kernels);
-        list.on_frame(formatted<TiledCloud>(cloud));
+        list.on_frame(in_form<TiledCloud>(cloud));
         const NearContacts near = list.near(kPose, side);
         ASSERT_EQ(near.contacts.size(), all.size());
         for (std::size_t i = 0; i < all.size(); ++i)
@@ -81,7 +81,7 @@ TEST(ContactList, FewContactsAreAllThere) {
   const PointCloud cloud = cloud_of(800);
   const std::vector<Found> all = all_contacts(cloud, {});
   ContactList list(kTool, {}, scenes::kernels());
-  list.on_frame(formatted<TiledCloud>(cloud));
+  list.on_frame(in_form<TiledCloud>(cloud));
   const NearContacts near = list.near(kPose, 0);
   ASSERT_GT(all.size(), 20u);
   ASSERT_LT(all.size(), 256u);
@@ -98,7 +98,7 @@ TEST(ContactList, FewContactsAreAllThere) {
 TEST(ContactList, HasAllWithinTheGivenDistanceAndNoneFartherAway) {
   const PointCloud cloud = cloud_of(800);
   ContactList list(kTool, {}, scenes::kernels());
-  list.on_frame(formatted<TiledCloud>(cloud));
+  list.on_frame(in_form<TiledCloud>(cloud));
   std::size_t last = 0;
   for (const double asked_m : {1e-4, 2e-3, 5e-4, 1e-3, 3e-4, 1.0}) {
     ToolParameters p;
@@ -130,7 +130,7 @@ TEST(ContactList, HasTheDeepestOfEveryCellOfMany) {
     std::vector<double> expected_m, kept_distance_m;
     for (const auto& cell : deepest) expected_m.push_back(cell.second);
     ContactList list(kTool, {}, scenes::kernels());
-    list.on_frame(formatted<TiledCloud>(cloud));
+    list.on_frame(in_form<TiledCloud>(cloud));
     const NearContacts near = list.near(kPose, 0);
     for (const ToolContact& contact : near.contacts) kept_distance_m.push_back(contact.depth_m);
     std::sort(kept_distance_m.begin(), kept_distance_m.end()),
@@ -152,7 +152,7 @@ TEST(ContactList, ALargeToolKeepsItsDeepestContact) {
   for (int j = -70; j <= 70; ++j)
     for (int i = -70; i <= 70; ++i) cloud.append({0.003 * i, 0, 0.003 * j}, Vec3::UnitY());
   ContactList list(plate, {}, scenes::kernels());
-  list.on_frame(formatted<TiledCloud>(cloud));
+  list.on_frame(in_form<TiledCloud>(cloud));
   for (const double about_x : {-0.005, 0.005})
     for (const double about_z : {-0.005, 0.0, 0.005}) {
       const ToolPose pose{{0, 0.0049, 0}, rotation({about_x, 0, about_z})};
@@ -192,7 +192,7 @@ TEST(ContactThinning, KeepsTheDeepestOfManyInEveryOrder) {
 TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
   constexpr double kGap_m = 1e-4;
   const PointCloud cloud = scenes::dense_plane();
-  const auto points = formatted<TiledCloud>(cloud, ToolParameters{}.merged_disk_m);
+  const auto points = in_form<TiledCloud>(cloud, ToolParameters{}.merged_disk_m);
   for (const double merged_disk_m : {0.0, ToolParameters{}.merged_disk_m}) {
     ToolParameters p;
     p.merged_disk_m = merged_disk_m;
@@ -217,7 +217,7 @@ TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
   for (const double merged_disk_m : {0.0, 0.002}) {
     p.merged_disk_m = merged_disk_m;
     ContactList list(kTool, p, scenes::kernels());
-    list.on_frame(formatted<TiledCloud>(cloud, used_merged_disk_m(p)));
+    list.on_frame(in_form<TiledCloud>(cloud, used_merged_disk_m(p)));
     list.near(pose, 0);
     EXPECT_EQ(list.near_disks().size() > 500, merged_disk_m == 0);
   }
@@ -229,7 +229,7 @@ TEST(ContactList, PointsWithinReachAreNeverMerged) {
   ToolParameters p;
   p.contact_rule = ContactRule::continuous;
   ContactList list(kTool, p, scenes::kernels());
-  list.on_frame(formatted<TiledCloud>(cloud, used_merged_disk_m(p)));
+  list.on_frame(in_form<TiledCloud>(cloud, used_merged_disk_m(p)));
   const ToolPose pose{{0, 0.0031, 0}, Eigen::Quaterniond::Identity()};
   list.near(pose, 0);
   EXPECT_LT(list.near_disks().size(), 500u);

@@ -8,7 +8,7 @@
 
 #include "core/dissertation/tool/contact/contact_list.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scenes.h"
 
@@ -206,7 +206,7 @@ TEST(ContinuousContacts, PointsInThePartThatADiskDoesNotFindAreFound) {
   ToolParameters p;
   p.contact_rule = ContactRule::continuous;
   ContactList points(pin, p, scenes::kernels());
-  points.on_frame(formatted<TiledCloud>(cloud, used_merged_disk_m(p)));
+  points.on_frame(in_form<TiledCloud>(cloud, used_merged_disk_m(p)));
   ContinuousContacts contacts(p, *pin);
   contacts.begin(points);
   int not_told = 0;
@@ -229,7 +229,7 @@ TEST(ContinuousContacts, ASurfaceAheadStopsAMotionUnlessItOnlyTouches) {
   ToolParameters p;
   p.contact_rule = ContactRule::continuous;
   ContactList points(tool, p, scenes::kernels());
-  points.on_frame(formatted<TiledCloud>(scenes::dense_plane(), 0.0));
+  points.on_frame(in_form<TiledCloud>(scenes::dense_plane(), 0.0));
   ContinuousContacts contacts(p, *tool);
   contacts.begin(points);
   const auto fraction = [&](double height_m, const Vec3& shift_W, double side) {

@@ -11,7 +11,7 @@
 #include "core/dissertation/tool/contact/contact_thinning.h"
 #include "core/kernels/isa.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::near_disks_test {
@@ -130,7 +130,7 @@ struct Query {
   NearDisks disks{kFraction, kCell_m};
 
   Query(const PointCloud& cloud, const Kernels& kernels) : finder(kTool, kernels) {
-    finder.on_frame(formatted<TiledCloud>(cloud));
+    finder.on_frame(in_form<TiledCloud>(cloud));
     disks.on_frame(finder.cloud());
     disks.query(finder, kernels, kPose, kReach_m);
   }
@@ -196,7 +196,7 @@ TEST(NearDisks, PlacesOutsideTheGridAreMeasuredToo) {
   const VoxelGrid& grid = kTool->grid;
   const PointCloud cloud = scenes::points_outside(grid);
   TouchFinder finder(kTool, scenes::kernels());
-  finder.on_frame(formatted<TiledCloud>(cloud));
+  finder.on_frame(in_form<TiledCloud>(cloud));
   NearDisks disks(kFraction, kCell_m);
   disks.on_frame(finder.cloud());
   disks.query(finder, scenes::kernels(), {}, kFieldMargin_m + 3 * grid.size_m);
@@ -234,7 +234,7 @@ TEST(NearDisks, AResultIsKeptForItsOwnQueryOnly) {
   PointCloud fewer = cloud;
   fewer.x.resize(5000), fewer.y.resize(5000), fewer.z.resize(5000);
   fewer.nx.resize(5000), fewer.ny.resize(5000), fewer.nz.resize(5000);
-  query.finder.on_frame(formatted<TiledCloud>(fewer));
+  query.finder.on_frame(in_form<TiledCloud>(fewer));
   query.disks.on_frame(query.finder.cloud());
   query.disks.query(query.finder, kernels, kPose, kReach_m);
   EXPECT_LT(within(query.disks, kReach_m), all);
@@ -256,7 +256,7 @@ TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
           30;
       pose = moved(pose, size * kShort_m * motion);
       if (step % 25 == 24) {
-        query.finder.on_frame(formatted<TiledCloud>(scenes::random_cloud(20000, 0.03, 100 + step)));
+        query.finder.on_frame(in_form<TiledCloud>(scenes::random_cloud(20000, 0.03, 100 + step)));
         query.disks.on_frame(query.finder.cloud());
       }
       const double reach_m = step % 7 == 6 ? 0.5 * kReach_m : kReach_m,
@@ -274,7 +274,7 @@ TEST(NearDisks, PointsKeptFromEarlierPosesAreAllThatAreWithinReach) {
 TEST(NearDisks, ADetectionDoesNotChangeWhatIsTouched) {
   const PointCloud cloud = cloud_with_normals();
   ContactList looked(kTool, {}, scenes::kernels()), fresh(kTool, {}, scenes::kernels());
-  looked.on_frame(formatted<TiledCloud>(cloud)), fresh.on_frame(formatted<TiledCloud>(cloud));
+  looked.on_frame(in_form<TiledCloud>(cloud)), fresh.on_frame(in_form<TiledCloud>(cloud));
   looked.near(kPose, 0);
   const Touched a = looked.touched(kPose), b = fresh.touched(kPose);
   EXPECT_EQ(a.points, b.points);

@@ -16,7 +16,7 @@
 #include "core/dissertation/tool/contact/near_disks.h"
 #include "core/kernels/isa.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::near_points_test {
@@ -65,7 +65,7 @@ struct Query {
     show(cloud, merged_cube_m);
   }
   void show(const PointCloud& cloud, double merged_cube_m = 0) {
-    finder.on_frame(formatted<TiledCloud>(cloud, merged_cube_m));
+    finder.on_frame(in_form<TiledCloud>(cloud, merged_cube_m));
     points.reserve(finder.cloud().padded_size());
     points.on_frame();
   }
@@ -351,7 +351,7 @@ TEST(TouchedPoints, AreThoseOfALoopOverAllPointsOnAWalk) {
       int several = 0;
       for (int step = 0; step < 60; ++step) {
         if (step % 20 == 0) {
-          finder.on_frame(formatted<TiledCloud>(cloud_of(step == 40 ? 2000 : 20000, 30 + step)));
+          finder.on_frame(in_form<TiledCloud>(cloud_of(step == 40 ? 2000 : 20000, 30 + step)));
           touched.reserve(finder.cloud().padded_size());
           touched.on_frame();
         }
@@ -380,7 +380,7 @@ TEST(TouchedPoints, AContactListCountsEveryTouchedPoint) {
       p.contact_rule = rule, p.disk_radius_ratio = kRatio;
       const bool with_disks = rule == ContactRule::look_ahead;
       ContactList list(kTool, p, scenes::kernels());
-      const auto cloud = formatted<TiledCloud>(cloud_of(count, 50));
+      const auto cloud = in_form<TiledCloud>(cloud_of(count, 50));
       list.on_frame(cloud);
       const double disk_m = with_disks ? kRatio * cloud->max_spacing_m() : 0;
       int some = 0, none = 0;
@@ -406,7 +406,7 @@ TEST(TouchedPoints, PlacesOutsideTheGridAreMeasuredToo) {
   const VoxelGrid& grid = kTool->grid;
   const PointCloud cloud = scenes::points_outside(grid);
   TouchFinder finder(kTool, scenes::kernels());
-  finder.on_frame(formatted<TiledCloud>(cloud));
+  finder.on_frame(in_form<TiledCloud>(cloud));
   TouchedPoints touched(kRatio, true);
   touched.reserve(finder.cloud().padded_size());
   const double reach_m = kFieldMargin_m + 3 * grid.size_m, voxels_m = 2 * grid.size_m;

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "tests/support/box_tool.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::touch_finder_test {
@@ -49,7 +49,7 @@ TEST(TouchFinder, FindsThePointsInTheVoxelsOfTheTool) {
   const auto tool = scenes::box_tool(kHalf_m);
   for (const Kernels* kernels : supported_kernels()) {
     TouchFinder finder(tool, *kernels);
-    finder.on_frame(formatted<TiledCloud>(cloud));
+    finder.on_frame(in_form<TiledCloud>(cloud));
     int max = 0;
     for (const ToolPose& pose : poses()) {
       const Places expected =
@@ -88,7 +88,7 @@ TEST(TouchFinder, MissesNothingWithinADistanceAndAddsLittle) {
   const auto tool = scenes::box_tool(kHalf_m);
   const double slack_m = 2 * tool->grid.size_m;
   TouchFinder finder(tool, scenes::kernels());
-  finder.on_frame(formatted<TiledCloud>(cloud));
+  finder.on_frame(in_form<TiledCloud>(cloud));
   for (const ToolPose& pose : poses())
     for (const double distance : {-0.002, 0.0, 0.001, 0.0055}) {
       const Places found = places(finder, finder.within(pose, distance));
@@ -108,7 +108,7 @@ TEST(TouchFinder, FindsTheSameListOnEveryInstructionSet) {
   std::vector<std::vector<std::uint32_t>> lists;
   for (const Kernels* kernels : supported_kernels()) {
     TouchFinder finder(tool, *kernels);
-    finder.on_frame(formatted<TiledCloud>(cloud));
+    finder.on_frame(in_form<TiledCloud>(cloud));
     const auto list = finder.within(poses()[1], 0.003);
     lists.emplace_back(list.begin(), list.end());
     EXPECT_GT(list.size(), 100u);
@@ -119,13 +119,13 @@ TEST(TouchFinder, FindsTheSameListOnEveryInstructionSet) {
 TEST(TouchFinder, FindsNothingInAnEmptyCloudOrFarAway) {
   TouchFinder finder(scenes::box_tool(kHalf_m), scenes::kernels());
   EXPECT_TRUE(finder.in_tool({}).empty());  // before the first frame
-  finder.on_frame(formatted<TiledCloud>({}));
+  finder.on_frame(in_form<TiledCloud>({}));
   EXPECT_TRUE(finder.in_tool({}).empty());
   PointCloud unmeasured;
   for (int i = 0; i < 100; ++i) unmeasured.append(Vec3::Constant(std::nan("")));
-  finder.on_frame(formatted<TiledCloud>(unmeasured));
+  finder.on_frame(in_form<TiledCloud>(unmeasured));
   EXPECT_TRUE(finder.within({}, 0.005).empty());
-  finder.on_frame(formatted<TiledCloud>(scenes::random_cloud(1000, 0.01, 1)));
+  finder.on_frame(in_form<TiledCloud>(scenes::random_cloud(1000, 0.01, 1)));
   EXPECT_TRUE(finder.within({{1e6, -1e6, 1e6}, Eigen::Quaterniond::Identity()}, 0.005).empty());
 }
 

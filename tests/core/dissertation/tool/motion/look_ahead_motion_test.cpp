@@ -14,7 +14,7 @@
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/points/vector.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/formatted.h"
+#include "tests/support/cloud_form.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::look_ahead_motion_test {
@@ -172,7 +172,7 @@ TEST(LookAheadProgram, FindsTheMotionThatAllPointsAllow) {
       std::make_shared<const VoxelTool>(make_voxel_tool(find_generated_tool("fork")->make(), {}, report));
   for (const auto& [tool, count, reach_m] : {std::tuple(kTool, 800u, 0.012), std::tuple(fork, 4000u, 0.03)}) {
     ContactList list(tool, {}, scenes::kernels());
-    list.on_frame(formatted<TiledCloud>(around(*tool, count, reach_m)));
+    list.on_frame(in_form<TiledCloud>(around(*tool, count, reach_m)));
     LookAheadProgram program({}, *tool, tool->reach_m);
     std::mt19937 random(8);
     int in_part = 0;

@@ -8,7 +8,7 @@
 namespace remote_touch {
 
 template <class Form, class... Settings>
-std::shared_ptr<const Form> formatted(const PointCloud& cloud, const Settings&... settings) {
+std::shared_ptr<const Form> in_form(const PointCloud& cloud, const Settings&... settings) {
   const auto form = std::make_shared<Form>();
   form->assign(cloud, settings...);
   return form;
