@@ -105,7 +105,7 @@ std::vector<double> deviations(const Column& baseline, const Column& candidate);
 
 struct TickHashes {
   std::vector<std::int32_t> tick;   // increasing; the last is the trace's last
-  std::vector<std::uint64_t> hash;  // the running hash at that tick (hash64.h)
+  std::vector<std::uint64_t> hash;  // the running hash at that tick (column.h)
 };
 
 // Returns every n-th tick of a trace (n = every), and the last. pre: every > 0.

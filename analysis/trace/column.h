@@ -1,4 +1,4 @@
-// Named columns of numbers or texts with units: the form in which results are stored and read.
+// Named columns of numbers or texts with units, their tolerances and hashes, and the log of a task.
 #pragma once
 
 #include <cstdint>
@@ -85,7 +85,7 @@ constexpr std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
   return hash ^ (hash >> 32);
 }
 
-inline constexpr const char* kRunningHash = "tick_hash";  // its column in a trace
+inline constexpr const char* kRunningHash = "tick_hash";  // the trace column that holds it
 
 // Hash of the number of points and of every coordinate, fixture radius, stiffness and normal of the cloud. It
 // does not depend on the order of the points, which each search chooses.

@@ -1,4 +1,4 @@
-// The states of the hand and of the slave in a tick, as a trace keeps them.
+// The trace of a run, its columns, and the states of hand and slave in a tick.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The columns of the gathered points that the kernels read.
+// The kernels on points: noise, gathering, patches of tracked sheets, and regions near a leaf of a tool.
 #pragma once
 
 #include <cstddef>

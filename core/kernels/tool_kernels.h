@@ -29,8 +29,8 @@ struct SphereColumns {
   const double* radius;
 };
 
-// Slabs around groups of points: all points are within radius of the centre, and within half of the plane
-// through it with this unit normal (zero: half is zero too). Lengths in m.
+// Slabs around groups of points: all points are within `radius` of the centre, and within `half` of the
+// plane through it with this unit normal (zero: `half` is zero too). Lengths in m.
 struct SlabColumns {
   SphereColumns sphere;
   const double* nx;
@@ -240,7 +240,7 @@ struct ToolKernels {
 }  // namespace remote_touch
 
 // Constants of the search for the nearest position on a disk, and of the contact computed from it. They are
-// shared by near_disks.cpp and the kernel that processes many disks at once.
+// shared by near_disks.h, near_disks.cpp and the kernels that process many disks at once.
 namespace remote_touch::disk_search {
 
 inline constexpr int kLines = 2;            // lines to search: one for an edge of the tool, two for a corner

@@ -1,4 +1,4 @@
-// Hue, saturation and lightness of a colour, which the segmentation by colour of 7.3.2 uses.
+// Pinhole camera, depth image, and the colour of a point, which the segmentation by colour of 7.3.2 uses.
 #pragma once
 
 #include <cstdint>

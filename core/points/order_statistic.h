@@ -1,4 +1,4 @@
-// Counting sort of items into cells: linear time, and items of one cell keep their order.
+// Sorting into cells in linear time, columns that are aligned to cache lines, and quantiles.
 #pragma once
 
 #include <algorithm>

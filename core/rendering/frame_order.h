@@ -34,8 +34,8 @@ class FrameOrder {
   bool dropped_ = false;
 };
 
-// The data structure that a renderer reads in place of a cloud's columns, such as a tree. It is built once a
-// frame, in advance by prepare() or in on_frame().
+// The data structure that a renderer reads in place of a cloud's columns, such as a tree. It is built once
+// per frame, in advance by prepare() or in on_frame().
 
 // Form: any class with assign(const PointCloud&, settings...).
 template <class Form>

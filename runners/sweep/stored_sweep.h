@@ -48,7 +48,7 @@ std::vector<std::string> note_lines(const SweepResult& result);
 std::vector<std::string> note_lines(const SweepGrid& grid, const std::vector<NoteCount>& counts,
                                     std::size_t done);
 
-// The same of a tally.
+// The same for a tally.
 std::vector<std::string> note_lines(const SweepTally& tally);
 
 // Throws InputError with all these lines, for --strict. Does nothing if there is none.
@@ -73,9 +73,7 @@ class NoteCounts {
   std::map<std::size_t, std::size_t> of_kind_;  // key: number of the kind
 };
 
-// Sweeps in files.
-
-// These read a sweep as read_sweep() does, and whole: the runs of other shards are `elsewhere`.
+// These functions read a whole sweep, as read_sweep() does: the runs of other shards are `elsewhere`.
 StoredSweep read_stored_sweep(const Hdf5Reader& file);
 StoredSweep read_stored_sweep(const std::filesystem::path& file);
 

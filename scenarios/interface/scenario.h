@@ -21,7 +21,7 @@
 
 namespace remote_touch {
 
-// Phases of a motion, and notes on a run for the user.
+// Notes on a run for the user, and phases of a motion.
 
 // A remark on a run that the user should read: the run is valid, but it may not be what was meant.
 struct Note {
@@ -143,7 +143,7 @@ class KeptFrames {
  public:
   using Points = std::shared_ptr<const NeighbourSearch>;
 
-  // Pre: at_most is 1 or more.
+  // pre: at_most is 1 or more.
   explicit KeptFrames(std::size_t at_most) : at_most_(at_most) {}
 
   // Returns the frame if it is kept. Otherwise makes it, and keeps it instead of the frame that was used

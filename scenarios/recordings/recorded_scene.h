@@ -1,5 +1,5 @@
-// Fixture rule that selects the points whose pixels are marked in a mask: an image that any segmentation may
-// have made.
+// A recording as a scenario, and the fixture rule that selects the points whose pixels are marked in a mask:
+// an image that any segmentation may have made.
 #pragma once
 
 #include <cmath>

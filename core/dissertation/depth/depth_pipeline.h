@@ -1,5 +1,5 @@
-// The bilateral filter of a depth image, (7.1) and (7.2), one statement each. The kernel of
-// core/kernels/depth_kernels.h filters many pixels at a time and is tested against this form.
+// A cloud with normals from a depth image, 6.2.1. First its filter, (7.1) and (7.2), one statement each: the
+// kernel of core/kernels/depth_kernels.h filters many pixels at a time and is tested against this form.
 #pragma once
 
 #include <cmath>

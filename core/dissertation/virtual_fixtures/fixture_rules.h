@@ -169,12 +169,9 @@ class NearPoint final : public FixtureRule {
 Parameters parameters(NearPoint::Settings& s);
 std::string validate(const NearPoint::Settings& s);
 
-// Assigns r_f and k_s to the points of a frame, (5.2) and (5.3).
-
-// Switches that lock and unlock fixtures while a task runs.
-
-// A fixture is identified by its index in the list of rules. The switches are set in the haptic loop and read
-// where frames are processed. A change has an effect from the next processed frame on.
+// Switches that lock and unlock fixtures while a task runs. A fixture is identified by its index in the list
+// of rules. The switches are set in the haptic loop and read where frames are processed. A change has an
+// effect from the next processed frame on.
 class FixtureSwitches {
  public:
   static constexpr std::size_t kMaxCount = 64;
@@ -198,6 +195,7 @@ class FixtureSwitches {
   std::atomic<std::uint64_t> off_ = 0;
 };
 
+// Assigns r_f and k_s to the points of a frame, (5.2) and (5.3).
 class FixtureAssignment {
  public:
   FixtureAssignment() = default;

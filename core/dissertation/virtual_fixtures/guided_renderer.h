@@ -20,12 +20,10 @@
 
 namespace remote_touch {
 
-// A guidance virtual fixture: a spring that pulls the hand towards a goal pose in front of a class of points,
-// 7.3.2 and 7.4.
-
-// Decides whether a guidance fixture pulls, and how strongly. If a target is not visible in a frame, the last
-// one is used for a while. The force rises and falls gradually. Neither is in the dissertation.
-
+// A guidance virtual fixture is a spring that pulls the hand towards a goal pose in front of a class of
+// points, 7.3.2 and 7.4. This class decides whether it pulls, and how strongly. If a target is not visible in
+// a frame, the last one is used for a while. The force rises and falls gradually. Neither is in the
+// dissertation.
 class GuidancePresence {
  public:
   // hold_s: time for which the last target is still used after it is lost; it is lost when a frame arrives

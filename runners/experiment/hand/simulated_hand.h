@@ -1,5 +1,5 @@
-// A simulated haptic device between the hand and the renderer: what it measures of the hand's pose, and which
-// wrench it exerts for the commanded one.
+// A simulated hand, and the haptic device between it and the renderer: what the device measures of the hand's
+// pose, and which wrench it exerts for the commanded one.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,6 @@ namespace remote_touch {
 
 // A haptic device that senses all six axes and has motors for some of them, such as the five of the device of
 // 7.5.
-
 struct MotorSettings {
   bool force_x = true, force_y = true, force_z = true;
   bool torque_x = true, torque_y = true, torque_z = true;
@@ -84,8 +83,6 @@ class DeviceModel {
   std::vector<Wrench> commands_;
   std::size_t position_count_ = 0, command_count_ = 0;  // so far
 };
-
-// A simulated hand: an operator who follows a script and feels the device, or the script alone.
 
 // A simulated operator: the hand is a mass that springs and dampers pull to the intended path, and that the
 // device's force moves. The dissertation does not have this model, because its operators were people.

@@ -49,7 +49,7 @@ bool write_tool(const std::filesystem::path& folder, const std::string& key, con
 // Version of the layout of the file, in its first line.
 inline constexpr int kSpheresFormat = 1;
 
-// Returns the key of the spheres, from the key of the tool in its cache, which has the build, and max_leaves.
+// Returns the key of the spheres. It is made from max_leaves and the key of the tool, which has the build.
 std::string spheres_key(const std::string& tool_key, int max_leaves);
 
 // These functions do for spheres what read_tool() and write_tool() do for tools.
@@ -70,10 +70,9 @@ std::string validate(const ToolSettings& settings);
 // Returns the mesh file on which the result depends; none for a built-in tool.
 std::vector<InputPart> input_files(const ToolSettings& settings);
 
-// Returns the tool. A mesh file is searched for by find_input(). A built-in tool takes
-// precedence over a file of its name. Throws MissingInput if there is neither, InputError as read_mesh()
-// and make_voxel_tool() do. report: receives text(ToolReport) of the time when the tool was made; may be
-// null.
+// Returns the tool. A mesh file is searched for by find_input(). A built-in tool takes precedence over a file
+// of its name. Throws MissingInput if there is neither. Throws InputError where read_mesh() and
+// make_voxel_tool() do. report: receives text(ToolReport) of the time when the tool was made; may be null.
 std::shared_ptr<const VoxelTool> load_tool(const ToolSettings& settings, std::string* report = nullptr);
 
 // The same tool with its sphere tree. The tree is made once for each number of leaves, and stored in the

@@ -1,5 +1,5 @@
 // The depth pipeline of core/dissertation/depth in OpenCL C 1.2. The kernels do the operations of
-// core/kernels/depth_kernels.cpp, depth_filter.cpp and plane_normals.cpp, and of the hues of
+// core/kernels/depth_kernels.cpp and plane_normals.cpp, and of the hues of
 // core/dissertation/virtual_fixtures, for each pixel in the same order, so that the bits are the same. A
 // change of one must be made in the other too; tests/runners/experiment/opencl compares them.
 //

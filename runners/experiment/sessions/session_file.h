@@ -1,4 +1,4 @@
-// Settings of a live run: the poses of device and camera, and the limits of the safety gate.
+// A live session on disk, and its settings: the poses of device and camera, the limits of the safety gate.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The JSON files of data/, compiled into the program.
+// The stored JSON files of data/, settings on top of a configuration, and their differences.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
-// The adapters of devices, one source each. open_...() opens a device; it throws InputError, which says what
-// is missing. ..._availability() says whether there is one. The adapters of vendors' libraries are written
-// from their documentation and tested with test doubles, never with a device.
+// The adapters of devices except Haply's, one source each. open_...() opens a device; it throws InputError,
+// which says what is missing. ..._availability() says whether there is one. The adapters of vendors'
+// libraries are written from their documentation and tested with test doubles, never with a device.
 #pragma once
 
 #include <memory>
@@ -38,8 +38,8 @@ Availability entact_availability();
 
 // A 3Dconnexion SpaceMouse, through the daemon spacenavd: input only, six axes, no motors. Needs no library.
 //
-// The address is the path of the daemon's socket, by default that of the environment variable SPNAV_SOCKET,
-// or /var/run/spnav.sock, and settings:
+// The address is the path of the daemon's socket, and settings. The default path is that of the environment
+// variable SPNAV_SOCKET, or else /var/run/spnav.sock. Settings:
 //   speed=M_PER_S      speed for each count of deflection, by default 0.0005; a mouse sends up to about 350
 //   turning=RAD_PER_S  angular speed for each count of deflection, by default 0.003
 //   box=M              half the width of the workspace, by default 0.15; the position is kept within

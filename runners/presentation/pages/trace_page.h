@@ -1,4 +1,4 @@
-// Events of a run that are worth looking at.
+// The events of a run that are worth looking at, and the page that shows traces.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct TraceEvent {
 };
 
 // Returns the events in the order of their ticks:
-//   pop-through    the proxy's centre passes through the true surface to its back, see run_events.h
+//   pop-through    the proxy's centre passes through the true surface to its back, see contact_measures.h
 //   first contact  the first tick with a contact
 //   slave contact  the first tick with a force of the scene on the slave
 //   hardest hit    the first tick with the largest force of the scene on the slave

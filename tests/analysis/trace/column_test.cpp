@@ -10,7 +10,7 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch::hash64_test {
+namespace remote_touch::column_hash_test {
 namespace {
 
 TEST(Fingerprint, CloudHashDependsOnEveryBitButNotOnTheOrder) {
@@ -79,7 +79,7 @@ TEST(Fingerprint, TraceHasFrameHashesOnlyOnRequest) {
 }
 
 }  // namespace
-}  // namespace remote_touch::hash64_test
+}  // namespace remote_touch::column_hash_test
 
 namespace remote_touch::sequence_log_test {
 namespace {

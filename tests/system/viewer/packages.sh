@@ -4,7 +4,7 @@ not_tried() { echo "not tried: $*"; exit 77; }
 
 # get_packages SOURCE_DIR WORK_DIR: they are in WORK_DIR/node_modules then; the caller is in WORK_DIR.
 get_packages() {
-  local page=$1/runners/presentation/view/page
+  local page=$1/runners/presentation/pages/page
   command -v npm >/dev/null || not_tried "no npm (scripts/install full)"
   mkdir -p "$2"
   cd "$2"

@@ -213,7 +213,7 @@ TEST(ContactWatch, ReportsWideSpacingWithoutAContact) {
 }
 
 // A renderer that holds its proxy up to 1 mm behind the surface loses it only beyond that, see
-// run_events.h.
+// contact_measures.h.
 TEST(ContactWatch, AProxyIsLostBeyondItsHeldDepth) {
   PointCloud corners;
   for (const double x : {-0.006, 0.006})
