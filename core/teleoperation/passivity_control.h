@@ -45,7 +45,7 @@ struct PortEnergy {
 class MotionPrediction {
  public:
   // response_m_per_N: displacement of the hand in a tick per force that is held for the tick; T^2 / (2 m) for
-  // the mass m of hand and device; 0: not known.
+  // the mass m of hand and device; 0: not known. pre: response_m_per_N >= 0.
   explicit MotionPrediction(double response_m_per_N) : response_(response_m_per_N) {}
 
   // Records what has happened since the last call. displacement_m: of the hand. force_N: the force that the
@@ -67,7 +67,7 @@ class MotionPrediction {
 // The port at the hand. Call force() before each tick, observe() after it. Neither allocates.
 class ImpedancePassivityController {
  public:
-  // response_m_per_N: see MotionPrediction; 0: the published rule f = f_delayed - alpha v.
+  // response_m_per_N: see MotionPrediction; 0: the published rule f = f_delayed - alpha v. pre: tick_s > 0.
   ImpedancePassivityController(const PassivitySettings& settings, double tick_s, double response_m_per_N = 0);
 
   // Returns the force on the hand for the coming tick. It is delayed_force_N, bit by bit, if the energy
@@ -94,7 +94,7 @@ class AdmittancePassivityController {
  public:
   // response_N_per_m: decrease of the mean force at the port in a tick per displacement of the command in
   // this tick; about b / T + k / 2 for the reaction to a drive of stiffness k and damping b; 0: the published
-  // rule, and right for a measured force of the scene.
+  // rule, and right for a measured force of the scene. pre: tick_s > 0, response_N_per_m >= 0.
   AdmittancePassivityController(const PassivitySettings& settings, double tick_s,
                                 double response_N_per_m = 0);
 

@@ -14,7 +14,7 @@ namespace remote_touch {
 
 // Returns the streams of all cells, from the configuration with which the sweep was made (JSON): it states
 // every deviation and probability, the axes with common noise, and seeds. So they are known for every stored
-// sweep and tally, of any version. If the configuration cannot be read, as that of an experiment with a scene
+// sweep and tally. If the configuration cannot be read, as that of an experiment with a scene
 // that only the program that made it knows, `doubt` says so; then runs of one replicate count as one, and so
 // do the runs of a cell that are equal in all measures, if they are known.
 CellStreams streams_of(const SweepResult& result, const std::string& config);

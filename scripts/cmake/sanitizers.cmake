@@ -5,13 +5,12 @@ option(REMOTE_TOUCH_SANITIZED_TESTS "Build tests of some rooms under sanitizers"
 
 # Rooms that read what others wrote or call libraries of others, and rooms where a sanitizer or a crash found a mistake.
 set(rooms_under_address
-  analysis/storage core/points runners/experiment/opencl runners/experiment/mesh_files runners/experiment/mesh_files
-  runners/interfaces/plugins
-  runners/live/devices runners/live/sensors scenarios/recordings scenarios/recordings/bags
+  analysis/storage core/points runners/experiment/opencl runners/experiment/mesh_files runners/interfaces/plugins
+  runners/libraries runners/live/devices runners/live/sensors scenarios/recordings scenarios/recordings/bags
   scenarios/files)
 # Rooms whose threads share memory.
 set(rooms_under_thread
-  runners/experiment/opencl runners/live/devices runners/live/loop runners/live/sensors)
+  runners/experiment/opencl runners/libraries runners/live/devices runners/live/loop runners/live/sensors)
 # haply_link.cpp includes Boost.Beast and takes half a minute to compile. It is left out under the address sanitizer; the
 # thread sanitizer and the test tests_under_sanitizers cover it.
 set(sources_not_under_address haply_link)

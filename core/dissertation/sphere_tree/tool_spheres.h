@@ -72,6 +72,6 @@ inline constexpr int kMinLeaves = 1, kMaxLeaves = 10000;
 
 // Makes at most max_leaves leaves, or fewer if these suffice. Throws InputError if no node of the tool's grid
 // is inside the tool.
-ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves);
+ToolSpheres make_tool_spheres(const VoxelTool& tool, int max_leaves);  // pre: kMinLeaves to kMaxLeaves
 
 }  // namespace remote_touch

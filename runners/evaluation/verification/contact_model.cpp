@@ -18,19 +18,23 @@ constexpr std::pair<const char*, ContactModel> kBuiltIn[] = {
     {"tracked-sheet", ContactModel::sheet},
     {"tracked-tool", ContactModel::sheet}};
 
-std::map<std::string, ContactModel> declared;
+// A static of a function: programs may declare models before main() begins.
+std::map<std::string, ContactModel>& declared() {
+  static std::map<std::string, ContactModel> models;
+  return models;
+}
 
 }  // namespace
 
 ContactModel contact_model_of(const std::string& renderer) {
   for (const auto& [name, model] : kBuiltIn)
     if (renderer == name) return model;
-  const auto found = declared.find(renderer);
-  return found == declared.end() ? ContactModel() : found->second;
+  const auto found = declared().find(renderer);
+  return found == declared().end() ? ContactModel() : found->second;
 }
 
 void declare_contact_model(const std::string& renderer, const ContactModel& model) {
-  declared.insert_or_assign(renderer, model);
+  declared().insert_or_assign(renderer, model);
 }
 
 }  // namespace remote_touch

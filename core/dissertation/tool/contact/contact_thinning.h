@@ -84,6 +84,6 @@ inline constexpr double kFlat_m = 5e-6;
 inline constexpr double kMaxMergedSpacing_m = 6e-4;
 
 // Returns an empty list if merging would not save half of the points.
-std::vector<PointOrDisk> merged_points(std::span<const CloudPoint> points, double cube_m);
+std::vector<PointOrDisk> merged_points(std::span<const CloudPoint> points, double cube_m);  // pre: above 0
 
 }  // namespace remote_touch

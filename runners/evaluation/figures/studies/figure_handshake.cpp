@@ -24,7 +24,7 @@ constexpr double kHeld_shake_s = 0.45;   // the HIP has pressed, and the hand st
 constexpr double kShake_frames_hz = 30;  // frame rate of the experiment
 constexpr double kDeeper_m =
     0.012;  // depth by which it presses more than in the first run the passive hand wants to be
-constexpr double kFromAbove_m = 0.05, kApproach_m_per_s = 0.25;
+constexpr double kFromAbove_m = 0.05, kReaching_m_per_s = 0.25;
 constexpr std::size_t kStride_shake = 2;  // ticks, in tables
 
 // True for ticks in whole periods of the shake, from the second on.
@@ -66,7 +66,7 @@ std::string waypoints_into(const Vec3& hip_W) {
       {"name", "waypoints"},
       {"waypoints",
        {{above_W.x(), above_W.y(), above_W.z(), 0},
-        {inside_W.x(), inside_W.y(), inside_W.z(), kApproach_m_per_s}}}};
+        {inside_W.x(), inside_W.y(), inside_W.z(), kReaching_m_per_s}}}};
   return "trajectory=" + trajectory.dump();
 }
 
