@@ -14,6 +14,7 @@
 #include "runners/experiment/simulation/run_notes.h"
 
 namespace remote_touch {
+
 namespace {
 
 [[noreturn]] void refuse_cell(const NamedCell& cell, const std::string& expected) {
@@ -284,6 +285,28 @@ std::string damage_text(const StoredSweep& stored) {
   return std::to_string(stored.damaged_runs) + (is_one ? " run has" : " runs have") +
          " a wrong checksum, because of a partial write or damage: " + (is_one ? "it is" : "they are") +
          " left out, and the command of the sweep makes " + (is_one ? "it" : "them") + " again";
+}
+
+KeptSweep read_kept_sweep(const std::filesystem::path& file, Extent extent) {
+  if (const Hdf5Reader reader(file); is_tally(reader)) {
+    StoredTally stored = read_tally(reader);
+    const std::string warning = distrust_of(stored.attributes);
+    return {std::move(stored.tally), std::move(stored.attributes), warning};
+  }
+  StoredSweep stored = extent == Extent::whole ? read_stored_sweep(file) : read_sweep(file);
+  const std::string warning = damage_text(stored);
+  return {std::move(stored.result), std::move(stored.attributes), warning};
+}
+
+std::size_t count_of(const SweepResult& result, RunState state) {
+  return static_cast<std::size_t>(std::count(result.state.begin(), result.state.end(), state));
+}
+
+std::size_t count_of(const SweepTally& tally, RunState state) {
+  std::int64_t runs = 0;
+  for (const CellTally& cell : tally.tallies)
+    runs += state == RunState::done ? cell.done : state == RunState::failed ? cell.failed : 0;
+  return static_cast<std::size_t>(runs);
 }
 
 }  // namespace remote_touch

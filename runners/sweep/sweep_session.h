@@ -13,7 +13,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "core/kernels/kernels.h"
-#include "runners/sweep/kept_sweep.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_parts.h"
 #include "runners/sweep/sweep_run.h"

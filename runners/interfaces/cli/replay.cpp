@@ -23,7 +23,6 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/subcommands.h"
-#include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"

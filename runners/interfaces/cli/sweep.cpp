@@ -24,7 +24,6 @@
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/presentation/export/result_tables.h"
 #include "runners/sweep/answer_display.h"
-#include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/shard_merge.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"

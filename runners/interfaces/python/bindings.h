@@ -5,7 +5,7 @@
 #include <pybind11/pybind11.h>
 
 #include "runners/interfaces/python/arrays.h"
-#include "runners/sweep/kept_sweep.h"
+#include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
 

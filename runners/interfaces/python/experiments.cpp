@@ -19,7 +19,6 @@
 #include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
-#include "runners/sweep/kept_sweep.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
 #include "scenarios/recordings/recording.h"

@@ -14,7 +14,7 @@
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
 #include "runners/sweep/answer_display.h"
-#include "runners/sweep/kept_sweep.h"
+#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_session.h"
