@@ -33,7 +33,7 @@ Column read_dataset(hid_t data, const std::string& name, const RowRange* rows);
 // Adds a dimension that has a name and no values, as netCDF writes it, unless it is there already.
 void add_dimension(hid_t file, const std::string& path, hsize_t size);
 // Adds the names of the components of vectors (xyz) or of quaternions (wxyz) as a dimension of that group,
-// unless it is there already. Returns its path.
+// unless it is there already. Returns its path. pre: width is 3 or 4.
 std::string component_labels(hid_t file, const std::string& group, int width);
 void attach_dimension(hid_t file, const std::string& dataset, const std::string& dimension, unsigned place);
 // True if a dataset only names a dimension, like those that the functions above add. It is not a column.

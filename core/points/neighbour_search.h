@@ -146,7 +146,7 @@ class BruteForceSearch final : public CloudSearch {
   void gather(const Ball& ball, const Kernels& kernels, GatheredPoints& out) const override;
 };
 
-// Tests the points of the image window onto which the ball is projected, 4.2.2. It needs no data structure.
+// Tests the points of the image window onto which the ball is projected, 4.2.2. pre: cloud.image is correct.
 class ImageWindowSearch final : public CloudSearch {
  public:
   explicit ImageWindowSearch(PointCloud cloud);

@@ -85,7 +85,6 @@ StoredSweep read_stored_sweep(const std::filesystem::path& file);
 std::string damage_text(const StoredSweep& stored);
 
 // A sweep as its file keeps it: with its runs, or with a tally of each cell. Commands read either as one.
-
 struct KeptSweep {
   std::variant<SweepResult, SweepTally> kept;
   TextAttributes attributes;

@@ -165,7 +165,7 @@ std::vector<std::string> all_keys(const Parameters& parameters, const std::vecto
   return keys;
 }
 
-// Returns the known key with the most similar spelling.
+// Returns the known key with the most similar spelling. pre: one is known.
 const std::string& nearest_key(const std::string& key, const std::vector<std::string>& known) {
   return *std::ranges::min_element(
       known, [&](const auto& a, const auto& b) { return edit_distance(key, a) < edit_distance(key, b); });

@@ -162,7 +162,7 @@ RunResult replay(const std::string& file, const TextAttributes& attributes, cons
   const OutputFile output(file_or_none, force, file, {});
   Replay again = replay_run(of_sweep, sweep, grid.run(cell, replicate), options_of(work), "");
   RunResult result{again.trace.columns(), measures_of(again.trace), {}, {}};
-  output.write(result.columns, again.attributes, {});
+  if (!file_or_none.empty()) output.write(result.columns, again.attributes, {});
   result.attributes = trace_attributes(again.attributes, again.digest, result.columns);
   result.warning = distrust_of(of_sweep);
   return result;

@@ -133,7 +133,7 @@ constexpr std::size_t kMaxStops = 64;
 constexpr double kSamePoint_m = 1e-9;
 constexpr double kMinSlope = 0.3;  // a smaller slope is at a ridge, where the field is not reliable
 
-// Returns the nearest of the points that can stop the tool; 0 if there is none.
+// Returns the nearest of the points that can stop the tool; 0 if there is none. pre: there is a point.
 std::size_t nearest_outside(const NearPoints& points) {
   std::size_t nearest = 0;
   double least_m = std::numeric_limits<double>::infinity();
