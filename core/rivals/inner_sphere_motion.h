@@ -24,10 +24,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/dissertation/tool/contact/touch_finder.h"
-#include "core/dissertation/tool/dynamics/tool_parameters.h"
-#include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/dissertation/tool/motion/tool_motion.h"
+#include "core/dissertation/tool_motion/tool_motion.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
+#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/exact_sum.h"
 #include "core/rivals/inner_spheres.h"

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool/dynamics/quadratic_program.h"
+#include "core/dissertation/tool_motion/quadratic_program.h"
 #include "tests/benchmarks/checked_benchmark.h"
-#include "tests/core/dissertation/tool/dynamics/program_peers.h"
+#include "tests/core/dissertation/tool_motion/program_peers.h"
 #ifdef REMOTE_TOUCH_NLOPT
-#include "tests/core/dissertation/tool/dynamics/nlopt_program.h"
+#include "tests/core/dissertation/tool_motion/nlopt_program.h"
 #endif
 
 namespace remote_touch::benchmarks {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
-#include "core/dissertation/tool/motion/look_ahead_motion.h"
+#include "core/dissertation/tool_motion/look_ahead_motion.h"
 #include "core/kernels/isa.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/region_scene.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/kernels/isa.h"
 #include "core/points/neighbour_search.h"
 #include "tests/benchmarks/checked_benchmark.h"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool/contact/touch_finder.h"
-#include "core/dissertation/tool/dynamics/tool_parameters.h"
-#include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
+#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/rendering/frame.h"
 
 namespace remote_touch::benchmarks {

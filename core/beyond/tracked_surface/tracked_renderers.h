@@ -15,7 +15,7 @@
 #include "core/beyond/tracked_surface/sheet_search.h"
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/rendering/surface_velocity.h"
 
 namespace remote_touch {

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/dissertation/tool/contact/contact_list.h"
-#include "core/dissertation/tool/contact/contact_thinning.h"
-#include "core/dissertation/tool/dynamics/tool_parameters.h"
-#include "core/dissertation/tool/dynamics/tool_pose.h"
-#include "core/dissertation/tool/motion/look_ahead_motion.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/contact_list.h"
+#include "core/dissertation/tool_motion/contact_thinning.h"
+#include "core/dissertation/tool_motion/look_ahead_motion.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
+#include "core/dissertation/tool_motion/tool_pose.h"
 #include "core/kernels/kernels.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"

@@ -8,7 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "core/dissertation/tool/contact/contact_thinning.h"
+#include "core/dissertation/tool_motion/contact_thinning.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/parameters/parameter.h"
 #include "core/points/order_statistic.h"

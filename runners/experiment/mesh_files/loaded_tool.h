@@ -10,10 +10,10 @@
 
 #include "core/beyond/tracked_surface/tracked_renderers.h"
 #include "core/dissertation/sphere_tree/tool_spheres.h"
-#include "core/dissertation/tool/motion/god_object_motion.h"
-#include "core/dissertation/tool/motion/penalty_motion.h"
-#include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/god_object_motion.h"
+#include "core/dissertation/tool_motion/penalty_motion.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/inner_sphere_motion.h"
 #include "scenarios/recordings/recording.h"

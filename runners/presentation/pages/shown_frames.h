@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "core/dissertation/tool/dynamics/tool_pose.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/tool_pose.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/tool/contact/touch_finder.h"
+#include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/kernels/isa.h"
 #include "core/mesh/triangle_tree.h"
 #include "tests/benchmarks/checked_benchmark.h"

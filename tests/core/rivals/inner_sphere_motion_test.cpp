@@ -7,11 +7,11 @@
 #include <numbers>
 #include <random>
 
-#include "core/dissertation/tool/motion/tool_renderer.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"
-#include "tests/core/dissertation/tool/motion/free_space.h"
+#include "tests/core/dissertation/tool_motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 

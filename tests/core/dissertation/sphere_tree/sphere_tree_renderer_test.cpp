@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/tool_spheres.h"
-#include "core/dissertation/tool/motion/look_ahead_motion.h"
+#include "core/dissertation/tool_motion/look_ahead_motion.h"
 #include "core/kernels/point_kernels.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"

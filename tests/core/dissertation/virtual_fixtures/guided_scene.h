@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/tool/motion/tool_renderer.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/dissertation/virtual_fixtures/guided_renderer.h"
 #include "core/points/vector.h"
 #include "tests/support/box_tool.h"

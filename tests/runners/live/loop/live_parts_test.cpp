@@ -9,7 +9,7 @@
 
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/storage/digest.h"
-#include "core/dissertation/tool/contact/tiled_cloud.h"
+#include "core/dissertation/tool_motion/tiled_cloud.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/live/loop/pressed_hand.h"

@@ -1,0 +1,148 @@
+// Finds the points near a tool as single points: none is merged, and none is a disk.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "core/dissertation/tool_motion/touch_finder.h"
+#include "core/points/neighbour_search.h"
+#include "core/rendering/renderer.h"
+
+namespace remote_touch {
+
+// Keeps the groups of points that are near a tool, so that not every pose needs a new search.
+//
+// If the cloud has a packed() one, the groups are those of that one.
+//
+// A search also finds groups that lie a little beyond the reach. All of them are kept, and are only measured
+// again, as long as the tool has moved so little that no other point can have come within reach. A kept group
+// is skipped if it was so far away at the search that none of its points can have come within reach.
+
+// The groups that a kernel has to measure. A group whose nearest_m is above passed_m has no point within
+// reach. If is_new is true, the kernel writes the nearest_m of all others.
+struct GroupsInReach {
+  const std::uint32_t* group;
+  std::size_t count;
+  double* nearest_m;  // least field value of the points of each group, or a lower bound of it
+  bool is_new;
+  double passed_m;
+};
+
+class KeptGroups {
+ public:
+  static constexpr double kSpare_m = 4e-4;  // distance beyond the reach that is searched too
+
+  void on_frame() { searched_m_ = -1; }   // call it for each new cloud of the finder
+  void reserve(std::size_t padded_size);  // reserves memory for clouds of this size
+  // Returns groups that contain all points whose field value is reach_m or less, in order. Valid until the
+  // next call. pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
+  GroupsInReach within(const TouchFinder& finder, const ToolPose& pose, double reach_m);
+  void on_measured();  // call it after the kernel, if it measured all groups
+
+ private:
+  void search(const TouchFinder& finder, const ToolPose& pose, double reach_m);
+  void drop_far_groups();
+
+  Buffer<std::uint32_t> groups_;
+  Buffer<double> nearest_m_;  // least field value of each group at searched_at_, or a lower bound
+  std::size_t count_ = 0;
+  ToolPose searched_at_;
+  double searched_m_ = -1;
+  bool is_new_ = false;  // not all groups were measured since the search
+};
+
+class NearPoints {
+ public:
+  void on_frame() { groups_.on_frame(), count_ = 0; }  // call it for each new cloud
+  void reserve(std::size_t padded_size);               // reserves memory for clouds of this size
+  // Finds the points of the finder's cloud whose field value is reach_m or less, in the order of the packed()
+  // cloud's tiles. pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
+  void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m);
+  // Does the same, but leaves out some of the points that are certain to keep way.touch during the motion,
+  // and some of those with a normal away from way.ahead_W. pre: way.far is reach_m.
+  void query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, const SlabWay& way);
+
+  // Returns true if the field value of a point is below value_m. The search covers points up to search_m, so
+  // that the next query does not need one. The points of the last query are lost. pre: value_m <= search_m,
+  // and as above.
+  bool has_below(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double value_m,
+                 double search_m);
+
+  std::size_t size() const { return count_; }
+  Vec3 p_T(std::size_t i) const { return {points_[kX][i], points_[kY][i], points_[kZ][i]}; }
+  double distance_m(std::size_t i) const { return points_[kDistance][i]; }  // the field there
+  // Index of the point in the packed() cloud of the finder's.
+  std::uint32_t number(std::size_t i) const { return static_cast<std::uint32_t>(points_[kNumber][i]); }
+
+ private:
+  enum Column { kX, kY, kZ, kDistance, kNumber, kColumns };
+  void measure(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
+               const GroupsInReach& groups);
+  void finish_outside(const VoxelTool& tool, double reach_m);
+
+  KeptGroups groups_;
+  struct OnWay {
+    Buffer<std::uint32_t> index, group;
+    Buffer<double> nearest_m;
+  };
+  OnWay on_way_;
+  ColumnBlock<kColumns> points_;
+  std::size_t count_ = 0;
+};
+
+// Counts the points of a cloud that the tool touches at a pose. Every point is counted by itself.
+//
+// Groups of points are kept from one pose to the next (KeptGroups). The voxel in which a point lies, or
+// its distance, classifies most points. Only for the others, the nearest position on the disk is searched.
+
+struct Touched {
+  ContactState state = ContactState::free;  // entrenched: some points are in interior voxels
+  int points = 0;
+  int clusters = 0;               // number of 10 mm cells of the tool frame with touched points
+  double nearest_distance_m = 0;  // smallest field value of a point; infinite beyond the reach
+};
+
+class TouchedPoints {
+ public:
+  static constexpr double kTouch_m = 1e-4;  // a disk closer to the tool than this is touched
+
+  // Counts points in voxels. If with_disks is true, points whose disk touches the tool count too.
+  TouchedPoints(double disk_radius_ratio, bool with_disks)
+      : disk_radius_ratio_(disk_radius_ratio), touch_m_(with_disks ? kTouch_m : kNever_m) {
+    points_.grow(kPortion), disks_.grow(kPortion + kLanes), contacts_.grow(kPortion);
+  }
+
+  void on_frame() { groups_.on_frame(); }  // call it for each new cloud of the finder
+  void reserve(std::size_t padded_size);   // reserves memory for clouds of this size
+  // Counts the touched points among those whose field value is reach_m or less. A point is touched if it lies
+  // in a shell or interior voxel and its field value is voxels_m or less, or if its disk touches the tool.
+  // pre: reach_m <= kFieldMargin_m - 2e-4, and reserve() was called for the finder's cloud.
+  Touched query(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose, double reach_m,
+                double voxels_m);
+
+ private:
+  static constexpr double kNever_m = -std::numeric_limits<double>::infinity();
+
+  void add_unclear(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
+                   const TouchLimits& limits, Touched& all);
+  void search_disks(const TouchFinder& finder, const Kernels& kernels, const ToolPose& pose,
+                    std::span<const std::uint32_t> numbers);
+  void add_single(std::uint32_t number, const TouchFinder& finder, const ToolPose& pose,
+                  const TouchLimits& limits, Touched& all);
+  void add_touched(const Vec3& p_T, ContactState state, Touched& all);
+
+  const double disk_radius_ratio_, touch_m_;
+  KeptGroups groups_;
+  Buffer<std::uint32_t> unclear_;
+  // The disks of some unclear points, and the distances of their nearest positions; NaN: not known.
+  static constexpr std::size_t kPortion = 256;
+  ColumnBlock<8> points_;
+  ColumnBlock<16> disks_;
+  Buffer<ContactNumbers> contacts_;
+  Vec3 disk_p_T(std::size_t i) const { return {disks_[0][i], disks_[1][i], disks_[2][i]}; }
+  Buffer<std::uint64_t> clusters_;
+  std::size_t cluster_count_ = 0, unclear_count_ = 0;
+};
+
+}  // namespace remote_touch

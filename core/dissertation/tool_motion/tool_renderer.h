@@ -1,0 +1,85 @@
+// 6-DOF rendering of streaming point clouds with a rigid tool, chapter 6.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/dissertation/tool_motion/contact_list.h"
+#include "core/dissertation/tool_motion/tool_motion.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
+#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/rendering/frame_order.h"
+#include "core/rendering/renderer.h"
+#include "core/rendering/surface_velocity.h"
+
+namespace remote_touch {
+
+// The motion of a surface from one frame to the next, as a motion of the tool: world axes, about its centre
+// of mass.
+struct ToolSurfaceMotion {
+  Vector6 displacement = Vector6::Zero();  // displacement of the tool, m and rad
+  Vector6 rate_per_s = Vector6::Zero();    // rate of the surface that holds the tool, m/s and rad/s
+};
+
+// The device holds the tool at its centre of mass. The printed rule ignores points without a normal. The
+// look-ahead rule treats them as points instead of disks. ToolOutput::disabled_points is their number.
+class ToolRenderer : public Renderer {
+ public:
+  ToolRenderer(const ToolParameters& parameters, const std::shared_ptr<const VoxelTool>& tool,
+               const Kernels& kernels);
+  // Moves the tool by `rule` instead of parameters.contact_rule, which then only defines how contacts are
+  // counted.
+  ToolRenderer(const ToolParameters& parameters, std::shared_ptr<const VoxelTool> tool,
+               const Kernels& kernels, std::unique_ptr<ToolMotion> rule);
+
+  void prepare(Frame& frame) const override;
+  void reserve(std::size_t points) override;
+  void on_frame(const Frame& frame) override;
+  // Adds a frame, with other points than its own, and with a motion that was measured by other means and
+  // replaces (4.3) and (4.13).
+  void on_frame(const Frame& frame, std::shared_ptr<const TiledCloud> points,
+                const ToolSurfaceMotion& motion);
+  // replace_points() replaces the points of the newest frame. displace() moves the tool.
+  void replace_points(std::shared_ptr<const TiledCloud> points);
+  void displace(const Vector6& by);
+  bool is_newer(const Frame& frame) const { return order_.is_newer(frame); }
+  const ToolPose& pose() const { return pose_; }
+  // True if points pushed the tool in the last step of the last tick.
+  bool is_held() const { return is_held_; }
+  // Returns the contacts near the tool at its present pose. Valid until the next call of any function.
+  NearContacts near() { return contacts_.near(pose_, 0); }
+  Parameters live_parameters() override { return live_ones(parameters(p_)); }
+  void parameters_changed() override;
+  RenderOutput step(const DeviceState& device, double time_s) override;
+
+ private:
+  void take_points(std::shared_ptr<const TiledCloud> points);
+  void follow(const ToolPose& device, RenderOutput& out);
+  ToolPose coupled_pose(double time_s) const;
+  void measure(RenderOutput& out);
+
+  ToolParameters p_;
+  const std::shared_ptr<const VoxelTool> tool_;
+  const Kernels& kernels_;
+  ContactList contacts_;
+  std::unique_ptr<ToolMotion> motion_;
+  SurfaceVelocity velocity_;
+
+  ToolPose pose_;
+  Vec3 normal_W_ = Vec3::Zero();  // contact normal: direction in which the points push the tool
+  bool placed_ = false;           // the tool starts at the first device pose
+  bool updated_ = false;          // a frame came in since the last tick
+  bool is_held_ = false;          // points pushed the tool in the last step of the tick
+  double frame_arrived_s_ = 0;
+  std::optional<Vector6> measured_rate_per_s_;  // replaces the estimate
+  Vector6 allowed_W_ = Vector6::Zero();         // ToolMotionReport::allowed_W of the last tick
+  SlavePosition slave_;
+  FrameOrder order_;
+  Vec3 frame_correction_m_ = Vec3::Zero();
+
+  ToolPose measured_at_;  // pose of touched_, valid while is_measured_
+  Touched touched_;
+  bool is_measured_ = false;
+};
+
+}  // namespace remote_touch
