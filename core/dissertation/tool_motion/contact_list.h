@@ -8,7 +8,6 @@
 
 #include "core/dissertation/tool_motion/contact_thinning.h"
 #include "core/dissertation/tool_motion/motion_program.h"
-#include "core/dissertation/tool_motion/near_disks.h"
 #include "core/dissertation/tool_motion/near_points.h"
 #include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/touch_finder.h"

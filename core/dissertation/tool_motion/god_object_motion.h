@@ -15,7 +15,7 @@
 // are not touched any more, because of an error of second order.
 //
 // The mesh of the scene. The source has two meshes at rest. Its contacts are corners against faces and edges
-// against edges. Here the faces of the scene are the small disks around its points (near_disks.h). A
+// against edges. Here the faces of the scene are the small disks around its points (near_points.h). A
 // contact is a point against the surface of the tool, or the surface of the tool against a disk, with the
 // normal of the disk. The tool never passes a point (continuous_contacts.h); the time of contact with a disk
 // is that of the linearised motion. Edges of a scene are not known, and there is nothing where the sensor saw

@@ -1,4 +1,4 @@
-#include "core/dissertation/tool_motion/near_disks.h"
+#include "core/dissertation/tool_motion/near_points.h"
 
 #include <gtest/gtest.h>
 
