@@ -17,7 +17,7 @@
 // The mesh of the scene. The source has two meshes at rest. Its contacts are corners against faces and edges
 // against edges. Here the faces of the scene are the small disks around its points (near_points.h). A
 // contact is a point against the surface of the tool, or the surface of the tool against a disk, with the
-// normal of the disk. The tool never passes a point (continuous_contacts.h); the time of contact with a disk
+// normal of the disk. The tool never passes a point (contact_list.h); the time of contact with a disk
 // is that of the linearised motion. Edges of a scene are not known, and there is nothing where the sensor saw
 // nothing.
 //
@@ -35,7 +35,7 @@
 // look-ahead rule.
 #pragma once
 
-#include "core/dissertation/tool_motion/continuous_contacts.h"
+#include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/tool_motion.h"
 #include "core/dissertation/tool_motion/tool_parameters.h"
 

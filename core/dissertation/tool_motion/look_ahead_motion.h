@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "core/dissertation/tool_motion/contact_list.h"
-#include "core/dissertation/tool_motion/continuous_contacts.h"
 #include "core/dissertation/tool_motion/tool_motion.h"
 
 namespace remote_touch {
@@ -81,7 +80,7 @@ class LookAheadMotion {
 };
 
 // The continuous rule: the look-ahead rule, with steps that end before the first point would enter the tool.
-// So no point that is outside a closed tool enters it between two frames (continuous_contacts.h).
+// So no point that is outside a closed tool enters it between two frames (contact_list.h).
 //
 // A new frame can put its points anywhere, also into the tool or past it. If points held the tool before the
 // frame, the tool is first moved out, in the direction in which they pushed it. It stops at the first

@@ -1,4 +1,4 @@
-#include "core/dissertation/tool_motion/continuous_contacts.h"
+#include "core/dissertation/tool_motion/contact_list.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <memory>
 #include <random>
 
-#include "core/dissertation/tool_motion/contact_list.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/cloud_form.h"
 #include "tests/support/meshes.h"

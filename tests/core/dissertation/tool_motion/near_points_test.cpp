@@ -12,7 +12,6 @@
 
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/contact_thinning.h"
-#include "core/dissertation/tool_motion/continuous_contacts.h"
 #include "core/kernels/isa.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/cloud_form.h"
