@@ -24,9 +24,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/dissertation/tool_motion/tool_motion.h"
 #include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/exact_sum.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/dissertation/tool_motion/tool_motion.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 
 namespace remote_touch {
 

@@ -41,8 +41,8 @@
 
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/contact_list.h"
-#include "core/dissertation/tool_motion/tool_motion.h"
 #include "core/dissertation/tool_motion/tool_parameters.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/dissertation/tool_motion/tool_motion.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
 
 namespace remote_touch {
 namespace {

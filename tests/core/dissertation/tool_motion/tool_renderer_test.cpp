@@ -1,8 +1,6 @@
-// The 6-DOF renderer at its edges: odd clouds, odd devices, odd frames.
 #include "core/dissertation/tool_motion/tool_renderer.h"
 
 #include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,6 +11,41 @@
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
+namespace remote_touch::tool_motion_test {
+namespace {
+
+TEST(MotionProgress, HasNotEndedWhileTheToolComesNearer) {
+  MotionProgress progress(0.125, 2);
+  for (double left = 10; left > 0; left -= 0.25) {
+    progress.update(left);
+    EXPECT_FALSE(progress.has_ended()) << left;
+  }
+}
+
+TEST(MotionProgress, EndsAfterTheGivenNumberOfStepsWithoutProgress) {
+  MotionProgress progress(0.125, 2);
+  progress.update(10);
+  progress.update(10 - 0.125);  // equal to the minimum, which counts as no progress
+  EXPECT_FALSE(progress.has_ended());
+  progress.update(11);
+  EXPECT_TRUE(progress.has_ended());
+}
+
+TEST(MotionProgress, CountsAgainFromTheNearestWay) {
+  MotionProgress progress(0, 2);
+  progress.update(10);
+  progress.update(12);
+  progress.update(9);
+  EXPECT_FALSE(progress.has_ended());
+  progress.update(11);
+  progress.update(9.5);  // nearer than one step before, but not than the nearest
+  EXPECT_TRUE(progress.has_ended());
+}
+
+}  // namespace
+}  // namespace remote_touch::tool_motion_test
+
+// The 6-DOF renderer at its edges: odd clouds, odd devices, odd frames.
 namespace remote_touch::tool_renderer_test {
 namespace {
 
