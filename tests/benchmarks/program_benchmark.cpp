@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool_motion/quadratic_program.h"
+#include "core/dissertation/tool_motion/motion_program.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/core/dissertation/tool_motion/program_peers.h"
 #ifdef REMOTE_TOUCH_NLOPT

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/dissertation/tool_motion/quadratic_program.h"
+#include "core/dissertation/tool_motion/motion_program.h"
 
 namespace remote_touch::peers {
 

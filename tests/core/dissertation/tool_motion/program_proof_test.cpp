@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/dissertation/tool_motion/quadratic_program.h"
+#include "core/dissertation/tool_motion/motion_program.h"
 #include "tests/core/dissertation/tool_motion/program_problems.h"
 #ifdef REMOTE_TOUCH_NLOPT
 #include "tests/core/dissertation/tool_motion/nlopt_program.h"
