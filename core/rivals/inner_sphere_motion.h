@@ -24,8 +24,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/dissertation/tool_motion/tool_parameters.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/parameters/parameter.h"

@@ -8,7 +8,7 @@
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/points/point_cloud.h"
 
 namespace remote_touch::benchmarks {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 

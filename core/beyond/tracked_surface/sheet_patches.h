@@ -9,8 +9,8 @@
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/motion_program.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/tiled_cloud.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
 
 namespace remote_touch {

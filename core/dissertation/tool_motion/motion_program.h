@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/dissertation/tool_motion/tool_parameters.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 
 namespace remote_touch {
 

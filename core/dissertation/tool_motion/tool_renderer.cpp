@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/dissertation/tool_motion/look_ahead_motion.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 
 namespace remote_touch {
 

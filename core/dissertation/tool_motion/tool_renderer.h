@@ -8,8 +8,7 @@
 
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/motion_program.h"
-#include "core/dissertation/tool_motion/tool_parameters.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "core/rendering/surface_velocity.h"

@@ -11,8 +11,8 @@
 
 #include "core/dissertation/tool/shape/distance_field.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/tiled_cloud.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
 #include "core/kernels/kernels.h"
 #include "core/points/neighbour_search.h"
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame_order.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"

@@ -14,7 +14,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -11,7 +11,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "analysis/theory/exact_contacts.h"
-#include "core/dissertation/tool_motion/tool_parameters.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 

@@ -7,7 +7,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/theory/exact_contacts.h"
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/dissertation/tool_motion/tool_parameters.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"

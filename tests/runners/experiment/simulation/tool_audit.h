@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/points/point_cloud.h"
 

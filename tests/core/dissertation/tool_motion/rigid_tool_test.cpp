@@ -1,4 +1,4 @@
-#include "core/dissertation/tool_motion/tool_pose.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>
