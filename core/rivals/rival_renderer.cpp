@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/dissertation/proxy/proxy_step.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

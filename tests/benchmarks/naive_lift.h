@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/dissertation/proxy/proxy_step.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 #include "core/points/vector.h"
 #include "scenarios/synthetic/lifts.h"
 

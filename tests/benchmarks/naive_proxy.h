@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/dissertation/proxy/proxy_step.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 #include "core/points/point_cloud.h"
 #include "core/rendering/renderer.h"
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "core/dissertation/proxy/proxy_motion.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/dissertation/proxy/proxy_step.h"
 #include "core/kernels/isa.h"
 #include "core/points/neighbour_search.h"
 #include "tests/benchmarks/checked_benchmark.h"

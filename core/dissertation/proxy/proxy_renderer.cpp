@@ -6,8 +6,7 @@
 #include <new>
 #include <utility>
 
-#include "core/dissertation/proxy/proxy_step.h"
-#include "core/dissertation/proxy/region_motion.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/dissertation/proxy/proxy_step.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 #include "core/kernels/kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "core/points/neighbour_search.h"

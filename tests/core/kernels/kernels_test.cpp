@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "core/dissertation/proxy/proxy_equations.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 #include "core/kernels/isa.h"
 #include "core/kernels/point_kernels.h"
 #include "core/kernels/proxy_kernels.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/dissertation/proxy/proxy_equations.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 
 namespace remote_touch {
 namespace {

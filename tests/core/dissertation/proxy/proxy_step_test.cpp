@@ -1,4 +1,4 @@
-#include "core/dissertation/proxy/proxy_step.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 
 #include <gtest/gtest.h>
 

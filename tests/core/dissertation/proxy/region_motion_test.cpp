@@ -1,4 +1,4 @@
-#include "core/dissertation/proxy/region_motion.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/proxy/proxy_equations.h"
+#include "core/dissertation/proxy/proxy_motion.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::union_of_spheres_test {

@@ -1,18 +1,85 @@
-// One step of the proxy movement algorithm, 4.2.3 and 4.2.4 (chapter 5: the same with r_n and r_f).
+// The equations of 4.2 and 5.3 that a proxy P needs of every point x near it, one statement each. The kernels
+// of core/kernels/proxy_kernels.h compute them for many points at a time and are tested against this form.
+// Number: double or long double. Positions and radii are in m, directions have unit length.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/kernels/kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/kernels/proxy_kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 
+namespace remote_touch::equations {
+
+template <class Number>
+using Vec = Eigen::Matrix<Number, 3, 1>;
+
+// The distance r_n of P to the region of radius r_f around a point, (5.5); r_f is 0 for a bare point.
+template <class Number>
+Number distance(const Vec<Number>& P, const Vec<Number>& x, Number r_f) {
+  return (P - x).norm() - r_f;  // (5.5)
+}
+
+// The modified Wendland function psi, (4.2).
+template <class Number>
+Number weight(Number r, Number r1, Number r3) {
+  const Number t = (r - r1) / (r3 - r1);
+  return r <= r1 ? 1 : r >= r3 ? 0 : (1 - t) * (1 - t) * (1 - t) * (1 - t) * (4 * t + 1);  // (4.2)
+}
+
+// The term of a point in the normal (4.1), with r_n in place of the distance, (5.5). A point at P has no
+// direction: its term is zero.
+template <class Number>
+Vec<Number> normal_term(const Vec<Number>& P, const Vec<Number>& x, Number r_f, Number r1, Number r3) {
+  const Number length = (P - x).norm();
+  if (!(length > 0)) return Vec<Number>::Zero();
+  return (P - x) / length * weight(distance(P, x, r_f), r1, r3);  // (4.1)
+}
+
+// The roots d of r_c + r_f = |x - P - d direction|, (4.9), (4.10), (5.9), (5.11).
+template <class Number>
+struct Roots {
+  Number near, far;
+};
+// Returns nothing if no d reaches the region. The roots lie about the foot of x on the line, because the
+// usual formula of a quadratic equation loses half of the digits.
+template <class Number>
+std::optional<Roots<Number>> roots(const Vec<Number>& P, const Vec<Number>& x, const Vec<Number>& direction,
+                                   Number radius) {
+  const Number foot = (x - P).dot(direction);
+  const Number rest = radius * radius - (x - P - foot * direction).squaredNorm();
+  if (!(rest >= 0)) return {};
+  return Roots<Number>{foot - std::sqrt(rest), foot + std::sqrt(rest)};
+}
+
+// Returns how far a free proxy may go before it meets the region: the root of (4.9) ahead of it.
+template <class Number>
+std::optional<Number> first_hit(const Vec<Number>& P, const Vec<Number>& x, const Vec<Number>& direction,
+                                Number radius) {
+  const auto d = roots(P, x, direction, radius);
+  return d && d->near > 0 ? std::optional<Number>(d->near) : std::nullopt;  // (4.9), (5.9)
+}
+
+// Returns how far an entrenched proxy has to go until the region, whose inner radius is r1 + r_f, holds it
+// at its surface: the larger root of (4.10). 0 if the region does not entrench it.
+template <class Number>
+Number exit_distance(const Vec<Number>& P, const Vec<Number>& x, const Vec<Number>& direction, Number radius,
+                     Number inner) {
+  const auto d = roots(P, x, direction, radius);
+  return d && (P - x).norm() < inner ? d->far : 0;  // (4.10), (5.11)
+}
+
+}  // namespace remote_touch::equations
+
+// One step of the proxy movement algorithm, 4.2.3 and 4.2.4 (chapter 5: the same with r_n and r_f).
 namespace remote_touch {
 
 // Settings of the point cloud proxy, Table 4.2, and the readings of an equation that can be chosen.
@@ -150,5 +217,42 @@ class KnownSteps {
   std::uint64_t generation_ = 1;
   Vec3 hip_W_ = Vec3::Zero();
 };
+
+}  // namespace remote_touch
+
+// Motion of a proxy among regions: the way out of a union of them, and a motion that enters none.
+namespace remote_touch {
+
+// The way out of a union of regions that encloses the proxy. Not in the dissertation.
+
+// Returns a position outside all regions (r_n >= r1): the end of the shortest of nine straight lines from p.
+// One line leads along the normal. Four lead across it: towards u, away from u, and to both sides. Four lie
+// halfway between the normal and these. No line leads against the normal, so the proxy stays on its side. If
+// the normal is zero, the direction away from u replaces it; if u is zero too, an axis of the world replaces
+// it. Returns nullopt if no line leaves all regions after kMaxExits of them.
+//
+// (5.11) chooses a new direction in every step and can move in circles, but a straight line leaves every
+// region only once.
+inline constexpr int kMaxExits = 32;
+std::optional<Vec3> straight_exit(Neighbourhood& near, const Kernels& kernels, const Vec3& p_W,
+                                  const Vec3& normal_W, const Vec3& u, const ProxyParameters& p);
+
+// Returns r_f of the region that is nearest to p, or of the region in which p is deepest. If several are
+// equally near, the smallest r_f is returned. Returns nullopt if there are no points.
+std::optional<double> nearest_region_radius_m(const PointsView& points, const Vec3& p_W);
+
+// Motion that enters none of the regions which the proxy touches: an alternative to the tangent plane of
+// (5.16), whose normal (5.7) is a mean over regions.
+
+// Returns the motion nearest to u among those that enter no region within r2 of p: the projection of u onto
+// the cone of all s with n_i . s >= 0, n_i = (p - x_i) / |p - x_i|. It is u itself if no region is in the
+// way. It is zero in a corner that holds p from all sides. Returns nullopt if the projection is not found
+// within a bounded number of rounds. A point at p itself is skipped.
+std::optional<Vec3> admissible_motion(const PointsView& points, const Vec3& p_W, const Vec3& u, double r2);
+
+// Returns true if the mean normal, the unit vector normal_W, is not reliable, as in a crease. This is so if
+// the direction away from some region within r2 of p deviates from normal_W by more than the angle that has
+// this cosine. It is also true between the points of a flat surface, if they are far apart.
+bool is_in_crease(const PointsView& points, const Vec3& p_W, const Vec3& normal_W, double r2, double cosine);
 
 }  // namespace remote_touch
