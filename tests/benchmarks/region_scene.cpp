@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/dissertation/sphere_tree/tool_spheres.h"
+#include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "tests/benchmarks/tool_scene.h"
 
 namespace remote_touch::benchmarks {

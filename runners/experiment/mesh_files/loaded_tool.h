@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/beyond/tracked_surface/tracked_renderers.h"
-#include "core/dissertation/sphere_tree/tool_spheres.h"
+#include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/compared_motions.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"

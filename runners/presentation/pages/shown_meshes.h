@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/sphere_tree/tool_spheres.h"
+#include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/points/vector.h"
 #include "scenarios/files/text_file.h"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/sphere_tree/tool_spheres.h"
+#include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool_motion/look_ahead_motion.h"
 #include "core/kernels/point_kernels.h"
 #include "core/points/vector.h"
