@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/mesh/mesh_check.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "core/mesh/mesh_check.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/points/vector.h"
 

@@ -1,9 +1,18 @@
 #include "core/mesh/triangle_mesh.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <deque>
+#include <map>
 #include <numeric>
+#include <set>
+#include <tuple>
+
+#include "core/points/vector.h"
 
 namespace remote_touch {
+
 namespace {
 
 using Vec2 = Eigen::Vector2d;
@@ -151,6 +160,288 @@ std::optional<std::vector<std::array<int, 3>>> polygon_triangles(const std::vect
   std::optional<Triangles> triangles = ears(at);
   if (triangles && !have_area_of_polygon(*triangles, at)) return {};
   return triangles;
+}
+
+namespace {
+
+// Returns the root of a triangle's part in a forest of parents, and shortens the paths on the way.
+int root_of(std::vector<int>& parent, int triangle) {
+  while (parent[triangle] != triangle) triangle = parent[triangle] = parent[parent[triangle]];
+  return triangle;
+}
+
+void count_edges(const std::vector<MeshEdge>& edges, MeshCheck& check) {
+  for_each_edge(edges, [&](std::span<const MeshEdge> triangles) {
+    if (triangles.size() == 1)
+      ++check.boundary_edges;
+    else if (triangles.size() > 2)
+      ++check.non_manifold_edges;
+    else if (triangles[0].forward == triangles[1].forward)
+      ++check.inconsistent_edges;
+  });
+}
+
+// Merges vertices: a vertex is replaced by the first one within reach of it. Cells that are twice the reach
+// wide find it.
+void weld(TriangleMesh& mesh, MeshRepair& done) {
+  const BoundingBox box = bounding_box(mesh.vertices);
+  const double reach = 1e-6 * box.sizes().maxCoeff();
+  if (!(reach > 0)) return;
+  using Cell = std::array<std::int64_t, 3>;
+  std::map<Cell, std::vector<int>> cells;
+  std::vector<int> now(mesh.vertices.size());
+  std::vector<Vec3> kept;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Vec3 at = (mesh.vertices[v] - box.min()) / (2 * reach);
+    const Cell cell{std::llround(at.x()), std::llround(at.y()), std::llround(at.z())};
+    int same = -1;
+    for (int n = 0; n < 27; ++n) {
+      const auto found = cells.find({cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1});
+      if (found == cells.end()) continue;
+      for (const int other : found->second)
+        if ((kept[other] - mesh.vertices[v]).norm() <= reach && (same < 0 || other < same)) same = other;
+    }
+    if (same < 0) {
+      same = static_cast<int>(kept.size());
+      kept.push_back(mesh.vertices[v]);
+      cells[cell].push_back(same);
+    } else {
+      ++done.welded_vertices;
+    }
+    now[v] = same;
+  }
+  mesh.vertices = std::move(kept);
+  for (auto& triangle : mesh.triangles)
+    for (int& corner : triangle) corner = now[corner];
+}
+
+void drop_useless(TriangleMesh& mesh, MeshRepair& done) {
+  std::set<std::array<int, 3>> seen;
+  std::vector<std::array<int, 3>> kept;
+  for (const auto& triangle : mesh.triangles) {
+    auto [a, b, c] = triangle;
+    std::array<int, 3> corners = triangle;
+    std::sort(corners.begin(), corners.end());
+    // A triangle without area whose corners differ connects its neighbours, so it stays.
+    if (a == b || b == c || c == a || !seen.insert(corners).second)
+      ++done.dropped_triangles;
+    else
+      kept.push_back(triangle);
+  }
+  mesh.triangles = std::move(kept);
+}
+
+// Walks from triangle to triangle over the edges that two triangles share. Flips each triangle that runs
+// along an edge in the same direction as its neighbour. The walk does not cross edges of three triangles or
+// more. Returns the component of each triangle: the index of the component's first triangle. flipped: for
+// each triangle, whether it was flipped.
+std::vector<int> orient(TriangleMesh& mesh, std::vector<char>& flipped) {
+  const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
+  struct Neighbour {
+    int triangle;
+    bool opposed;
+  };
+  std::vector<std::vector<Neighbour>> neighbours(mesh.triangles.size());
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
+    if (sides.size() != 2) return;
+    const MeshEdge &a = sides[0], &b = sides[1];
+    neighbours[a.triangle].push_back({b.triangle, a.forward == b.forward});
+    neighbours[b.triangle].push_back({a.triangle, a.forward == b.forward});
+  });
+  std::vector<int> component(mesh.triangles.size(), -1);
+  flipped.assign(mesh.triangles.size(), 0);
+  for (std::size_t start = 0; start < component.size(); ++start) {
+    if (component[start] >= 0) continue;
+    component[start] = static_cast<int>(start);
+    std::deque<int> open{static_cast<int>(start)};
+    for (; !open.empty(); open.pop_front())
+      for (const auto& [other, opposed] : neighbours[open.front()])
+        if (component[other] < 0) {
+          component[other] = static_cast<int>(start);
+          flipped[other] = (flipped[open.front()] != 0) != opposed;
+          open.push_back(other);
+        }
+  }
+  for (std::size_t t = 0; t < flipped.size(); ++t)
+    if (flipped[t]) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+  return component;
+}
+
+// Closes every loop of boundary edges: a loop of three edges by a triangle, a longer one by a fan around its
+// middle.
+void fill_holes(TriangleMesh& mesh, std::vector<int>& component, MeshRepair& done) {
+  struct Way {
+    int to, component;
+  };
+  std::multimap<int, Way> directions;  // edges along holes, opposite to the direction of their triangles
+  const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
+  for_each_edge(edges, [&](std::span<const MeshEdge> sides) {
+    if (sides.size() > 1) return;
+    const auto [low, high, triangle, forward] = sides[0];
+    directions.emplace(forward ? high : low, Way{forward ? low : high, component[triangle]});
+  });
+  while (!directions.empty()) {
+    const int start = directions.begin()->first, part = directions.begin()->second.component;
+    std::vector<int> loop;
+    for (int at = start;;) {
+      const auto next = directions.find(at);
+      if (next == directions.end()) break;
+      loop.push_back(at);
+      at = next->second.to;
+      directions.erase(next);
+      if (at != start) continue;
+      Vec3 middle = Vec3::Zero();
+      for (const int v : loop) middle += mesh.vertices[v] / static_cast<double>(loop.size());
+      const int centre = static_cast<int>(mesh.vertices.size());
+      if (loop.size() > 3) mesh.vertices.push_back(middle);
+      if (loop.size() == 3) mesh.triangles.push_back({loop[0], loop[1], loop[2]});
+      for (std::size_t i = 0; loop.size() > 3 && i < loop.size(); ++i)
+        mesh.triangles.push_back({loop[i], loop[(i + 1) % loop.size()], centre});
+      component.resize(mesh.triangles.size(), part);
+      ++done.filled_holes;
+      break;
+    }
+  }
+}
+
+// Flips every part whose volume is negative. Changes `flipped` of its triangles as well; triangles that fill
+// holes have no entry there.
+void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, std::vector<char>& flipped) {
+  std::map<int, std::vector<int>> parts;
+  for (std::size_t t = 0; t < component.size(); ++t) parts[component[t]].push_back(static_cast<int>(t));
+  for (const auto& [first, triangles] : parts) {
+    // The volume is computed about a vertex of the part, so that it has the sign of most of the part even if
+    // there are gaps.
+    const Vec3 o = mesh.vertices[mesh.triangles[triangles.front()][0]];
+    double volume = 0;
+    for (const int t : triangles) {
+      const auto [a, b, c] = mesh.triangles[t];
+      volume += (mesh.vertices[a] - o).dot((mesh.vertices[b] - o).cross(mesh.vertices[c] - o));
+    }
+    if (volume >= 0) continue;
+    for (const int t : triangles) {
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+      if (static_cast<std::size_t>(t) < flipped.size()) flipped[t] = flipped[t] == 0 ? 1 : 0;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<MeshEdge> edges_by_vertices(const TriangleMesh& mesh) {
+  std::vector<MeshEdge> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      const int from = mesh.triangles[t][i], to = mesh.triangles[t][(i + 1) % 3];
+      edges.push_back({std::min(from, to), std::max(from, to), static_cast<int>(t), from < to});
+    }
+  std::sort(edges.begin(), edges.end(), [](const MeshEdge& a, const MeshEdge& b) {
+    return std::tie(a.low, a.high, a.triangle, a.forward) < std::tie(b.low, b.high, b.triangle, b.forward);
+  });
+  return edges;
+}
+
+std::vector<int> parts_of(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges, int& count) {
+  std::vector<int> parent(mesh.triangles.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  for (std::size_t e = 1; e < edges.size(); ++e) {
+    if (edges[e].low != edges[e - 1].low || edges[e].high != edges[e - 1].high) continue;
+    const int a = root_of(parent, edges[e - 1].triangle), b = root_of(parent, edges[e].triangle);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  std::vector<int> part(parent.size());
+  count = 0;
+  for (std::size_t t = 0; t < parent.size(); ++t) {  // a root is the first triangle of its part
+    const int root = root_of(parent, static_cast<int>(t));
+    part[t] = root == static_cast<int>(t) ? count++ : part[root];
+  }
+  return part;
+}
+
+double signed_volume(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  const Vec3 o = mesh.vertices.front();  // a point near the mesh reduces rounding errors
+  double six_volumes = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    six_volumes += (mesh.vertices[a] - o).dot((mesh.vertices[b] - o).cross(mesh.vertices[c] - o));
+  return six_volumes / 6;
+}
+
+bool is_degenerate(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+  const auto [a, b, c] = triangle;
+  if (a == b || b == c || c == a) return true;
+  const Vec3 ab = mesh.vertices[b] - mesh.vertices[a], ac = mesh.vertices[c] - mesh.vertices[a];
+  const double max_length = std::max({ab.squaredNorm(), ac.squaredNorm(), (ab - ac).squaredNorm()});
+  return ab.cross(ac).norm() <= 1e-10 * max_length;
+}
+
+MeshCheck check_mesh(const TriangleMesh& mesh) {
+  MeshCheck check;
+  check.vertices = static_cast<int>(mesh.vertices.size());
+  check.triangles = static_cast<int>(mesh.triangles.size());
+  for (const Vec3& v : mesh.vertices) check.bad_vertices += !v.allFinite();
+  for (const auto& triangle : mesh.triangles)
+    check.bad_indices += std::any_of(triangle.begin(), triangle.end(),
+                                     [&](int corner) { return corner < 0 || corner >= check.vertices; });
+  if (!check.readable()) return check;
+  const std::vector<MeshEdge> edges = edges_by_vertices(mesh);
+  parts_of(mesh, edges, check.parts);
+  count_edges(edges, check);
+  for (const auto& triangle : mesh.triangles) check.degenerate_triangles += is_degenerate(mesh, triangle);
+  check.volume_m3 = signed_volume(mesh);
+  return check;
+}
+
+std::string text(const MeshCheck& check) {
+  std::string faults;
+  const auto add = [&](int count, const std::string& one, const std::string& many) {
+    if (count > 0)
+      faults += (faults.empty() ? "" : ", ") + std::to_string(count) + " " + (count == 1 ? one : many);
+  };
+  if (check.triangles == 0) return "no triangles";
+  add(check.bad_vertices, "vertex that is not finite", "vertices that are not finite");
+  add(check.bad_indices, "triangle with a corner that is not a vertex",
+      "triangles with a corner that is not a vertex");
+  if (!faults.empty()) return faults;
+  add(check.boundary_edges, "boundary edge", "boundary edges");
+  add(check.non_manifold_edges, "non-manifold edge", "non-manifold edges");
+  add(check.inconsistent_edges, "edge between faces of opposite orientation",
+      "edges between faces of opposite orientation");
+  std::string all = faults.empty() ? "closed" : "not closed: " + faults;
+  faults.clear();
+  add(check.parts, "part", "parts");
+  add(check.triangles, "triangle", "triangles");
+  add(check.degenerate_triangles, "of them degenerate", "of them degenerate");
+  if (check.inverted()) faults += ", inside out";
+  return all + " (" + faults + ")";
+}
+
+TriangleMesh repair_mesh(const TriangleMesh& mesh, MeshRepair& done) {
+  done = {};
+  TriangleMesh repaired = mesh;
+  if (repaired.vertices.empty()) return repaired;
+  weld(repaired, done);
+  drop_useless(repaired, done);
+  std::vector<char> flipped;  // not of bool, because the library checks no index of such a vector
+  std::vector<int> component = orient(repaired, flipped);
+  fill_holes(repaired, component, done);
+  turn_outwards(repaired, component, flipped);
+  done.flipped_triangles = static_cast<int>(std::count(flipped.begin(), flipped.end(), 1));
+  return repaired;
+}
+
+std::string text(const MeshRepair& done) {
+  std::string all;
+  const auto add = [&](const char* verb, int count, const char* what) {
+    if (count > 0)
+      all += (all.empty() ? "" : ", ") + std::string(verb) + " " + std::to_string(count) + " " + what;
+  };
+  add("welded", done.welded_vertices, "vertices");
+  add("dropped", done.dropped_triangles, "triangles");
+  add("turned", done.flipped_triangles, "triangles");
+  add("filled", done.filled_holes, "holes");
+  return all.empty() ? "nothing" : all;
 }
 
 }  // namespace remote_touch

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/points/vector.h"
@@ -30,5 +33,83 @@ inline bool has_its_vertices(const TriangleMesh& mesh) {
 // edges cross or touch each other. Corners that are not in one plane are projected along the polygon's own
 // normal (that of its area vector). pre: three finite corners or more, neighbours differ.
 std::optional<std::vector<std::array<int, 3>>> polygon_triangles(const std::vector<Vec3>& corners);
+
+// Checks whether a mesh encloses a solid, so that inside and outside are defined.
+
+struct MeshCheck {
+  int vertices = 0;
+  int triangles = 0;
+  int parts = 0;                 // sets of triangles connected by edges
+  int boundary_edges = 0;        // edges of one triangle
+  int non_manifold_edges = 0;    // edges of three or more triangles
+  int inconsistent_edges = 0;    // edges of two triangles that run along them in the same direction
+  int degenerate_triangles = 0;  // triangles with a corner twice, or without area
+  int bad_vertices = 0;          // vertices that are not finite
+  int bad_indices = 0;           // triangles with a corner that is not a vertex
+  double volume_m3 = 0;          // signed; negative: inside out. Meaningless for an open mesh
+
+  bool readable() const { return triangles > 0 && bad_vertices == 0 && bad_indices == 0; }
+  // Returns true if every edge belongs to exactly two triangles that run along it in opposite directions.
+  // Vertices at the same position count as different, so merge them before.
+  bool closed() const {
+    return readable() && boundary_edges == 0 && non_manifold_edges == 0 && inconsistent_edges == 0;
+  }
+  bool inverted() const { return closed() && volume_m3 < 0; }
+};
+
+MeshCheck check_mesh(const TriangleMesh& mesh);
+
+// Returns the result as text, such as "not closed: 81 boundary edges, 6 non-manifold edges (5 parts, 1795
+// triangles)" or "closed (1 part, ...)".
+std::string text(const MeshCheck& check);
+
+// An edge of one triangle. edges_by_vertices() sorts edges by low, high, then triangle, so that the edges of
+// the triangles that share one follow each other.
+struct MeshEdge {
+  int low, high;  // vertices
+  int triangle;
+  bool forward;  // the triangle runs from low to high
+};
+std::vector<MeshEdge> edges_by_vertices(const TriangleMesh& mesh);
+
+// Calls use(edges) for each pair of vertices, with the edges of its triangles. pre: the order of
+// edges_by_vertices().
+template <class Use>
+void for_each_edge(std::span<const MeshEdge> edges, const Use& use) {
+  while (!edges.empty()) {
+    std::size_t count = 1;
+    while (count < edges.size() && edges[count].low == edges[0].low && edges[count].high == edges[0].high)
+      ++count;
+    use(edges.first(count));
+    edges = edges.subspan(count);
+  }
+}
+
+// Returns the number of the part of each triangle. Parts are counted from 0 in the order of their first
+// triangles.
+std::vector<int> parts_of(const TriangleMesh& mesh, const std::vector<MeshEdge>& edges, int& count);
+
+// Returns the sum of the signed volumes of the tetrahedra from a point to all triangles.
+double signed_volume(const TriangleMesh& mesh);
+
+// Returns true if a corner occurs twice, or if the area is negligible compared with the squared length of the
+// edges.
+bool is_degenerate(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
+
+// Repairs a mesh that is not closed, as far as possible.
+
+struct MeshRepair {
+  int welded_vertices = 0;    // closer to another one than a millionth of the mesh's size
+  int dropped_triangles = 0;  // a corner occurs twice, or another triangle has the same corners
+  int flipped_triangles = 0;  // triangles of the mesh whose orientation has changed
+  int filled_holes = 0;       // loops of boundary edges, each closed by a triangle or a fan
+};
+
+// Repairs a mesh. Every part is oriented outwards separately: a part that was a hollow in another becomes
+// solid. Parts that cannot be closed (edges of three triangles, boundaries that are not loops) stay open: see
+// inside_nodes_of_open(). pre: indices in range, vertices finite.
+TriangleMesh repair_mesh(const TriangleMesh& mesh, MeshRepair& done);
+
+std::string text(const MeshRepair& done);  // "welded 12 vertices, filled 3 holes"; "nothing"
 
 }  // namespace remote_touch

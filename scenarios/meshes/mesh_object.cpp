@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/mesh/mesh_check.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 #include "scenarios/files/text_file.h"
 

@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_distance.h"
 #include "core/mesh/mesh_sides.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/files/text_file.h"

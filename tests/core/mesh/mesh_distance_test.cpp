@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "core/mesh/mesh_check.h"
 #include "core/mesh/mesh_sides.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"
 #include "tests/core/mesh/mesh_shapes.h"
 

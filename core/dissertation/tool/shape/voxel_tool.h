@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/mesh_check.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/mesh/mesh_check.h"
+#include "core/mesh/triangle_mesh.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/mesh/mesh_check.h"
+#include "core/mesh/triangle_mesh.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "tests/support/recorded_data.h"
 

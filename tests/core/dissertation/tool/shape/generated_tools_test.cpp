@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/mesh/mesh_check.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/parameters/parameter.h"
 #include "tests/support/meshes.h"
 
