@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/mesh/face_tree.h"
 #include "core/mesh/mesh_sides.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"

@@ -1,4 +1,4 @@
-#include "core/mesh/face_tree.h"
+#include "core/mesh/triangle_tree.h"
 
 #include <gtest/gtest.h>
 
