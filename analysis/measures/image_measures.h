@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

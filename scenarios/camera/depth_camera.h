@@ -12,8 +12,8 @@
 
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
 #include "core/points/noise.h"
+#include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
 

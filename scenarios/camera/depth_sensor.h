@@ -9,8 +9,8 @@
 #include "core/kernels/kernels.h"
 #include "core/kernels/point_kernels.h"
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
 #include "core/points/noise.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/camera/depth_camera.h"
 
 namespace remote_touch {

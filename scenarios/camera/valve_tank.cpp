@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 namespace {

@@ -19,7 +19,7 @@
 #include <new>
 #include <utility>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

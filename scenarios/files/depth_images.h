@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/points/camera.h"
 #include "core/points/point_cloud.h"
 
 namespace remote_touch {

@@ -18,7 +18,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/text_file.h"

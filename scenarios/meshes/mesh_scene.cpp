@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"

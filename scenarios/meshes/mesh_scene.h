@@ -11,7 +11,6 @@
 
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/file_order.h"
 #include "scenarios/files/text_file.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/points/camera.h"
 #include "core/points/order_statistic.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/points/camera.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/recordings/recording.h"
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/file_order.h"
 #include "scenarios/files/pcd_file.h"

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch::scenes {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

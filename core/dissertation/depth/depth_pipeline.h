@@ -12,7 +12,6 @@
 #include "core/kernels/depth_kernels.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

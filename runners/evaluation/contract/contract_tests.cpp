@@ -11,7 +11,6 @@
 
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
 #include "core/points/point_cloud.h"
 #include "runners/evaluation/contract/flat_scene.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -7,7 +7,7 @@
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/theory/exact_contacts.h"
 #include "core/kernels/isa.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/evaluation/figures/parts/ball_gaps.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"

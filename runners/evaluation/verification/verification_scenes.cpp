@@ -6,8 +6,8 @@
 #include <limits>
 #include <memory>
 
-#include "core/points/camera.h"
 #include "core/points/neighbour_search.h"
+#include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "scenarios/synthetic/grid_scene.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/hand/image_surface.h"
 #include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/hand/trajectory.h"

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/points/camera.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
 

@@ -295,7 +295,7 @@ typedef struct {
   double hue_deg, saturation, lightness;
 } Colour;
 
-// Computes the same as hue_saturation_lightness() in core/points/camera.cpp.
+// Computes the same as hue_saturation_lightness() in core/points/point_cloud.cpp.
 Colour colour_of(unsigned int rgb) {
   const int red = rgb >> 16 & 0xFF, green = rgb >> 8 & 0xFF, blue = rgb & 0xFF;
   const int more = red > green ? red : green, less = red < green ? red : green;
@@ -329,7 +329,7 @@ __kernel void fixture_columns(__global const unsigned int* restrict rgb,
   const double depth = depth_m[v * get_global_size(0) + u];
   // The difference is 0 for finite numbers only.
   const int is_seen = keeps_points ? depth - depth == 0 : measured(depth);
-  const int is_there = is_seen & (rgb[to] != 0xFF000000u);  // kNoColour of core/points/camera.h
+  const int is_there = is_seen & (rgb[to] != 0xFF000000u);  // kNoColour of core/points/point_cloud.h
   const Colour colour = colour_of(rgb[to]);
   double radius = 0, stiffness = or_none(0, 0);
   for (int i = 0; i < count; ++i) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/opencl/device_frames.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

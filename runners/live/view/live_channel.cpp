@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "runners/live/view/live_pages.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "analysis/storage/hdf5_file.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {

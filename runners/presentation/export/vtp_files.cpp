@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/presentation/export/exported_run.h"
 #include "runners/presentation/export/result_tables.h"
 #include "scenarios/files/text_file.h"

@@ -7,7 +7,7 @@
 
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/text_file.h"
 

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "core/kernels/isa.h"
-#include "core/points/camera.h"
 #include "core/points/neighbour_search.h"
+#include "core/points/point_cloud.h"
 #include "tests/benchmarks/checked_benchmark.h"
 
 namespace remote_touch {

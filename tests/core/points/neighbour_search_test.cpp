@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "tests/support/scenes.h"
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/points/camera.h"
 #include "core/points/noise.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/synthetic/grid_scene.h"
 #include "tests/support/scenes.h"
 

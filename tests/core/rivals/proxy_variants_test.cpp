@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::proxy_variants_test {

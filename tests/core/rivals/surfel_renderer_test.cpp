@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::surfel_renderer_test {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/scenes.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::valve_tank_test {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::depth_images_test {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::pcd_file_test {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "tests/support/depth_scenes.h"
 #include "tests/support/meshes.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/meshes/recorded_truth.h"

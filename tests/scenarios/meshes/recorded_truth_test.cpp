@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 

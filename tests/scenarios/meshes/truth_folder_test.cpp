@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::truth_folder_test {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "tests/support/test_files.h"
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

@@ -9,7 +9,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/trace/trace.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "core/rivals/implicit_surface_renderer.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/simulation/simulation.h"

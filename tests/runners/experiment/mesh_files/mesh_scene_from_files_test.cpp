@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "tests/runners/experiment/mesh_files/box_scene.h"
 #include "tests/support/meshes.h"
 #include "tests/support/note_kinds.h"

@@ -14,8 +14,8 @@
 
 #include "analysis/trace/trace.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
-#include "core/points/camera.h"
 #include "core/points/neighbour_search.h"
+#include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/experiment/simulation/reported_run.h"

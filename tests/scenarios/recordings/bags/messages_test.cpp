@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 #include "scenarios/recordings/bags/frames_from_messages.h"
 #include "tests/support/bag_files.h"
 #include "tests/support/test_files.h"

@@ -1,6 +1,6 @@
 // Hue, saturation and lightness: known colours, and back to red, green and blue.
 
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>

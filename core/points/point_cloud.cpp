@@ -1,4 +1,4 @@
-#include "core/points/camera.h"
+#include "core/points/point_cloud.h"
 
 #include <algorithm>
 #include <cmath>
