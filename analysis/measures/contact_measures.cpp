@@ -6,7 +6,7 @@
 
 #include "analysis/measures/force_measures.h"
 #include "analysis/measures/interval_estimates.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/measures/interval_estimates.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 #include "scenarios/files/file_order.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/meshes/mesh_object.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/files/text_file.h"
 

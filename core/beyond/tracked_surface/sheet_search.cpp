@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 
 namespace remote_touch {
 namespace {

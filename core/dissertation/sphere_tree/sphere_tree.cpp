@@ -12,7 +12,7 @@
 #include "core/mesh/triangle_tree.h"
 #include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

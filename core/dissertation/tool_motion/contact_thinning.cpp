@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/kernels/tool_kernels.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 
 namespace remote_touch {
 namespace {

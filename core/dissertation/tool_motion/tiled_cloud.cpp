@@ -7,7 +7,7 @@
 
 #include "core/dissertation/tool_motion/contact_thinning.h"
 #include "core/points/neighbour_search.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -11,7 +11,7 @@
 
 #include "core/dissertation/tool_motion/contact_thinning.h"
 #include "core/kernels/tool_kernels.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/recordings/recording.h"
 

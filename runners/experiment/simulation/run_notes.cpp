@@ -11,7 +11,7 @@
 #include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/neighbour_search.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 
 namespace remote_touch {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/studies/true_contacts.h"
 #include "runners/experiment/hand/image_surface.h"

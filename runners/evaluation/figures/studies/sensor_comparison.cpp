@@ -8,7 +8,7 @@
 #include "analysis/measures/curve_fits.h"
 #include "analysis/measures/interval_estimates.h"
 #include "core/parameters/parameter.h"
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 #include "runners/experiment/hand/image_surface.h"
 #include "scenarios/recordings/recorded_scene.h"
 

@@ -1,4 +1,4 @@
-#include "core/points/order_statistic.h"
+#include "core/points/number_columns.h"
 
 #include <algorithm>
 #include <cassert>
