@@ -13,7 +13,7 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
-#include "core/rendering/guidance_target.h"
+#include "core/rendering/frame.h"
 
 namespace remote_touch {
 

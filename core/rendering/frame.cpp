@@ -1,4 +1,4 @@
-#include "core/rendering/guidance_target.h"
+#include "core/rendering/frame.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,5 +1,5 @@
 // The target of guidance: the mean of the points of a class, and the plane in which they lie.
-#include "core/rendering/guidance_target.h"
+#include "core/rendering/frame.h"
 
 #include <gtest/gtest.h>
 
