@@ -10,7 +10,6 @@
 #include "core/kernels/proxy_kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
-#include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

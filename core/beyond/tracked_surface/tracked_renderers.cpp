@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/rendering/frame_order.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,6 @@
 #include "core/kernels/proxy_kernels.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
-#include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "core/rendering/surface_velocity.h"
 

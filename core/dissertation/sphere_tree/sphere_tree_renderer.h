@@ -15,7 +15,6 @@
 #include "core/dissertation/tool_motion/look_ahead_motion.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/kernels/kernels.h"
-#include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

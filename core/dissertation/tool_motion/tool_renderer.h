@@ -9,7 +9,6 @@
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/motion_program.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
-#include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "core/rendering/surface_velocity.h"
 

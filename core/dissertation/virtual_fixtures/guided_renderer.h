@@ -15,7 +15,6 @@
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/frame.h"
-#include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "core/rendering/frame_order.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/factory.h"

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <core/kernels/kernels.h>
-#include <core/rendering/frame_order.h>
 #include <core/rendering/renderer.h>
 #include <runners/experiment/catalog/factory.h>
 

@@ -1,4 +1,4 @@
-#include "core/rendering/frame_order.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 
