@@ -10,7 +10,7 @@
 #include "analysis/measures/contact_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/point_cloud.h"
-#include "core/rivals/implicit_surface_renderer.h"
+#include "core/rivals/implicit_surface_renderers.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
