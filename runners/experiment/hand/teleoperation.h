@@ -14,7 +14,6 @@
 #include "core/teleoperation/channel.h"
 #include "core/teleoperation/dead_band.h"
 #include "core/teleoperation/slave.h"
-#include "core/teleoperation/tool_slave.h"
 
 namespace remote_touch {
 

@@ -1,5 +1,5 @@
 // The slave robot with a tool: closed forms of its free motion and its contact, and the ball as an oracle.
-#include "core/teleoperation/tool_slave.h"
+#include "core/teleoperation/slave.h"
 
 #include <gtest/gtest.h>
 
