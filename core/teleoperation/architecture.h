@@ -29,7 +29,7 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "core/teleoperation/dead_band.h"
+#include "core/teleoperation/channel.h"
 #include "core/teleoperation/passivity_control.h"
 #include "core/teleoperation/slave.h"
 

@@ -9,7 +9,7 @@
 #include "core/dissertation/virtual_fixtures/guided_renderer.h"
 #include "core/parameters/parameter.h"
 #include "core/rendering/renderer.h"
-#include "core/teleoperation/dead_band.h"
+#include "core/teleoperation/channel.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/hand/simulated_hand.h"

@@ -12,7 +12,6 @@
 #include "core/rendering/renderer.h"
 #include "core/teleoperation/architecture.h"
 #include "core/teleoperation/channel.h"
-#include "core/teleoperation/dead_band.h"
 #include "core/teleoperation/slave.h"
 
 namespace remote_touch {

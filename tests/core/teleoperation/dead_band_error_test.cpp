@@ -6,7 +6,6 @@
 
 #include "core/points/vector.h"
 #include "core/teleoperation/channel.h"
-#include "core/teleoperation/dead_band.h"
 
 namespace remote_touch::dead_band_error_test {
 namespace {

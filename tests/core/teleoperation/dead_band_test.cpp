@@ -1,4 +1,4 @@
-#include "core/teleoperation/dead_band.h"
+#include "core/teleoperation/channel.h"
 
 #include <gtest/gtest.h>
 
