@@ -1,6 +1,6 @@
 // Energies at the ports of a channel, for random signals and in a closed loop that is unstable without
 // control.
-#include "core/teleoperation/passivity_control.h"
+#include "core/teleoperation/architecture.h"
 
 #include <gtest/gtest.h>
 
