@@ -10,6 +10,8 @@
 // per term, 2.8e-14 for up to 255 points.
 #pragma once
 
+#include <cstddef>
+
 namespace remote_touch {
 
 struct GatherKernels;
@@ -30,5 +32,10 @@ struct Kernels {
   const PatchKernels& patch;
   const DepthKernels& depth;
 };
+
+// Padding of columns to whole groups of kLanes. Each x86-64 level reads a group in one or several vectors.
+
+inline constexpr std::size_t kLanes = 8;
+inline constexpr double kFarAway = 1e100;  // coordinate of a padding point; its square is still finite
 
 }  // namespace remote_touch

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/kernels/lanes.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch {
 

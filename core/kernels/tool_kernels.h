@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "core/kernels/lanes.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "core/kernels/lanes.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch {
 
