@@ -7,7 +7,7 @@
 
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
-#include "scenarios/camera/valve_tank.h"
+#include "scenarios/camera/camera_scenes.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "scenarios/camera/beating_heart.h"
+#include "scenarios/camera/camera_scenes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenarios/camera/valve_tank.h"
+#include "scenarios/camera/camera_scenes.h"
 
 #include <gtest/gtest.h>
 

@@ -12,9 +12,8 @@
 #include <tuple>
 #include <vector>
 
-#include "scenarios/camera/beating_heart.h"
+#include "scenarios/camera/camera_scenes.h"
 #include "scenarios/camera/depth_camera.h"
-#include "scenarios/camera/valve_tank.h"
 #include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/panel_scenes.h"
 #include "scenarios/synthetic/resting_clouds.h"

@@ -9,7 +9,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/image_scan.h"
 #include "runners/experiment/hand/scripted_motions.h"
-#include "scenarios/camera/beating_heart.h"
+#include "scenarios/camera/camera_scenes.h"
 #include "scenarios/camera/depth_camera.h"
 #include "scenarios/synthetic/lifts.h"
 #include "scenarios/synthetic/resting_clouds.h"
