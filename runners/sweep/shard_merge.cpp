@@ -14,7 +14,7 @@
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_parts.h"
 #include "runners/sweep/sweep_session.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

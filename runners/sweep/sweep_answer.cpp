@@ -16,7 +16,7 @@
 #include "runners/sweep/answer_display.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_parts.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

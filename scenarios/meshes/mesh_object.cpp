@@ -8,7 +8,7 @@
 
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

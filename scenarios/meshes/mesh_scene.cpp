@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/points/point_cloud.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"
 

@@ -11,8 +11,7 @@
 
 #include "core/points/point_cloud.h"
 #include "scenarios/files/depth_images.h"
-#include "scenarios/files/file_order.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/pose_file.h"
 

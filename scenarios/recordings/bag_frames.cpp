@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/parameters/parameter.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/recordings/bags/frames_from_messages.h"
 #include "scenarios/recordings/recording.h"
 

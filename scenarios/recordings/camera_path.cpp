@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "core/points/number_columns.h"
-#include "scenarios/files/file_order.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/meshes/mesh_object.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/image_folders.h"

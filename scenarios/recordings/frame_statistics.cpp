@@ -5,7 +5,7 @@
 
 #include "core/points/number_columns.h"
 #include "core/points/point_cloud.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

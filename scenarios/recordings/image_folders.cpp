@@ -11,8 +11,7 @@
 #include <utility>
 
 #include "scenarios/files/depth_images.h"
-#include "scenarios/files/file_order.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

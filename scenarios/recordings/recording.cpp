@@ -10,9 +10,8 @@
 
 #include "core/points/point_cloud.h"
 #include "scenarios/files/depth_images.h"
-#include "scenarios/files/file_order.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/files/pcd_file.h"
-#include "scenarios/files/text_file.h"
 #include "scenarios/meshes/recorded_truth.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/bags/bag_file.h"

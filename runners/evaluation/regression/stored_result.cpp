@@ -9,7 +9,7 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/sweep/sweep_answer.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

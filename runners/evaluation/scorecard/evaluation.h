@@ -12,7 +12,7 @@
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/scorecard/benchmark_run.h"
 #include "runners/evaluation/scorecard/scorecard.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

@@ -9,8 +9,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/files/file_order.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "runners/experiment/hand/image_surface.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/points/number_columns.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

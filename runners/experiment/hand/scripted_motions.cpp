@@ -7,7 +7,7 @@
 
 #include "core/points/noise.h"
 #include "core/points/vector.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

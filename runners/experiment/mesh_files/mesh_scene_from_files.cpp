@@ -14,7 +14,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/meshes/mesh_object.h"
 
 namespace remote_touch {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runners/experiment/mesh_files/mesh_text.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

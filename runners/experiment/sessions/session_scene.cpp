@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/parameter.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/recordings/frame_statistics.h"
 
 namespace remote_touch {

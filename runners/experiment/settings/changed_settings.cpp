@@ -5,7 +5,7 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

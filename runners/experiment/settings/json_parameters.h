@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

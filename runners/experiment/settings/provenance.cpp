@@ -9,7 +9,7 @@
 #include "analysis/storage/digest.h"
 #include "build_info.h"  // written by the build: version, commit, compiler, flags
 #include "core/kernels/isa.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

@@ -31,7 +31,7 @@
 #include "runners/presentation/pages/sweep_page.h"
 #include "runners/presentation/pages/trace_page.h"
 #include "runners/sweep/stored_sweep.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

@@ -7,7 +7,7 @@
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/sensors/adapters.h"
-#include "scenarios/files/file_order.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/recordings/recorded_scene.h"
 
 namespace remote_touch {

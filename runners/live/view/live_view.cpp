@@ -8,7 +8,7 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/presentation/pages/shown_meshes.h"
 #include "runners/presentation/pages/view_page.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

@@ -8,7 +8,7 @@
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/presentation/pages/shown_frames.h"
 #include "runners/presentation/pages/shown_meshes.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/presentation/export/exported_run.h"
 #include "runners/presentation/export/result_tables.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/points/vector.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {

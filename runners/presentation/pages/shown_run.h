@@ -10,7 +10,7 @@
 #include "core/kernels/kernels.h"
 #include "core/points/vector.h"
 #include "runners/presentation/pages/shown_meshes.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/experiment/settings/provenance.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

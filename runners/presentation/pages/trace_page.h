@@ -8,7 +8,7 @@
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
 #include "runners/presentation/pages/view_page.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/recordings/bags/bag_file.h"
 
 namespace remote_touch {

@@ -16,8 +16,7 @@
 #include <new>
 #include <utility>
 
-#include "scenarios/files/file_order.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/recordings/bags/bag_chunk.h"
 
 namespace remote_touch {

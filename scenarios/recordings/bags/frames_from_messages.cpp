@@ -9,7 +9,7 @@
 
 #include "core/points/point_cloud.h"
 #include "scenarios/files/depth_images.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/parameters/parameter.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/recordings/bags/bag_chunk.h"
 #include "scenarios/recordings/bags/messages.h"
 

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

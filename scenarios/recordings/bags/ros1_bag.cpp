@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "core/parameters/parameter.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/recordings/bags/bag_chunk.h"
 
 namespace remote_touch {

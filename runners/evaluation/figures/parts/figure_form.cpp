@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/atomic_file.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 

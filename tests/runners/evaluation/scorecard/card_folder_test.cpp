@@ -9,7 +9,7 @@
 #include "core/kernels/isa.h"
 #include "runners/evaluation/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/evaluation.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::card_folder_test {

@@ -8,7 +8,7 @@
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/evaluation/scorecard/report_json.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "tests/support/recorded_wall.h"
 
 namespace remote_touch::scorecard_truth_test {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runners/evaluation/scorecard/report_json.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::scorecard_report_test {

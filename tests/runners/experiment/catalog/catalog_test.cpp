@@ -14,7 +14,7 @@
 #include "runners/evaluation/figures/figures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "scenarios/synthetic/resting_clouds.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

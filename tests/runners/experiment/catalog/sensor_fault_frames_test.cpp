@@ -14,7 +14,7 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/files/text_file.h"
+#include "scenarios/files/input_files.h"
 #include "tests/doubles/frame_recorder.h"
 #include "tests/support/scenes.h"
 #include "tests/support/sensor_fault_scenes.h"
