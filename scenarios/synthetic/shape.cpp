@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/points/vector.h"
-#include "scenarios/synthetic/grid_scene.h"
+#include "scenarios/synthetic/grid_scenes.h"
 
 namespace remote_touch {
 

@@ -7,8 +7,7 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "scenarios/synthetic/grid_scene.h"
-#include "scenarios/synthetic/lifts.h"
+#include "scenarios/synthetic/grid_scenes.h"
 #include "scenarios/synthetic/panel_scenes.h"
 
 namespace remote_touch {

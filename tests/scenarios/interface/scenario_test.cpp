@@ -14,9 +14,8 @@
 
 #include "scenarios/camera/camera_scenes.h"
 #include "scenarios/camera/depth_camera.h"
-#include "scenarios/synthetic/lifts.h"
+#include "scenarios/synthetic/grid_scenes.h"
 #include "scenarios/synthetic/panel_scenes.h"
-#include "scenarios/synthetic/resting_clouds.h"
 #include "scenarios/synthetic/shape.h"
 #include "tests/support/scenes.h"
 

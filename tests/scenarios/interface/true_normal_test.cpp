@@ -7,9 +7,8 @@
 
 #include "core/points/vector.h"
 #include "scenarios/camera/sensor_faults.h"
-#include "scenarios/synthetic/lifts.h"
+#include "scenarios/synthetic/grid_scenes.h"
 #include "scenarios/synthetic/panel_scenes.h"
-#include "scenarios/synthetic/resting_clouds.h"
 #include "scenarios/synthetic/shape.h"
 #include "tests/support/scenes.h"
 

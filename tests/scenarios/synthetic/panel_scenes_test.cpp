@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "scenarios/synthetic/lifts.h"
+#include "scenarios/synthetic/grid_scenes.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::panel_scenes_test {

@@ -13,8 +13,7 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/synthetic/grid_scene.h"
-#include "scenarios/synthetic/lifts.h"
+#include "scenarios/synthetic/grid_scenes.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

@@ -11,8 +11,7 @@
 #include "runners/experiment/hand/scripted_motions.h"
 #include "scenarios/camera/camera_scenes.h"
 #include "scenarios/camera/depth_camera.h"
-#include "scenarios/synthetic/lifts.h"
-#include "scenarios/synthetic/resting_clouds.h"
+#include "scenarios/synthetic/grid_scenes.h"
 #include "scenarios/synthetic/shape.h"
 #include "tests/support/scenes.h"
 

@@ -1,5 +1,5 @@
 // A lift against its closed form: the motion is a function of time, which frames sample.
-#include "scenarios/synthetic/lifts.h"
+#include "scenarios/synthetic/grid_scenes.h"
 
 #include <gtest/gtest.h>
 
