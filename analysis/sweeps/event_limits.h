@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/limit.h"
+#include "analysis/measures/curve_fits.h"
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {

@@ -5,8 +5,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "analysis/measures/curve_fits.h"
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/limit.h"
 #include "analysis/storage/digest.h"
 #include "analysis/sweeps/sweep_means.h"
 #include "core/parameters/parameter.h"

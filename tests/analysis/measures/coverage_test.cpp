@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "analysis/measures/curve_fits.h"
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/limit.h"
 #include "analysis/measures/paired_test.h"
 
 namespace remote_touch::coverage_test {

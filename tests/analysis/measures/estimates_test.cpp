@@ -6,8 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "analysis/measures/curve_fits.h"
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/limit.h"
 #include "analysis/measures/paired_test.h"
 
 namespace remote_touch::estimates_test {
