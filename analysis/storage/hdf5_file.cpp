@@ -8,7 +8,6 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
-#include "analysis/storage/hdf5_handle.h"
 #include "analysis/storage/hdf5_values.h"
 #include "core/parameters/parameter.h"
 

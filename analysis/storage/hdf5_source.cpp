@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "analysis/storage/hdf5_handle.h"
 #include "analysis/storage/hdf5_values.h"
 #include "analysis/storage/packed_values.h"
 

@@ -1,5 +1,5 @@
 // Damaged and foreign HDF5 files. The HDF5 library reads them in a child process with limits.
-#include "analysis/storage/hdf5_handle.h"
+#include "analysis/storage/hdf5_values.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/lasting_child.h"

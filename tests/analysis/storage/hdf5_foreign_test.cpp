@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/storage/hdf5_handle.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/hdf5_values.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::hdf5_foreign_test {
