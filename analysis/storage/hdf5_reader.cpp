@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
@@ -10,14 +9,279 @@
 #include <set>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/hdf5_values.h"
+#include "analysis/storage/packed_values.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {
+
+namespace {
+
+// An exception must not pass through the library, so an error code is returned.
+herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* names) noexcept try {
+  if (info->type == H5O_TYPE_DATASET)
+    static_cast<std::vector<std::string>*>(names)->push_back(std::string("/") + name);
+  return 0;
+} catch (const std::bad_alloc&) {
+  errno = ENOMEM;
+  return -1;
+}
+
+std::string last_part(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
+std::string name_of_attribute(hid_t attribute) {
+  const ssize_t length = H5Aget_name(attribute, 0, nullptr);
+  if (length < 0) throw_refusal();
+  std::string name(static_cast<std::size_t>(length), '\0');
+  if (H5Aget_name(attribute, name.size() + 1, name.data()) < 0) throw_refusal();
+  return name;
+}
+
+// Returns the list of properties with which the library reads a copy of the bytes instead of a file.
+Handle access_to(std::string_view bytes) {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  check(H5Pset_fapl_core(access, 1 << 20, false));
+  check(H5Pset_file_image(access, const_cast<char*>(bytes.data()), bytes.size()));
+  return access;
+}
+
+class LibrarySource final : public Hdf5Source {
+ public:
+  explicit LibrarySource(const std::string& file)
+      : file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {}
+  explicit LibrarySource(std::string_view bytes)
+      : file_(H5Fopen("bytes", H5F_ACC_RDONLY, access_to(bytes)), H5Fclose) {}
+
+  TextAttributes attributes() const override {
+    use_hdf5();
+    TextAttributes found;
+    H5O_info_t root;
+    check(H5Oget_info2(file_, &root, H5O_INFO_NUM_ATTRS));
+    for (hsize_t i = 0; i < root.num_attrs; ++i) {
+      const Handle attribute(
+          H5Aopen_by_idx(file_, "/", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+      found.emplace_back(name_of_attribute(attribute), read_text(attribute));
+    }
+    return found;
+  }
+  std::vector<std::string> datasets() const override {
+    use_hdf5();
+    std::vector<std::string> names;
+    check(H5Ovisit2(file_, H5_INDEX_NAME, H5_ITER_INC, note_dataset, &names, H5O_INFO_BASIC));
+    std::erase_if(names, [this](const std::string& name) { return only_names_a_dimension(file_, name); });
+    return names;
+  }
+  Column column(const std::string& dataset) const override {
+    return read_dataset(opened(dataset), last_part(dataset), nullptr);
+  }
+  Column rows(const std::string& dataset, std::size_t first, std::size_t count) const override {
+    const RowRange range{first, count};
+    return read_dataset(opened(dataset), last_part(dataset), &range);
+  }
+  std::int64_t offset(const std::string& dataset) const override {
+    const haddr_t offset = H5Dget_offset(opened(dataset));
+    if (offset == HADDR_UNDEF) throw std::runtime_error(dataset + " is not stored in one piece");
+    return static_cast<std::int64_t>(offset);
+  }
+
+ private:
+  Handle opened(const std::string& dataset) const {
+    use_hdf5();
+    const hid_t found = H5Dopen2(file_, dataset.c_str(), H5P_DEFAULT);
+    if (found >= 0) return Handle(found, H5Dclose);
+    try {
+      throw_refusal();
+    } catch (const std::runtime_error&) {
+      if (!is_missing(dataset)) throw;
+    }
+    throw std::runtime_error(dataset + " is missing");
+  }
+  // True if the dataset or one of its groups is certainly missing.
+  bool is_missing(const std::string& dataset) const {
+    for (std::size_t end = 0; end < dataset.size();) {
+      end = std::min(dataset.find('/', end + 1), dataset.size());
+      const htri_t found = H5Lexists(file_, dataset.substr(0, end).c_str(), H5P_DEFAULT);
+      if (found <= 0) return found == 0;
+    }
+    return false;
+  }
+
+  const Hdf5Work work_;
+  Handle file_;
+};
+
+}  // namespace
+
+std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file) {
+  use_hdf5();
+  return std::make_unique<LibrarySource>(file.string());
+}
+
+std::unique_ptr<Hdf5Source> open_hdf5_image(std::string_view bytes) {
+  use_hdf5();
+  return std::make_unique<LibrarySource>(bytes);
+}
+
+namespace {
+
+[[noreturn]] void no_answer() {
+  throw std::runtime_error("its reader sent an incomplete answer");
+}
+
+// Unpacks values of the wanted kind, which is an index of the variant Values.
+template <std::size_t kind = 0>
+void unpack_values(Unpacker& unpack, std::size_t wanted, Values& values) {
+  if constexpr (kind < std::variant_size_v<Values>) {
+    if (wanted != kind) return unpack_values<kind + 1>(unpack, wanted, values);
+    unpack.list(values.emplace<kind>());
+  } else {
+    no_answer();
+  }
+}
+
+std::int64_t offset_or_none(const Hdf5Source& source, const std::string& dataset) {
+  try {
+    return source.offset(dataset);
+  } catch (const std::runtime_error&) {
+    return -1;
+  }
+}
+
+Hdf5Summary summary_of(const Hdf5Source& source) {
+  Hdf5Summary summary{source.attributes(), source.datasets(), {}};
+  for (const std::string& dataset : summary.datasets)
+    summary.offsets.push_back(offset_or_none(source, dataset));
+  return summary;
+}
+
+enum class About : std::uint8_t { summary, column, rows };
+
+// Question to a child about a file.
+struct Question {
+  About about = About::summary;
+  std::string dataset = {};
+  std::size_t first = 0, count = 0;  // rows
+};
+
+std::string packed_question(const std::string& file, const Question& question) {
+  MemoryPacker pack;
+  pack.text(file), pack.value(question.about), pack.text(question.dataset);
+  pack.value(question.first), pack.value(question.count);
+  return pack.take();
+}
+
+// Runs in the child: returns the packed answer to a packed question.
+std::string answer(const std::string& bytes) {
+  Unpacker unpack(bytes);
+  std::string file;
+  Question question;
+  unpack.text(file), unpack.value(question.about), unpack.text(question.dataset);
+  unpack.value(question.first), unpack.value(question.count);
+  const auto hdf5 = open_hdf5(file);
+  switch (question.about) {
+    case About::summary:
+      return packed(summary_of(*hdf5));
+    case About::column:
+      return packed(hdf5->column(question.dataset));
+    case About::rows:
+      break;
+  }
+  return packed(hdf5->rows(question.dataset, question.first, question.count));
+}
+
+class ChildSource final : public Hdf5Source {
+ public:
+  ChildSource(const std::filesystem::path& file, RunInChild run)
+      : file_(file.string()),
+        run_(std::move(run)),
+        // The values are in memory twice, as read and packed, and some files are slightly compressed.
+        limits_(limits_to_read(file, 4)),
+        summary_(unpacked_summary(ask({}))) {}
+
+  TextAttributes attributes() const override { return summary_.attributes; }
+  std::vector<std::string> datasets() const override { return summary_.datasets; }
+  Column column(const std::string& dataset) const override {
+    return unpacked_column(ask({About::column, dataset}));
+  }
+  Column rows(const std::string& dataset, std::size_t first, std::size_t count) const override {
+    return unpacked_column(ask({About::rows, dataset, first, count}));
+  }
+  std::int64_t offset(const std::string& dataset) const override {
+    const auto found = std::find(summary_.datasets.begin(), summary_.datasets.end(), dataset);
+    if (found == summary_.datasets.end()) throw std::runtime_error(dataset + " is missing");
+    const std::int64_t offset = summary_.offsets[static_cast<std::size_t>(found - summary_.datasets.begin())];
+    if (offset < 0) throw std::runtime_error(dataset + " is not stored in one piece");
+    return offset;
+  }
+
+ private:
+  std::string ask(const Question& question) const {
+    return run_(limits_, answer, packed_question(file_, question));
+  }
+
+  std::string file_;
+  RunInChild run_;
+  ChildLimits limits_;
+  Hdf5Summary summary_;
+};
+
+}  // namespace
+
+std::string packed(const Hdf5Summary& summary) {
+  MemoryPacker pack;
+  pack.value(summary.attributes.size());
+  for (const auto& [name, value] : summary.attributes) pack.text(name), pack.text(value);
+  pack.list(summary.datasets), pack.list(summary.offsets);
+  return pack.take();
+}
+
+Hdf5Summary unpacked_summary(const std::string& bytes) {
+  Unpacker unpack(bytes);
+  Hdf5Summary summary;
+  std::size_t count = 0;
+  unpack.value(count);
+  for (std::size_t i = 0; i < count && unpack.good(); ++i) {
+    auto& [name, value] = summary.attributes.emplace_back();
+    unpack.text(name), unpack.text(value);
+  }
+  unpack.list(summary.datasets), unpack.list(summary.offsets);
+  if (!unpack.done() || summary.offsets.size() != summary.datasets.size()) no_answer();
+  return summary;
+}
+
+std::string packed(const Column& column) {
+  MemoryPacker pack;
+  pack.text(column.name), pack.text(column.units), pack.text(column.long_name);
+  pack.value(column.width), pack.list(column.value_names);
+  pack.value(column.values.index());
+  std::visit([&](const auto& values) { pack.list(values); }, column.values);
+  return pack.take();
+}
+
+Column unpacked_column(const std::string& bytes) {
+  Unpacker unpack(bytes);
+  Column column;
+  std::size_t kind = 0;
+  unpack.text(column.name), unpack.text(column.units), unpack.text(column.long_name);
+  unpack.value(column.width), unpack.list(column.value_names);
+  unpack.value(kind);
+  unpack_values(unpack, kind, column.values);
+  const auto count = std::visit([](const auto& values) { return values.size(); }, column.values);
+  if (!unpack.done() || column.width < 1 || count % static_cast<std::size_t>(column.width) != 0) no_answer();
+  return column;
+}
+
+std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file, const RunInChild& run) {
+  return std::make_unique<ChildSource>(file, run);
+}
 
 std::string attribute(const TextAttributes& attributes, const std::string& name) {
   for (const auto& [known, value] : attributes)

@@ -2,7 +2,7 @@
 // send anything.
 #include <stdexcept>
 
-#include "analysis/storage/hdf5_source.h"
+#include "analysis/storage/hdf5_reader.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::child_answer {

@@ -6,7 +6,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "analysis/storage/hdf5_source.h"
+#include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/hdf5_values.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"

@@ -15,7 +15,6 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/storage/hdf5_source.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::hdf5_handle_test {

@@ -1,5 +1,5 @@
 // The answer of a child process about an HDF5 file arrives unchanged, or is refused.
-#include "analysis/storage/hdf5_source.h"
+#include "analysis/storage/hdf5_reader.h"
 
 #include <gtest/gtest.h>
 
