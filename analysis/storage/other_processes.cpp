@@ -8,7 +8,6 @@
 #include <sys/sysmacros.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -26,6 +25,7 @@
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {
+
 namespace {
 
 // The first byte that a child sends.

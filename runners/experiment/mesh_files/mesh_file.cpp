@@ -16,7 +16,7 @@
 #include <string_view>
 
 #include "analysis/storage/digest.h"
-#include "analysis/storage/packed_values.h"
+#include "analysis/storage/other_processes.h"
 #include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/storage/packed_values.h"
+#include "analysis/storage/other_processes.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "analysis/storage/digest.h"
-#include "analysis/storage/packed_values.h"
+#include "analysis/storage/other_processes.h"
 
 namespace remote_touch {
 

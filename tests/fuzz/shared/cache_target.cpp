@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "analysis/storage/digest.h"
-#include "analysis/storage/packed_values.h"
+#include "analysis/storage/other_processes.h"
 #include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz {
