@@ -8,7 +8,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

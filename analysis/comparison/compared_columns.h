@@ -9,7 +9,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

@@ -16,7 +16,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/measures/paired_test.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

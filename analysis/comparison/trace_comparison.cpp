@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

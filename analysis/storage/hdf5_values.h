@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

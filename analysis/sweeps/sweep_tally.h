@@ -8,7 +8,7 @@
 
 #include "analysis/sweeps/cell_tally.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_tally.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/sweeps/sweep_tally.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {

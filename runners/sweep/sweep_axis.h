@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 

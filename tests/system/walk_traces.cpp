@@ -8,7 +8,6 @@
 #include <random>
 
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
 
 namespace {

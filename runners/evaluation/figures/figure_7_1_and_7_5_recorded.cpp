@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"

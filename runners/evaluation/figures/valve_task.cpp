@@ -8,7 +8,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/measures.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"

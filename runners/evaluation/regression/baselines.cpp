@@ -15,7 +15,6 @@
 #include "analysis/storage/other_processes.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/spread.h"

@@ -8,7 +8,6 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
-#include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"

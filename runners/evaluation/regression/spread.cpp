@@ -22,7 +22,7 @@
 #include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/simulation/simulation.h"

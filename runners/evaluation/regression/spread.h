@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "runners/evaluation/regression/stored_result.h"
 
 namespace remote_touch {

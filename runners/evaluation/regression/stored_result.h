@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/sweep/sweep.h"

@@ -9,7 +9,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/scorecard/report_json.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -12,7 +12,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/experiment/catalog/catalog.h"

@@ -9,7 +9,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "analysis/comparison/trace_comparison.h"
-#include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -11,7 +11,6 @@
 #include "analysis/comparison/trace_comparison.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/column.h"
 #include "analysis/trace/trace.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"

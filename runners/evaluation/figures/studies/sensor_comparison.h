@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/measures/image_measures.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/trace/column.h"
+#include "analysis/trace/trace.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/spread.h"
