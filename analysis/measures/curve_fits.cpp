@@ -13,7 +13,6 @@
 #include "core/points/noise.h"
 
 namespace remote_touch {
-
 namespace {
 
 double power(double x, int exponent) {
@@ -27,111 +26,6 @@ Eigen::VectorXd terms(double x, const std::vector<int>& powers) {
   for (std::size_t k = 0; k < powers.size(); ++k) row[static_cast<Eigen::Index>(k)] = power(x, powers[k]);
   return row;
 }
-
-}  // namespace
-
-double polynomial(const std::vector<double>& coefficients, const std::vector<int>& powers, double x) {
-  double sum = 0;
-  for (std::size_t k = 0; k < powers.size(); ++k) sum += coefficients[k] * power(x, powers[k]);
-  return sum;
-}
-
-double PolynomialFit::at(double x) const {
-  return polynomial(coefficients, powers, x);
-}
-
-double PolynomialFit::half_width(double x) const {
-  const auto size = static_cast<Eigen::Index>(powers.size());
-  const Eigen::Map<const Eigen::MatrixXd> spread(covariance.data(), size, size);
-  const Eigen::VectorXd row = terms(x, powers);
-  return kTwoSided95 * std::sqrt(std::max(0.0, row.dot(spread * row)));
-}
-
-// The fit is computed in units of the largest x, because powers of small numbers differ by many orders.
-PolynomialFit fit_polynomial(const std::vector<double>& x, const std::vector<double>& y,
-                             std::vector<int> powers) {
-  const auto rows = static_cast<Eigen::Index>(x.size()), columns = static_cast<Eigen::Index>(powers.size());
-  double scale = 0;
-  for (const double value : x) scale = std::max(scale, std::abs(value));
-  Eigen::MatrixXd design(rows, columns);
-  for (Eigen::Index i = 0; i < rows; ++i)
-    design.row(i) = terms(x[static_cast<std::size_t>(i)] / scale, powers);
-  const Eigen::Map<const Eigen::VectorXd> observed(y.data(), rows);
-  const Eigen::VectorXd scaled = design.colPivHouseholderQr().solve(observed);
-  const Eigen::VectorXd residual = observed - design * scaled;
-
-  const Eigen::MatrixXd inverse = (design.transpose() * design).inverse();
-  const Eigen::MatrixXd scatter =
-      design.transpose() * residual.array().square().matrix().asDiagonal() * design;
-  const double correction = static_cast<double>(rows) / static_cast<double>(rows - columns);
-  Eigen::MatrixXd spread = correction * inverse * scatter * inverse;
-  PolynomialFit fit;
-  for (Eigen::Index k = 0; k < columns; ++k) {
-    const double unit = 1 / power(scale, powers[static_cast<std::size_t>(k)]);
-    fit.coefficients.push_back(scaled[k] * unit);
-    spread.row(k) *= unit, spread.col(k) *= unit;
-  }
-  fit.covariance.assign(spread.data(), spread.data() + spread.size());
-  fit.residual_rms = std::sqrt(residual.squaredNorm() / static_cast<double>(rows));
-  fit.powers = std::move(powers);
-  return fit;
-}
-
-std::vector<double> isotonic_falling(const std::vector<double>& values, const std::vector<double>& weights) {
-  struct Pool {
-    double mean, weight;
-    std::size_t count;
-  };
-  std::vector<Pool> pools;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    pools.push_back({values[i], weights[i], 1});
-    while (pools.size() > 1 && pools[pools.size() - 2].mean < pools.back().mean) {
-      const Pool last = pools.back();
-      pools.pop_back();
-      Pool& joined = pools.back();
-      const double weight = joined.weight + last.weight;
-      joined = {(joined.mean * joined.weight + last.mean * last.weight) / weight, weight,
-                joined.count + last.count};
-    }
-  }
-  std::vector<double> falling;
-  for (const Pool& pool : pools) falling.insert(falling.end(), pool.count, pool.mean);
-  return falling;
-}
-
-double crossing(const std::vector<double>& x, const std::vector<double>& falling, double level) {
-  constexpr double kEqual = 1e-12;  // a pooled share may miss the level by a rounding
-  std::size_t above = 0, not_below = 0;
-  for (const double value : falling) {
-    above += value > level + kEqual ? 1 : 0;
-    not_below += value >= level - kEqual ? 1 : 0;
-  }
-  if (not_below > above) return 0.5 * (x[above] + x[not_below - 1]);
-  if (above == 0) return x.front();
-  if (above == x.size()) return x.back();
-  const double from = falling[above - 1], to = falling[above];
-  return x[above - 1] + (x[above] - x[above - 1]) * (from - level) / (from - to);
-}
-
-Sinusoid sinusoid_in(const std::vector<double>& time_s, const std::vector<double>& values, double hz) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  if (values.empty()) return {kNaN, kNaN};
-  double with_cosine = 0, with_sine = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double angle_rad = 2 * std::numbers::pi * hz * time_s[i];
-    with_cosine += values[i] * std::cos(angle_rad);
-    with_sine += values[i] * std::sin(angle_rad);
-  }
-  const double half_count = 0.5 * static_cast<double>(values.size());
-  return {std::hypot(with_cosine, with_sine) / half_count, std::atan2(-with_sine, with_cosine)};
-}
-
-double lag_s(const Sinusoid& first, const Sinusoid& second, double hz) {
-  const double turn_rad = 2 * std::numbers::pi;
-  return std::remainder(first.phase_rad - second.phase_rad, turn_rad) / (turn_rad * hz);
-}
-
-namespace {
 
 constexpr double kLimitTail = 0.025;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -241,67 +135,6 @@ void set_crossing(const std::vector<RunsAtValue>& values, double level, Limit& l
   if (limit.place == LimitPlace::inside) limit.estimate.value = crossing(x, falling, -level);
 }
 
-}  // namespace
-
-std::int64_t runs_for_level(double level) {
-  const double runs = std::ceil(std::log(kLimitTail) / std::log1p(-level) - 1e-12);
-  return static_cast<std::int64_t>(std::min(runs, 1e18));  // far beyond the runs of any sweep
-}
-
-RunsAtValue RunsAtValue::of_one_run_if_fixed() const {
-  if (!is_fixed || counts.runs() == 0) return *this;
-  return {x,
-          counts.unknown > 0  ? EventCounts{0, 0, 1}
-          : counts.events > 0 ? EventCounts{1}
-                              : EventCounts{0, 1},
-          true};
-}
-
-Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& rule) {
-  const double level = rule.rises ? rule.level : 1 - rule.level;
-  std::vector<RunsAtValue> used;
-  Limit limit;
-  Estimate& e = limit.estimate;
-  for (const RunsAtValue& value : values) {
-    if (value.counts.runs() == 0) continue;
-    used.push_back(rising(value.of_one_run_if_fixed(), rule.rises));
-    e.clusters += used.back().counts.runs(), e.unknown += used.back().counts.unknown;
-  }
-  if (used.empty()) return limit;
-  set_crossing(used, level, limit);
-  const Walk up(used, level, End::low, rule.values_are_independent);
-  std::reverse(used.begin(), used.end());
-  const Walk down(used, level, End::high, rule.values_are_independent);
-  e.low = up.last_clear(), e.high = down.last_clear();
-  const bool are_fixed =
-      std::all_of(used.begin(), used.end(), [](const RunsAtValue& value) { return value.is_fixed; });
-  e.method = are_fixed ? kExactMethod : "binomial walks";
-  if (std::isnan(e.low)) e.add_note("low: " + reason_of(up, rule, "first"));
-  if (std::isnan(e.high)) e.add_note("high: " + reason_of(down, rule, "last"));
-  if (!std::isnan(e.low)) e.value = e.value < e.low ? e.low : e.value;
-  if (!std::isnan(e.high)) e.value = e.value > e.high ? e.high : e.value;
-  if (rises_and_falls(used, level)) {
-    e.add_note("the curve rises and falls");
-    if (std::isnan(e.low + e.high)) {
-      e.value = e.low = e.high = std::numeric_limits<double>::quiet_NaN();
-      limit.place = LimitPlace::rises_and_falls;
-    }
-  }
-  return limit;
-}
-
-RunsAtValue OutcomesAtValue::runs() const {
-  RunsAtValue value{x, {}, is_fixed};
-  for (const EventOutcome outcome : outcomes) {
-    value.counts.events += outcome == EventOutcome::event ? 1 : 0;
-    value.counts.without += outcome == EventOutcome::without ? 1 : 0;
-    value.counts.unknown += outcome == EventOutcome::unknown ? 1 : 0;
-  }
-  return value.of_one_run_if_fixed();
-}
-
-namespace {
-
 constexpr int kDraws = 1999;
 constexpr std::size_t kEnd = 50;  // rank of the ends among the draws: 0.025 (kDraws + 1)
 
@@ -379,6 +212,164 @@ bool are_fixed(const std::vector<OutcomesAtValue>& curve) {
 }
 
 }  // namespace
+
+double polynomial(const std::vector<double>& coefficients, const std::vector<int>& powers, double x) {
+  double sum = 0;
+  for (std::size_t k = 0; k < powers.size(); ++k) sum += coefficients[k] * power(x, powers[k]);
+  return sum;
+}
+
+double PolynomialFit::at(double x) const {
+  return polynomial(coefficients, powers, x);
+}
+
+double PolynomialFit::half_width(double x) const {
+  const auto size = static_cast<Eigen::Index>(powers.size());
+  const Eigen::Map<const Eigen::MatrixXd> spread(covariance.data(), size, size);
+  const Eigen::VectorXd row = terms(x, powers);
+  return kTwoSided95 * std::sqrt(std::max(0.0, row.dot(spread * row)));
+}
+
+// The fit is computed in units of the largest x, because powers of small numbers differ by many orders.
+PolynomialFit fit_polynomial(const std::vector<double>& x, const std::vector<double>& y,
+                             std::vector<int> powers) {
+  const auto rows = static_cast<Eigen::Index>(x.size()), columns = static_cast<Eigen::Index>(powers.size());
+  double scale = 0;
+  for (const double value : x) scale = std::max(scale, std::abs(value));
+  Eigen::MatrixXd design(rows, columns);
+  for (Eigen::Index i = 0; i < rows; ++i)
+    design.row(i) = terms(x[static_cast<std::size_t>(i)] / scale, powers);
+  const Eigen::Map<const Eigen::VectorXd> observed(y.data(), rows);
+  const Eigen::VectorXd scaled = design.colPivHouseholderQr().solve(observed);
+  const Eigen::VectorXd residual = observed - design * scaled;
+
+  const Eigen::MatrixXd inverse = (design.transpose() * design).inverse();
+  const Eigen::MatrixXd scatter =
+      design.transpose() * residual.array().square().matrix().asDiagonal() * design;
+  const double correction = static_cast<double>(rows) / static_cast<double>(rows - columns);
+  Eigen::MatrixXd spread = correction * inverse * scatter * inverse;
+  PolynomialFit fit;
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    const double unit = 1 / power(scale, powers[static_cast<std::size_t>(k)]);
+    fit.coefficients.push_back(scaled[k] * unit);
+    spread.row(k) *= unit, spread.col(k) *= unit;
+  }
+  fit.covariance.assign(spread.data(), spread.data() + spread.size());
+  fit.residual_rms = std::sqrt(residual.squaredNorm() / static_cast<double>(rows));
+  fit.powers = std::move(powers);
+  return fit;
+}
+
+std::vector<double> isotonic_falling(const std::vector<double>& values, const std::vector<double>& weights) {
+  struct Pool {
+    double mean, weight;
+    std::size_t count;
+  };
+  std::vector<Pool> pools;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    pools.push_back({values[i], weights[i], 1});
+    while (pools.size() > 1 && pools[pools.size() - 2].mean < pools.back().mean) {
+      const Pool last = pools.back();
+      pools.pop_back();
+      Pool& joined = pools.back();
+      const double weight = joined.weight + last.weight;
+      joined = {(joined.mean * joined.weight + last.mean * last.weight) / weight, weight,
+                joined.count + last.count};
+    }
+  }
+  std::vector<double> falling;
+  for (const Pool& pool : pools) falling.insert(falling.end(), pool.count, pool.mean);
+  return falling;
+}
+
+double crossing(const std::vector<double>& x, const std::vector<double>& falling, double level) {
+  constexpr double kEqual = 1e-12;  // a pooled share may miss the level by a rounding
+  std::size_t above = 0, not_below = 0;
+  for (const double value : falling) {
+    above += value > level + kEqual ? 1 : 0;
+    not_below += value >= level - kEqual ? 1 : 0;
+  }
+  if (not_below > above) return 0.5 * (x[above] + x[not_below - 1]);
+  if (above == 0) return x.front();
+  if (above == x.size()) return x.back();
+  const double from = falling[above - 1], to = falling[above];
+  return x[above - 1] + (x[above] - x[above - 1]) * (from - level) / (from - to);
+}
+
+Sinusoid sinusoid_in(const std::vector<double>& time_s, const std::vector<double>& values, double hz) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  if (values.empty()) return {kNaN, kNaN};
+  double with_cosine = 0, with_sine = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double angle_rad = 2 * std::numbers::pi * hz * time_s[i];
+    with_cosine += values[i] * std::cos(angle_rad);
+    with_sine += values[i] * std::sin(angle_rad);
+  }
+  const double half_count = 0.5 * static_cast<double>(values.size());
+  return {std::hypot(with_cosine, with_sine) / half_count, std::atan2(-with_sine, with_cosine)};
+}
+
+double lag_s(const Sinusoid& first, const Sinusoid& second, double hz) {
+  const double turn_rad = 2 * std::numbers::pi;
+  return std::remainder(first.phase_rad - second.phase_rad, turn_rad) / (turn_rad * hz);
+}
+
+std::int64_t runs_for_level(double level) {
+  const double runs = std::ceil(std::log(kLimitTail) / std::log1p(-level) - 1e-12);
+  return static_cast<std::int64_t>(std::min(runs, 1e18));  // far beyond the runs of any sweep
+}
+
+RunsAtValue RunsAtValue::of_one_run_if_fixed() const {
+  if (!is_fixed || counts.runs() == 0) return *this;
+  return {x,
+          counts.unknown > 0  ? EventCounts{0, 0, 1}
+          : counts.events > 0 ? EventCounts{1}
+                              : EventCounts{0, 1},
+          true};
+}
+
+Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& rule) {
+  const double level = rule.rises ? rule.level : 1 - rule.level;
+  std::vector<RunsAtValue> used;
+  Limit limit;
+  Estimate& e = limit.estimate;
+  for (const RunsAtValue& value : values) {
+    if (value.counts.runs() == 0) continue;
+    used.push_back(rising(value.of_one_run_if_fixed(), rule.rises));
+    e.clusters += used.back().counts.runs(), e.unknown += used.back().counts.unknown;
+  }
+  if (used.empty()) return limit;
+  set_crossing(used, level, limit);
+  const Walk up(used, level, End::low, rule.values_are_independent);
+  std::reverse(used.begin(), used.end());
+  const Walk down(used, level, End::high, rule.values_are_independent);
+  e.low = up.last_clear(), e.high = down.last_clear();
+  const bool are_fixed =
+      std::all_of(used.begin(), used.end(), [](const RunsAtValue& value) { return value.is_fixed; });
+  e.method = are_fixed ? kExactMethod : "binomial walks";
+  if (std::isnan(e.low)) e.add_note("low: " + reason_of(up, rule, "first"));
+  if (std::isnan(e.high)) e.add_note("high: " + reason_of(down, rule, "last"));
+  if (!std::isnan(e.low)) e.value = e.value < e.low ? e.low : e.value;
+  if (!std::isnan(e.high)) e.value = e.value > e.high ? e.high : e.value;
+  if (rises_and_falls(used, level)) {
+    e.add_note("the curve rises and falls");
+    if (std::isnan(e.low + e.high)) {
+      e.value = e.low = e.high = std::numeric_limits<double>::quiet_NaN();
+      limit.place = LimitPlace::rises_and_falls;
+    }
+  }
+  return limit;
+}
+
+RunsAtValue OutcomesAtValue::runs() const {
+  RunsAtValue value{x, {}, is_fixed};
+  for (const EventOutcome outcome : outcomes) {
+    value.counts.events += outcome == EventOutcome::event ? 1 : 0;
+    value.counts.without += outcome == EventOutcome::without ? 1 : 0;
+    value.counts.unknown += outcome == EventOutcome::unknown ? 1 : 0;
+  }
+  return value.of_one_run_if_fixed();
+}
 
 Estimate estimated_limit_comparison(const std::vector<OutcomesAtValue>& a,
                                     const std::vector<OutcomesAtValue>& b, const LimitRule& rule,

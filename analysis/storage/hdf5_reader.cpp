@@ -20,7 +20,6 @@
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {
-
 namespace {
 
 // An exception must not pass through the library, so an error code is returned.
@@ -117,20 +116,6 @@ class LibrarySource final : public Hdf5Source {
   const Hdf5Work work_;
   Handle file_;
 };
-
-}  // namespace
-
-std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file) {
-  use_hdf5();
-  return std::make_unique<LibrarySource>(file.string());
-}
-
-std::unique_ptr<Hdf5Source> open_hdf5_image(std::string_view bytes) {
-  use_hdf5();
-  return std::make_unique<LibrarySource>(bytes);
-}
-
-namespace {
 
 [[noreturn]] void no_answer() {
   throw std::runtime_error("its reader sent an incomplete answer");
@@ -233,7 +218,64 @@ class ChildSource final : public Hdf5Source {
   Hdf5Summary summary_;
 };
 
+// True if the signature is at an offset where the HDF5 part of a file may begin: 0, 512, 1024, 2048, ...
+bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) {
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream && errno == ENOMEM) throw std::bad_alloc();
+  stream.exceptions(std::ios::badbit);  // lack of memory is not a missing signature
+  for (std::uintmax_t at = 0; at + kSignature.size() <= size; at = at == 0 ? 512 : 2 * at) {
+    std::string found(kSignature.size(), '\0');
+    stream.seekg(static_cast<std::streamoff>(at));
+    if (!stream.read(found.data(), static_cast<std::streamsize>(found.size()))) return false;
+    if (found == kSignature) return true;
+  }
+  return false;
+}
+
+[[noreturn]] void refuse_for_memory(const std::string& file) {
+  throw InputError(file, "cannot be read (out of memory): expected a smaller file or more memory");
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what,
+                         const char* expected = "an HDF5 result") {
+  throw InputError(file.string(), what + ": expected " + expected);
+}
+
+// Throws InputError unless the file exists and is a regular file, which can be opened without blocking.
+void require_regular(const std::filesystem::path& file) {
+  require_no_journal(file);
+  std::error_code unreachable;
+  if (!std::filesystem::exists(file, unreachable)) refuse(file, "no such file");
+  if (std::filesystem::is_directory(file, unreachable)) refuse(file, "a folder");
+  if (!std::filesystem::is_regular_file(file, unreachable)) refuse(file, "a pipe or a device");
+}
+
+// Throws InputError if the file is not HDF5 or its seal is broken. Returns true if it is sealed, false
+// without a seal.
+bool require_readable(const std::filesystem::path& file) {
+  std::error_code unreachable;
+  const std::uintmax_t size = std::filesystem::file_size(file, unreachable);
+  if (size == 0) refuse(file, "empty");
+  const SealState found = seal_state_of(file);
+  if (found == SealState::broken)
+    refuse(file, "damaged or modified (its SHA-256 does not match)", "a result of this program");
+  if (!has_hdf5_signature(file, size)) refuse(file, "not a readable HDF5 file", "a result of this program");
+  return found == SealState::valid;
+}
+
 }  // namespace
+
+std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file) {
+  use_hdf5();
+  return std::make_unique<LibrarySource>(file.string());
+}
+
+std::unique_ptr<Hdf5Source> open_hdf5_image(std::string_view bytes) {
+  use_hdf5();
+  return std::make_unique<LibrarySource>(bytes);
+}
 
 std::string packed(const Hdf5Summary& summary) {
   MemoryPacker pack;
@@ -297,57 +339,6 @@ TextAttributes provenance_of(const TextAttributes& attributes) {
     if (!added.contains(one.first)) kept.push_back(one);
   return kept;
 }
-
-namespace {
-
-// True if the signature is at an offset where the HDF5 part of a file may begin: 0, 512, 1024, 2048, ...
-bool has_hdf5_signature(const std::filesystem::path& file, std::uintmax_t size) {
-  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream && errno == ENOMEM) throw std::bad_alloc();
-  stream.exceptions(std::ios::badbit);  // lack of memory is not a missing signature
-  for (std::uintmax_t at = 0; at + kSignature.size() <= size; at = at == 0 ? 512 : 2 * at) {
-    std::string found(kSignature.size(), '\0');
-    stream.seekg(static_cast<std::streamoff>(at));
-    if (!stream.read(found.data(), static_cast<std::streamsize>(found.size()))) return false;
-    if (found == kSignature) return true;
-  }
-  return false;
-}
-
-[[noreturn]] void refuse_for_memory(const std::string& file) {
-  throw InputError(file, "cannot be read (out of memory): expected a smaller file or more memory");
-}
-
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what,
-                         const char* expected = "an HDF5 result") {
-  throw InputError(file.string(), what + ": expected " + expected);
-}
-
-// Throws InputError unless the file exists and is a regular file, which can be opened without blocking.
-void require_regular(const std::filesystem::path& file) {
-  require_no_journal(file);
-  std::error_code unreachable;
-  if (!std::filesystem::exists(file, unreachable)) refuse(file, "no such file");
-  if (std::filesystem::is_directory(file, unreachable)) refuse(file, "a folder");
-  if (!std::filesystem::is_regular_file(file, unreachable)) refuse(file, "a pipe or a device");
-}
-
-// Throws InputError if the file is not HDF5 or its seal is broken. Returns true if it is sealed, false
-// without a seal.
-bool require_readable(const std::filesystem::path& file) {
-  std::error_code unreachable;
-  const std::uintmax_t size = std::filesystem::file_size(file, unreachable);
-  if (size == 0) refuse(file, "empty");
-  const SealState found = seal_state_of(file);
-  if (found == SealState::broken)
-    refuse(file, "damaged or modified (its SHA-256 does not match)", "a result of this program");
-  if (!has_hdf5_signature(file, size)) refuse(file, "not a readable HDF5 file", "a result of this program");
-  return found == SealState::valid;
-}
-
-}  // namespace
 
 ReplacedFile::ReplacedFile(const std::string& file)
     : InputError(file,

@@ -19,7 +19,6 @@
 #include "analysis/storage/hdf5_file.h"
 
 namespace remote_touch {
-
 namespace {
 
 // It has a fixed buffer for one line, because there may be no memory for a string.
@@ -69,29 +68,6 @@ void begin() {
   if (!is_silent) throw std::bad_alloc();
 }
 
-}  // namespace
-
-void throw_refusal() {
-  const bool no_memory = errno == ENOMEM;
-  Refusal refusal;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take_error, &refusal);
-  if (refusal.of_system[0] != '\0') throw std::runtime_error(refusal.of_system);
-  if (refusal.lacks_memory || no_memory) throw std::bad_alloc();
-  throw std::runtime_error("the HDF5 library failed: out of memory, or a damaged file");  // it says no more
-}
-
-void use_hdf5() {
-  static std::once_flag once;
-  std::call_once(once, begin);
-  // A library that was built for threads prints the errors of each thread until that thread silences it, too.
-  thread_local bool is_silent = false;
-  if (is_silent) return;
-  is_silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
-  if (!is_silent) throw std::bad_alloc();
-}
-
-namespace {
-
 // Largest ratio of deflate. A dataset that claims more bytes than this for each stored byte is not read,
 // unless it is small: values that were never written occupy no space in the file.
 constexpr hsize_t kMaxInflation = 1032, kMaxUnwritten = 1 << 20;
@@ -127,29 +103,6 @@ std::vector<std::string> texts_in(const std::string& packed, std::size_t length,
 bool has_fixed_texts(hid_t type) {
   return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Tget_size(type) > 0;
 }
-
-}  // namespace
-
-std::string read_text(hid_t attribute) {
-  const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
-  const hssize_t count = H5Sget_simple_extent_npoints(space);
-  if (!has_fixed_texts(type) || count < 1) return {};
-  const auto size = product({static_cast<hsize_t>(count)}, H5Tget_size(type));
-  if (!size || *size > file_size(attribute)) throw std::runtime_error("an attribute is longer than the file");
-  std::string packed(*size, '\0');
-  check(H5Aread(attribute, type, packed.data()));
-  return joined(texts_in(packed, H5Tget_size(type), H5Tget_strpad(type)), ", ");
-}
-
-std::string text_attribute(hid_t object, const char* name) {
-  const htri_t is_there = H5Aexists(object, name);
-  if (is_there < 0) throw_refusal();
-  if (is_there == 0) return {};
-  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
-  return read_text(attribute);
-}
-
-namespace {
 
 // Part of a dataset that is read: all of it, or some rows.
 struct Selection {
@@ -283,33 +236,6 @@ bool has_texts_by_character(hid_t data, hid_t type, const std::vector<hsize_t>& 
          !text_attribute(data, kEncoding).empty();
 }
 
-}  // namespace
-
-Column read_dataset(hid_t data, const std::string& name, const RowRange* rows) {
-  const Handle type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
-  std::vector<hsize_t> size = checked_extent(data, type, space, name);
-  std::vector<hsize_t> start(size.size(), 0);
-  Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}};
-  const bool by_character = has_texts_by_character(data, type, size);
-  column.width = static_cast<int>(size.size() == 2 && !by_character ? size[1] : 1);
-  if (rows) start[0] = rows->first, size[0] = rows->count;
-  Selection wanted;
-  wanted.count = product(size, 1).value();
-  if (by_character) wanted.text_length = size.back();
-  if (H5Tget_class(type) == H5T_ENUM) column.value_names = names_of(type, name);
-  if (!rows) {
-    column.values = read_values(data, type, wanted);
-    return column;
-  }
-  check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr));
-  const Handle memory = space_of(size);
-  wanted.in_memory = memory, wanted.in_file = space;
-  column.values = read_values(data, type, wanted);
-  return column;
-}
-
-namespace {
-
 // Text by which netCDF recognises a dataset that is no variable. The size follows, formatted as in netCDF.
 constexpr const char* kNoVariable = "This is a netCDF dimension but not a netCDF variable.";
 constexpr const char* kLabels = "names of components";
@@ -334,6 +260,67 @@ Handle enumeration_of(const std::vector<std::string>& value_names) {
 }
 
 }  // namespace
+
+void throw_refusal() {
+  const bool no_memory = errno == ENOMEM;
+  Refusal refusal;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take_error, &refusal);
+  if (refusal.of_system[0] != '\0') throw std::runtime_error(refusal.of_system);
+  if (refusal.lacks_memory || no_memory) throw std::bad_alloc();
+  throw std::runtime_error("the HDF5 library failed: out of memory, or a damaged file");  // it says no more
+}
+
+void use_hdf5() {
+  static std::once_flag once;
+  std::call_once(once, begin);
+  // A library that was built for threads prints the errors of each thread until that thread silences it, too.
+  thread_local bool is_silent = false;
+  if (is_silent) return;
+  is_silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  if (!is_silent) throw std::bad_alloc();
+}
+
+std::string read_text(hid_t attribute) {
+  const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (!has_fixed_texts(type) || count < 1) return {};
+  const auto size = product({static_cast<hsize_t>(count)}, H5Tget_size(type));
+  if (!size || *size > file_size(attribute)) throw std::runtime_error("an attribute is longer than the file");
+  std::string packed(*size, '\0');
+  check(H5Aread(attribute, type, packed.data()));
+  return joined(texts_in(packed, H5Tget_size(type), H5Tget_strpad(type)), ", ");
+}
+
+std::string text_attribute(hid_t object, const char* name) {
+  const htri_t is_there = H5Aexists(object, name);
+  if (is_there < 0) throw_refusal();
+  if (is_there == 0) return {};
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  return read_text(attribute);
+}
+
+Column read_dataset(hid_t data, const std::string& name, const RowRange* rows) {
+  const Handle type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
+  std::vector<hsize_t> size = checked_extent(data, type, space, name);
+  std::vector<hsize_t> start(size.size(), 0);
+  Column column{name, text_attribute(data, "units"), text_attribute(data, "long_name"), {}};
+  const bool by_character = has_texts_by_character(data, type, size);
+  column.width = static_cast<int>(size.size() == 2 && !by_character ? size[1] : 1);
+  if (rows) start[0] = rows->first, size[0] = rows->count;
+  Selection wanted;
+  wanted.count = product(size, 1).value();
+  if (by_character) wanted.text_length = size.back();
+  if (H5Tget_class(type) == H5T_ENUM) column.value_names = names_of(type, name);
+  if (!rows) {
+    column.values = read_values(data, type, wanted);
+    return column;
+  }
+  check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, size.data(), nullptr));
+  const Handle memory = space_of(size);
+  wanted.in_memory = memory, wanted.in_file = space;
+  column.values = read_values(data, type, wanted);
+  return column;
+}
 
 void add_dimension(hid_t file, const std::string& path, hsize_t size) {
   if (is_there(file, path)) return;

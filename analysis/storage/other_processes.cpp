@@ -25,7 +25,6 @@
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {
-
 namespace {
 
 // The first byte that a child sends.
@@ -85,6 +84,17 @@ std::string end_of(pid_t child, const ChildLimits& limits) {
   return "its reader ended with signal " + std::to_string(WTERMSIG(status)) + ", perhaps out of memory";
 }
 
+bool is_special(const std::filesystem::path& target) {
+  std::error_code unreachable;
+  const auto there = std::filesystem::status(target, unreachable);
+  return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
+}
+
+[[noreturn]] void refuse_lock(const std::filesystem::path& target, int error) {
+  throw InputError(target.string(), std::string("cannot be locked (") + std::strerror(error) +
+                                        "): expected a file system whose locks work, or one without locks");
+}
+
 }  // namespace
 
 ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory_for_each_byte) {
@@ -134,21 +144,6 @@ std::string in_child(const ChildLimits& limits, const std::function<std::string(
 std::string in_own_child(const ChildLimits& limits, ChildReader reader, const std::string& question) {
   return in_child(limits, [&] { return reader(question); });
 }
-
-namespace {
-
-bool is_special(const std::filesystem::path& target) {
-  std::error_code unreachable;
-  const auto there = std::filesystem::status(target, unreachable);
-  return std::filesystem::exists(there) && !std::filesystem::is_regular_file(there);
-}
-
-[[noreturn]] void refuse_lock(const std::filesystem::path& target, int error) {
-  throw InputError(target.string(), std::string("cannot be locked (") + std::strerror(error) +
-                                        "): expected a file system whose locks work, or one without locks");
-}
-
-}  // namespace
 
 int lock_error(int descriptor, int operation) {
   while (::flock(descriptor, operation) != 0)

@@ -69,62 +69,11 @@ void mix_rows(const std::vector<Number>& values, std::size_t width, std::vector<
 
 void mix_rows(const std::vector<std::string>&, std::size_t, std::vector<std::uint64_t>&) {}
 
-}  // namespace
-
-std::uint64_t points_hash(const PointCloud& cloud) {
-  std::uint64_t sum = cloud.size();
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    std::uint64_t point = mixed(mixed(mixed(1, word(cloud.x[i])), word(cloud.y[i])), word(cloud.z[i]));
-    if (!cloud.fixture_radius_m.empty()) point = mixed(point, word(cloud.fixture_radius_m[i]));
-    if (!cloud.stiffness_N_per_m.empty()) point = mixed(point, word(cloud.stiffness_N_per_m[i]));
-    if (cloud.has_normals())
-      point = mixed(mixed(mixed(point, word(cloud.nx[i])), word(cloud.ny[i])), word(cloud.nz[i]));
-    sum += mixed(point, point >> 29);  // terms of a sum have to look random in every bit
-  }
-  return sum;
-}
-
-std::vector<std::uint64_t> running_hash(const std::vector<Column>& columns) {
-  std::vector<std::uint64_t> hashes(columns.empty() ? 0 : columns.front().length(), 0);
-  for (const Column& column : columns)
-    std::visit([&](const auto& v) { mix_rows(v, static_cast<std::size_t>(column.width), hashes); },
-               column.values);
-  std::uint64_t chain = 0;
-  for (std::uint64_t& hash : hashes) hash = chain = mixed(chain, hash);
-  return hashes;
-}
-
-namespace {
-
 void end(SequenceEntry& entry, const Trace& t, std::size_t tick, bool missed) {
   entry.ended_s = t.time_s[tick];
   entry.missed = missed;
   entry.distance_m = t.sequence_distance_m[tick], entry.angle_rad = t.sequence_angle_rad[tick];
 }
-
-}  // namespace
-
-std::vector<SequenceEntry> sequence_log(const Trace& t) {
-  std::vector<SequenceEntry> log;
-  if (!t.has_guidance()) return log;
-  int step = 0, missed = 0;
-  bool running = false;
-  for (std::size_t i = 0; i < t.length(); ++i) {
-    // Only the step that was running before this tick can have reached its deadline: the others began in this
-    // tick.
-    bool late = t.sequence_missed[i] > missed;
-    for (; step < t.sequence_step[i]; ++step) {
-      if (!running) log.push_back({step, t.time_s[i]});
-      end(log.back(), t, i, late);
-      running = late = false;
-    }
-    if (!running && t.sequence_running[i]) log.push_back({step, t.time_s[i]}), running = true;
-    missed = t.sequence_missed[i];
-  }
-  return log;
-}
-
-namespace {
 
 // The data of a tick that the expressions in trace_columns.h may use.
 struct TraceTick {
@@ -239,6 +188,49 @@ std::vector<TraceColumn> make_table() {
 }
 
 }  // namespace
+
+std::uint64_t points_hash(const PointCloud& cloud) {
+  std::uint64_t sum = cloud.size();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::uint64_t point = mixed(mixed(mixed(1, word(cloud.x[i])), word(cloud.y[i])), word(cloud.z[i]));
+    if (!cloud.fixture_radius_m.empty()) point = mixed(point, word(cloud.fixture_radius_m[i]));
+    if (!cloud.stiffness_N_per_m.empty()) point = mixed(point, word(cloud.stiffness_N_per_m[i]));
+    if (cloud.has_normals())
+      point = mixed(mixed(mixed(point, word(cloud.nx[i])), word(cloud.ny[i])), word(cloud.nz[i]));
+    sum += mixed(point, point >> 29);  // terms of a sum have to look random in every bit
+  }
+  return sum;
+}
+
+std::vector<std::uint64_t> running_hash(const std::vector<Column>& columns) {
+  std::vector<std::uint64_t> hashes(columns.empty() ? 0 : columns.front().length(), 0);
+  for (const Column& column : columns)
+    std::visit([&](const auto& v) { mix_rows(v, static_cast<std::size_t>(column.width), hashes); },
+               column.values);
+  std::uint64_t chain = 0;
+  for (std::uint64_t& hash : hashes) hash = chain = mixed(chain, hash);
+  return hashes;
+}
+
+std::vector<SequenceEntry> sequence_log(const Trace& t) {
+  std::vector<SequenceEntry> log;
+  if (!t.has_guidance()) return log;
+  int step = 0, missed = 0;
+  bool running = false;
+  for (std::size_t i = 0; i < t.length(); ++i) {
+    // Only the step that was running before this tick can have reached its deadline: the others began in this
+    // tick.
+    bool late = t.sequence_missed[i] > missed;
+    for (; step < t.sequence_step[i]; ++step) {
+      if (!running) log.push_back({step, t.time_s[i]});
+      end(log.back(), t, i, late);
+      running = late = false;
+    }
+    if (!running && t.sequence_running[i]) log.push_back({step, t.time_s[i]}), running = true;
+    missed = t.sequence_missed[i];
+  }
+  return log;
+}
 
 const std::vector<TraceColumn>& trace_columns() {
   static const std::vector<TraceColumn> table = make_table();

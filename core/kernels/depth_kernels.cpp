@@ -8,7 +8,6 @@
 #include "core/kernels/level.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
-
 namespace {
 
 struct Point {
@@ -64,22 +63,6 @@ void filter_row(const RowBand& band, int row, bool only_weights, const PointPlan
   }
 }
 
-}  // namespace
-
-void filter_depth(const RowBand& band, const PointPlanes& in, float* change) {
-  const auto work = band.half == 4   ? filter_row<4>
-                    : band.half == 2 ? filter_row<2>
-                    : band.half == 1 ? filter_row<1>
-                                     : filter_row<0>;
-  for (int row = band.first - band.half; row < band.last; ++row)
-    work(band, row, row < band.first, in, change);
-}
-
-// Converts rows of pixels to planes of points, and these to rows of a cloud. The loops are plain, because
-// every pixel is independent of the others.
-
-namespace {
-
 // Returns true if the depth is a measurement: in front of the camera, below kMaxDepth_m and not NaN.
 inline bool measured(double z_m) {
   return (z_m > 0) & (z_m < kMaxDepth_m);
@@ -113,39 +96,6 @@ void place_points(const PixelRow& row, const double X_WC[12], const CloudRow& ou
     out.z[u] = X[8] * x + X[9] * y + X[10] * z + X[11];
   }
 }
-
-}  // namespace
-
-void depth_to_points(const PixelRow& row, double scale, const PointPlanes& out) {
-  (row.change ? points_of_row<true> : points_of_row<false>)(row, scale, out);
-}
-
-void points_to_cloud(const PixelRow& row, const double X_WC[12], const CloudRow& out) {
-  (row.change ? place_points<true> : place_points<false>)(row, X_WC, out);
-}
-
-// The normals have unit length in single precision. One step of Newton's method gives them unit length in
-// double precision.
-void normals_to_cloud(int width, const float* z, const PointPlanes& normals, const double X_WC[12],
-                      const CloudRow& out) {
-  const double* const X = X_WC;
-#pragma omp simd
-  for (int u = 0; u < width; ++u) out.valid[u] = z[u] < 0.5f * kNowhere;
-#pragma omp simd
-  for (int u = 0; u < width; ++u) {
-    const double x = normals.x[u], y = normals.y[u], along = normals.z[u];
-    const double one = 1.5 - 0.5 * (x * x + y * y + along * along);
-    out.nx[u] = (X[0] * x + X[1] * y + X[2] * along) * one;
-    out.ny[u] = (X[4] * x + X[5] * y + X[6] * along) * one;
-    out.nz[u] = (X[8] * x + X[9] * y + X[10] * along) * one;
-  }
-}
-
-// Normals, 6.2.1, by a fit that needs no eigenvectors. The inverse depth of a plane is an affine function of
-// the pixel: 1 / z = A i + B j + C at i columns and j rows from the centre. The kernel computes 16, 8 or 4
-// pixels of a row at a time.
-
-namespace {
 
 // Weighted least squares of z (A i + B j + c) = -dz / z0, with C = 1 / z0 + c. The equation of the plane is
 // multiplied by z, so that no division by the depth of a neighbour is needed. Its value at the centre is
@@ -247,21 +197,6 @@ auto work_for(const RowBand& band) {
   return band.half == 4 && band.step == 2 ? normals_of_row<2, 2, kFits> : normals_of_row<0, 0, kFits>;
 }
 
-}  // namespace
-
-void inverse_depth_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays,
-                           const float step[2], const PointPlanes& out, const FitPlanes& fits) {
-  const auto work = fits.a ? work_for<true>(band) : work_for<false>(band);
-  for (int row = band.first; row < band.last; ++row) work(band, row, in, rays, step, out, fits);
-}
-
-// Normals of pixels whose own window extends over an edge, taken from windows beside the pixel: the planes on
-// both sides of a crease or an occlusion edge are fitted best by windows that end there. A choice among
-// shifted windows has been used to keep edges in images since Kuwahara, Hachimura, Eiho and Kinoshita (1976).
-// The kernel computes 16, 8 or 4 pixels of a row at a time.
-
-namespace {
-
 // The limit of the ratio of two mean square errors. Noise alone seldom makes the error of one window a
 // quarter of another's, and on a ball the errors are similar.
 constexpr float kClearlyLess = 0.25f;
@@ -269,36 +204,6 @@ constexpr float kClearlyLess = 0.25f;
 struct Choice {
   Floats error, x, y, z;
 };
-
-}  // namespace
-
-void sharp_normals(int width, int shift, const float* z, const PointPlanes& normals, const FitPlanes& fits,
-                   const PointPlanes& sharp) {
-  for (int u = 0; u < width; u += kFloats) {
-    const Floats z0 = load(z + u);
-    // An error below 1 means that the plane is in front of the camera, so that its normal points towards the
-    // sensor. A pixel without a plane of its own keeps NaN, because no error is less than NaN.
-    Choice best = {smaller(Floats{} + 1.0f, kClearlyLess * load(fits.error + u)), load(normals.x + u),
-                   load(normals.y + u), load(normals.z + u)};
-    const auto offer = [&](int i, int j) __attribute__((always_inline)) {
-      const std::ptrdiff_t at = u + shift * (j * normals.stride + i);
-      const Floats here = load(fits.c + at) - static_cast<float>(shift * i) * load(fits.a + at) -
-                          static_cast<float>(shift * j) * load(fits.b + at);
-      const Floats beside = z0 * here - 1.0f, error = load(fits.error + at) + beside * beside;
-      const auto is_better = error < best.error;  // false if there is no plane
-      best = {is_better ? error : best.error, is_better ? load(normals.x + at) : best.x,
-              is_better ? load(normals.y + at) : best.y, is_better ? load(normals.z + at) : best.z};
-    };
-    offer(-1, -1), offer(0, -1), offer(1, -1), offer(-1, 0), offer(1, 0), offer(-1, 1), offer(0, 1),
-        offer(1, 1);
-    store(sharp.x + u, best.x), store(sharp.y + u, best.y), store(sharp.z + u, best.z);
-  }
-}
-
-// Normals, 6.2.1: the plane of weighted total least squares through the neighbours of a pixel. The kernel
-// computes 16, 8 or 4 pixels of a row at a time.
-
-namespace {
 
 // The neighbour that is i columns and j rows away has, relative to the centre's point, the sheared
 // coordinates (i z / fx, j z / fy, dz): with rays a, p - p0 = (i z / fx + a_x dz, j z / fy + a_y dz, dz). So
@@ -453,6 +358,84 @@ void normals_of_row(const RowBand& band, int row, bool only_weights, const Point
 }
 
 }  // namespace
+
+void filter_depth(const RowBand& band, const PointPlanes& in, float* change) {
+  const auto work = band.half == 4   ? filter_row<4>
+                    : band.half == 2 ? filter_row<2>
+                    : band.half == 1 ? filter_row<1>
+                                     : filter_row<0>;
+  for (int row = band.first - band.half; row < band.last; ++row)
+    work(band, row, row < band.first, in, change);
+}
+
+// Converts rows of pixels to planes of points, and these to rows of a cloud. The loops are plain, because
+// every pixel is independent of the others.
+
+void depth_to_points(const PixelRow& row, double scale, const PointPlanes& out) {
+  (row.change ? points_of_row<true> : points_of_row<false>)(row, scale, out);
+}
+
+void points_to_cloud(const PixelRow& row, const double X_WC[12], const CloudRow& out) {
+  (row.change ? place_points<true> : place_points<false>)(row, X_WC, out);
+}
+
+// The normals have unit length in single precision. One step of Newton's method gives them unit length in
+// double precision.
+void normals_to_cloud(int width, const float* z, const PointPlanes& normals, const double X_WC[12],
+                      const CloudRow& out) {
+  const double* const X = X_WC;
+#pragma omp simd
+  for (int u = 0; u < width; ++u) out.valid[u] = z[u] < 0.5f * kNowhere;
+#pragma omp simd
+  for (int u = 0; u < width; ++u) {
+    const double x = normals.x[u], y = normals.y[u], along = normals.z[u];
+    const double one = 1.5 - 0.5 * (x * x + y * y + along * along);
+    out.nx[u] = (X[0] * x + X[1] * y + X[2] * along) * one;
+    out.ny[u] = (X[4] * x + X[5] * y + X[6] * along) * one;
+    out.nz[u] = (X[8] * x + X[9] * y + X[10] * along) * one;
+  }
+}
+
+// Normals, 6.2.1, by a fit that needs no eigenvectors. The inverse depth of a plane is an affine function of
+// the pixel: 1 / z = A i + B j + C at i columns and j rows from the centre. The kernel computes 16, 8 or 4
+// pixels of a row at a time.
+
+void inverse_depth_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays,
+                           const float step[2], const PointPlanes& out, const FitPlanes& fits) {
+  const auto work = fits.a ? work_for<true>(band) : work_for<false>(band);
+  for (int row = band.first; row < band.last; ++row) work(band, row, in, rays, step, out, fits);
+}
+
+// Normals of pixels whose own window extends over an edge, taken from windows beside the pixel: the planes on
+// both sides of a crease or an occlusion edge are fitted best by windows that end there. A choice among
+// shifted windows has been used to keep edges in images since Kuwahara, Hachimura, Eiho and Kinoshita (1976).
+// The kernel computes 16, 8 or 4 pixels of a row at a time.
+
+void sharp_normals(int width, int shift, const float* z, const PointPlanes& normals, const FitPlanes& fits,
+                   const PointPlanes& sharp) {
+  for (int u = 0; u < width; u += kFloats) {
+    const Floats z0 = load(z + u);
+    // An error below 1 means that the plane is in front of the camera, so that its normal points towards the
+    // sensor. A pixel without a plane of its own keeps NaN, because no error is less than NaN.
+    Choice best = {smaller(Floats{} + 1.0f, kClearlyLess * load(fits.error + u)), load(normals.x + u),
+                   load(normals.y + u), load(normals.z + u)};
+    const auto offer = [&](int i, int j) __attribute__((always_inline)) {
+      const std::ptrdiff_t at = u + shift * (j * normals.stride + i);
+      const Floats here = load(fits.c + at) - static_cast<float>(shift * i) * load(fits.a + at) -
+                          static_cast<float>(shift * j) * load(fits.b + at);
+      const Floats beside = z0 * here - 1.0f, error = load(fits.error + at) + beside * beside;
+      const auto is_better = error < best.error;  // false if there is no plane
+      best = {is_better ? error : best.error, is_better ? load(normals.x + at) : best.x,
+              is_better ? load(normals.y + at) : best.y, is_better ? load(normals.z + at) : best.z};
+    };
+    offer(-1, -1), offer(0, -1), offer(1, -1), offer(-1, 0), offer(1, 0), offer(-1, 1), offer(0, 1),
+        offer(1, 1);
+    store(sharp.x + u, best.x), store(sharp.y + u, best.y), store(sharp.z + u, best.z);
+  }
+}
+
+// Normals, 6.2.1: the plane of weighted total least squares through the neighbours of a pixel. The kernel
+// computes 16, 8 or 4 pixels of a row at a time.
 
 void plane_normals(const RowBand& band, const PointPlanes& in, const PixelRays& rays, const float step[2],
                    const PointPlanes& out) {

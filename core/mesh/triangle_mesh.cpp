@@ -12,7 +12,6 @@
 #include "core/points/vector.h"
 
 namespace remote_touch {
-
 namespace {
 
 using Vec2 = Eigen::Vector2d;
@@ -147,22 +146,6 @@ bool have_area_of_polygon(const Triangles& triangles, const std::vector<Vec2>& a
   for (const auto& [a, b, c] : triangles) sum += std::abs(turn(at[a], at[b], at[c]));
   return std::abs(sum - whole) <= 1e-9 * whole;
 }
-
-}  // namespace
-
-std::optional<std::vector<std::array<int, 3>>> polygon_triangles(const std::vector<Vec3>& corners) {
-  if (is_line(corners)) return fan(corners.size());
-  const Vec3 area = area_vector(corners);
-  if (has_no_normal(corners, area)) return {};
-  const std::vector<Vec2> at = seen_flat(corners, area);
-  if (has_fan(at)) return fan(corners.size());
-  if (!is_simple(at)) return {};
-  std::optional<Triangles> triangles = ears(at);
-  if (triangles && !have_area_of_polygon(*triangles, at)) return {};
-  return triangles;
-}
-
-namespace {
 
 // Returns the root of a triangle's part in a forest of parents, and shortens the paths on the way.
 int root_of(std::vector<int>& parent, int triangle) {
@@ -327,6 +310,18 @@ void turn_outwards(TriangleMesh& mesh, const std::vector<int>& component, std::v
 }
 
 }  // namespace
+
+std::optional<std::vector<std::array<int, 3>>> polygon_triangles(const std::vector<Vec3>& corners) {
+  if (is_line(corners)) return fan(corners.size());
+  const Vec3 area = area_vector(corners);
+  if (has_no_normal(corners, area)) return {};
+  const std::vector<Vec2> at = seen_flat(corners, area);
+  if (has_fan(at)) return fan(corners.size());
+  if (!is_simple(at)) return {};
+  std::optional<Triangles> triangles = ears(at);
+  if (triangles && !have_area_of_polygon(*triangles, at)) return {};
+  return triangles;
+}
 
 std::vector<MeshEdge> edges_by_vertices(const TriangleMesh& mesh) {
   std::vector<MeshEdge> edges;

@@ -8,7 +8,6 @@
 #include "core/points/vector.h"
 
 namespace remote_touch {
-
 namespace {
 
 constexpr int kLeaf = 4;
@@ -21,6 +20,30 @@ constexpr double kPi = 3.14159265358979323846;
 double squared_to_segment(const Vec3& v, const Vec3& d, double vd, double dd) {
   const double t = dd > 0 ? std::min(std::max(vd / dd, 0.0), 1.0) : 0;
   return (v - t * d).squaredNorm();
+}
+
+Vec3 sum_of_corners(const TriangleMesh& mesh, int face) {
+  const auto [a, b, c] = mesh.triangles[face];
+  return mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c];
+}
+
+// Divides the faces begin to end into two ranges, along the longest side of the box of their middles. Returns
+// the start of the second range. The first one fills its blocks, so that no more than one block of the tree
+// has free lanes. A single block is not divided: the second range is empty.
+int divided(const TriangleMesh& mesh, std::vector<int>& order, int begin, int end, int block) {
+  const int blocks = (end - begin + block - 1) / block;
+  if (blocks <= 1) return end;
+  BoundingBox middles;
+  for (int f = begin; f < end; ++f) middles.extend(sum_of_corners(mesh, order[f]));
+  int axis = 0;
+  middles.sizes().maxCoeff(&axis);
+  const int middle = begin + blocks / 2 * block;
+  const auto before = [&](int f, int g) {
+    const double a = sum_of_corners(mesh, f)[axis], b = sum_of_corners(mesh, g)[axis];
+    return a < b || (a == b && f < g);
+  };
+  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, before);
+  return middle;
 }
 
 }  // namespace
@@ -197,34 +220,6 @@ double TriangleTree::winding_number(const Vec3& p) const {
   }
   return angle / (4 * kPi);
 }
-
-namespace {
-
-Vec3 sum_of_corners(const TriangleMesh& mesh, int face) {
-  const auto [a, b, c] = mesh.triangles[face];
-  return mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c];
-}
-
-// Divides the faces begin to end into two ranges, along the longest side of the box of their middles. Returns
-// the start of the second range. The first one fills its blocks, so that no more than one block of the tree
-// has free lanes. A single block is not divided: the second range is empty.
-int divided(const TriangleMesh& mesh, std::vector<int>& order, int begin, int end, int block) {
-  const int blocks = (end - begin + block - 1) / block;
-  if (blocks <= 1) return end;
-  BoundingBox middles;
-  for (int f = begin; f < end; ++f) middles.extend(sum_of_corners(mesh, order[f]));
-  int axis = 0;
-  middles.sizes().maxCoeff(&axis);
-  const int middle = begin + blocks / 2 * block;
-  const auto before = [&](int f, int g) {
-    const double a = sum_of_corners(mesh, f)[axis], b = sum_of_corners(mesh, g)[axis];
-    return a < b || (a == b && f < g);
-  };
-  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, before);
-  return middle;
-}
-
-}  // namespace
 
 FaceTree::FaceTree(const TriangleMesh& mesh) {
   centre_ = bounding_box(mesh.vertices).center();

@@ -8,7 +8,6 @@
 #include "core/rivals/exact_sum.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Lengths are in units of R.
@@ -42,6 +41,15 @@ double weight_above(SurfaceWeight weight, double h) {
   const double b = 1 - h, to_fifth = b * b * b * b * b;
   return 2 * to_fifth * (1 - 1.5 * b + b * b * (4.0 / 7));
 }
+
+// R in units of the mean distance to the three nearest neighbours, and R for a cloud of fewer than four
+// points.
+constexpr double kRadiusInSpacings = 3, kRadiusWithoutSpacing_m = 0.01;
+// Lengths are in units of R: the longest step between two checks of the HIP's path, the longest slide of a
+// tick in the tangent plane, and the longest projection. A displacement shorter than kSurfelRest counts as
+// none.
+constexpr double kCheckStride = 0.125, kMaxSlide = 0.5, kMaxProjection = 0.5, kSurfelRest = 1e-9;
+constexpr int kMaxChecks = 64;
 
 }  // namespace
 
@@ -182,19 +190,6 @@ void ImplicitSurfaceRenderer::report(const Place& here, const Vec3& hip_W, Rende
   }
   if (out.state != ContactState::free) out.force_N = -stiffness_of(query) * u;
 }
-
-namespace {
-
-// R in units of the mean distance to the three nearest neighbours, and R for a cloud of fewer than four
-// points.
-constexpr double kRadiusInSpacings = 3, kRadiusWithoutSpacing_m = 0.01;
-// Lengths are in units of R: the longest step between two checks of the HIP's path, the longest slide of a
-// tick in the tangent plane, and the longest projection. A displacement shorter than kSurfelRest counts as
-// none.
-constexpr double kCheckStride = 0.125, kMaxSlide = 0.5, kMaxProjection = 0.5, kSurfelRest = 1e-9;
-constexpr int kMaxChecks = 64;
-
-}  // namespace
 
 Parameters parameters(SurfelParameters& p) {
   return {

@@ -67,6 +67,50 @@ Vec3 turn_between(const Eigen::Quaterniond& from_W, const Eigen::Quaterniond& to
   return rotation_vector(to_W * from_W.conjugate());
 }
 
+constexpr std::size_t kFewestPoints = 3;
+
+struct LocalPlane {
+  Vec3 centre, normal;
+};
+
+double weight(double square_m2, double near_m) {
+  const double rest = 1 - square_m2 / (near_m * near_m);
+  return rest > 0 ? rest * rest : 0;
+}
+
+// The points of a frame around a position, as often as they are asked for.
+class NearPoints {
+ public:
+  NearPoints(const NeighbourSearch& frame, const Ball& ball, const Kernels& kernels) {
+    points_.reserve(frame.size(), frame.has_fixture_radius(), frame.has_stiffness());
+    frame.gather(ball, kernels, points_);
+    points_.finish();
+  }
+  // Returns the plane fitted with weights around q; none with too few points. gather() also finds points
+  // whose regions meet the ball; their weight is 0.
+  std::optional<LocalPlane> plane(const Vec3& q, double near_m) const {
+    const PointsView view = points_.view();
+    Vec3 sum = Vec3::Zero();
+    double weights = 0;
+    std::size_t count = 0;
+    const auto each = [&](auto&& take) {
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const Vec3 p(view.x[i], view.y[i], view.z[i]);
+        if (const double w = weight((p - q).squaredNorm(), near_m); w > 0) take(p, w);
+      }
+    };
+    each([&](const Vec3& p, double w) { sum += w * p, weights += w, ++count; });
+    if (count < kFewestPoints) return {};
+    const Vec3 centre = sum / weights;
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    each([&](const Vec3& p, double w) { spread += w * (p - centre) * (p - centre).transpose(); });
+    return LocalPlane{centre, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0)};
+  }
+
+ private:
+  GatheredPoints points_;
+};
+
 }  // namespace
 
 Parameters parameters(DeadBandSettings& s) {
@@ -164,54 +208,6 @@ std::optional<Eigen::Quaterniond> DeadBandReceiver::shown_orientation(double tim
   if (!last_) return {};
   return remote_touch::shown_orientation(*last_, time_s - arrived_s_);
 }
-
-namespace {
-
-constexpr std::size_t kFewestPoints = 3;
-
-struct LocalPlane {
-  Vec3 centre, normal;
-};
-
-double weight(double square_m2, double near_m) {
-  const double rest = 1 - square_m2 / (near_m * near_m);
-  return rest > 0 ? rest * rest : 0;
-}
-
-// The points of a frame around a position, as often as they are asked for.
-class NearPoints {
- public:
-  NearPoints(const NeighbourSearch& frame, const Ball& ball, const Kernels& kernels) {
-    points_.reserve(frame.size(), frame.has_fixture_radius(), frame.has_stiffness());
-    frame.gather(ball, kernels, points_);
-    points_.finish();
-  }
-  // Returns the plane fitted with weights around q; none with too few points. gather() also finds points
-  // whose regions meet the ball; their weight is 0.
-  std::optional<LocalPlane> plane(const Vec3& q, double near_m) const {
-    const PointsView view = points_.view();
-    Vec3 sum = Vec3::Zero();
-    double weights = 0;
-    std::size_t count = 0;
-    const auto each = [&](auto&& take) {
-      for (std::size_t i = 0; i < points_.size(); ++i) {
-        const Vec3 p(view.x[i], view.y[i], view.z[i]);
-        if (const double w = weight((p - q).squaredNorm(), near_m); w > 0) take(p, w);
-      }
-    };
-    each([&](const Vec3& p, double w) { sum += w * p, weights += w, ++count; });
-    if (count < kFewestPoints) return {};
-    const Vec3 centre = sum / weights;
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    each([&](const Vec3& p, double w) { spread += w * (p - centre) * (p - centre).transpose(); });
-    return LocalPlane{centre, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0)};
-  }
-
- private:
-  GatheredPoints points_;
-};
-
-}  // namespace
 
 Parameters parameters(FrameDeadBandSettings& s) {
   return {

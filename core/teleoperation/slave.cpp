@@ -12,10 +12,95 @@
 #include "core/points/vector.h"
 
 namespace remote_touch {
-
 namespace {
 
 constexpr double kMaxTick_s = 0.01;  // longest tick at the haptic rates that an experiment may have
+
+enum Drawn : std::uint32_t { offset, axis };
+
+// Returns a unit vector, by rejection: points in a cube are drawn until one lies in its inscribed ball.
+// Unlike with sine and cosine, the bits do not depend on the C library.
+Vec3 direction(const NoiseKey& key, Drawn which) {
+  const NoiseKey of_all_cells{key.seed, 0, key.replicate};
+  const NoiseStream stream = noise_stream(of_all_cells, NoiseUse::registration, which);
+  for (std::uint32_t draw = 0;; ++draw) {
+    const auto u = uniforms(stream, draw);
+    const Vec3 p(2 * u[0] - 1, 2 * u[1] - 1, 2 * u[2] - 1);
+    const double square = p.squaredNorm();
+    if (square <= 1 && square > 1e-6) return p.normalized();
+  }
+}
+
+constexpr int kToolPointsInLeaf = 4;
+
+struct Cell {
+  Vec3 p_T = Vec3::Zero();
+  double area_m2 = 0;
+};
+using Cells = std::map<std::array<int, 3>, Cell>;
+
+void add(Cells& cells, double spacing_m, const Vec3& p_T, double area_m2) {
+  const Vec3 at = p_T / spacing_m + Vec3::Constant(0.5);
+  std::array<int, 3> key;
+  for (std::size_t i = 0; i < 3; ++i) key[i] = static_cast<int>(std::floor(at[static_cast<Eigen::Index>(i)]));
+  const auto [place, is_first] = cells.try_emplace(key, Cell{p_T, 0});
+  if (p_T.squaredNorm() > place->second.p_T.squaredNorm()) place->second.p_T = p_T;
+  place->second.area_m2 += area_m2;
+}
+
+double area_of(const std::array<Vec3, 3>& corners) {
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
+}
+
+std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+  const auto at = [&](int i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
+  return {at(triangle[0]), at(triangle[1]), at(triangle[2])};
+}
+
+// Every corner of a part has a third of the parts that meet in it: one, three or six.
+void add(Cells& cells, double spacing_m, const std::array<Vec3, 3>& corners) {
+  const double longest_m = std::max(
+      {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
+  const int n = std::max(1, static_cast<int>(std::ceil(longest_m / spacing_m)));
+  const double third_m2 = area_of(corners) / (3.0 * n * n);
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; i + j <= n; ++j) {
+      const int borders = (i == 0) + (j == 0) + (i + j == n);
+      const int parts = borders == 0 ? 6 : borders == 1 ? 3 : 1;
+      const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
+      const Vec3 p_T = corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]);
+      add(cells, spacing_m, p_T, parts * third_m2);
+    }
+}
+
+Cells cells_of(const TriangleMesh& mesh, double spacing_m) {
+  Cells cells;
+  for (const auto& triangle : mesh.triangles) add(cells, spacing_m, corners_of(mesh, triangle));
+  return cells;
+}
+
+constexpr double kNegligible = 20;  // value of x in exp(-x), a share of 2e-9
+
+// Returns exp(-x), within 3e-4 for x <= 8 and 2 % for x <= 20, with the same bits on every machine.
+double decay(double x) {
+  assert(x >= 0 && x <= kNegligible);
+  const double y = x / 16;
+  double t = 1 + y * (1 + y * (1. / 2 + y * (1. / 6 + y * (1. / 24 + y * (1. / 120)))));
+  t *= t, t *= t, t *= t, t *= t;
+  return 1 / t;
+}
+
+// Returns ln x within 1e-12, with the same bits on every machine.
+double logarithm(double x) {
+  assert(x > 0 && std::isfinite(x));
+  int exponent = 0;
+  double m = std::frexp(x, &exponent);
+  if (m < std::numbers::sqrt2 / 2) m *= 2, --exponent;
+  const double u = (m - 1) / (m + 1), v = u * u;
+  double series = 0;
+  for (int k = 15; k >= 1; k -= 2) series = series * v + 1.0 / k;
+  return exponent * std::numbers::ln2 + 2 * u * series;
+}
 
 }  // namespace
 
@@ -147,25 +232,6 @@ const Slave::State& Slave::move_through_tick(const Guide& guide, double time_s) 
   return state_;
 }
 
-namespace {
-
-enum Drawn : std::uint32_t { offset, axis };
-
-// Returns a unit vector, by rejection: points in a cube are drawn until one lies in its inscribed ball.
-// Unlike with sine and cosine, the bits do not depend on the C library.
-Vec3 direction(const NoiseKey& key, Drawn which) {
-  const NoiseKey of_all_cells{key.seed, 0, key.replicate};
-  const NoiseStream stream = noise_stream(of_all_cells, NoiseUse::registration, which);
-  for (std::uint32_t draw = 0;; ++draw) {
-    const auto u = uniforms(stream, draw);
-    const Vec3 p(2 * u[0] - 1, 2 * u[1] - 1, 2 * u[2] - 1);
-    const double square = p.squaredNorm();
-    if (square <= 1 && square > 1e-6) return p.normalized();
-  }
-}
-
-}  // namespace
-
 Parameters parameters(RegistrationError& s) {
   return {
       {"offset_m", &s.offset_m, 0, 1, "distance of the slave from its command, in a random direction"},
@@ -183,58 +249,6 @@ RigidTransform registration_of(const RegistrationError& error, const NoiseKey& k
   X.translation() = about_centre_m + error.offset_m * direction(key, offset);
   return X;
 }
-
-namespace {
-
-constexpr int kToolPointsInLeaf = 4;
-
-struct Cell {
-  Vec3 p_T = Vec3::Zero();
-  double area_m2 = 0;
-};
-using Cells = std::map<std::array<int, 3>, Cell>;
-
-void add(Cells& cells, double spacing_m, const Vec3& p_T, double area_m2) {
-  const Vec3 at = p_T / spacing_m + Vec3::Constant(0.5);
-  std::array<int, 3> key;
-  for (std::size_t i = 0; i < 3; ++i) key[i] = static_cast<int>(std::floor(at[static_cast<Eigen::Index>(i)]));
-  const auto [place, is_first] = cells.try_emplace(key, Cell{p_T, 0});
-  if (p_T.squaredNorm() > place->second.p_T.squaredNorm()) place->second.p_T = p_T;
-  place->second.area_m2 += area_m2;
-}
-
-double area_of(const std::array<Vec3, 3>& corners) {
-  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2;
-}
-
-std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
-  const auto at = [&](int i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
-  return {at(triangle[0]), at(triangle[1]), at(triangle[2])};
-}
-
-// Every corner of a part has a third of the parts that meet in it: one, three or six.
-void add(Cells& cells, double spacing_m, const std::array<Vec3, 3>& corners) {
-  const double longest_m = std::max(
-      {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
-  const int n = std::max(1, static_cast<int>(std::ceil(longest_m / spacing_m)));
-  const double third_m2 = area_of(corners) / (3.0 * n * n);
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; i + j <= n; ++j) {
-      const int borders = (i == 0) + (j == 0) + (i + j == n);
-      const int parts = borders == 0 ? 6 : borders == 1 ? 3 : 1;
-      const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
-      const Vec3 p_T = corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]);
-      add(cells, spacing_m, p_T, parts * third_m2);
-    }
-}
-
-Cells cells_of(const TriangleMesh& mesh, double spacing_m) {
-  Cells cells;
-  for (const auto& triangle : mesh.triangles) add(cells, spacing_m, corners_of(mesh, triangle));
-  return cells;
-}
-
-}  // namespace
 
 SlaveTool make_slave_tool(const TriangleMesh& mesh, const Eigen::Matrix3d& inertia_m2, int max_points) {
   double area_m2 = 0;
@@ -281,33 +295,6 @@ int SlaveToolTree::add(int begin, int end) {
   nodes_[static_cast<std::size_t>(index)].right = right;
   return index;
 }
-
-namespace {
-
-constexpr double kNegligible = 20;  // value of x in exp(-x), a share of 2e-9
-
-// Returns exp(-x), within 3e-4 for x <= 8 and 2 % for x <= 20, with the same bits on every machine.
-double decay(double x) {
-  assert(x >= 0 && x <= kNegligible);
-  const double y = x / 16;
-  double t = 1 + y * (1 + y * (1. / 2 + y * (1. / 6 + y * (1. / 24 + y * (1. / 120)))));
-  t *= t, t *= t, t *= t, t *= t;
-  return 1 / t;
-}
-
-// Returns ln x within 1e-12, with the same bits on every machine.
-double logarithm(double x) {
-  assert(x > 0 && std::isfinite(x));
-  int exponent = 0;
-  double m = std::frexp(x, &exponent);
-  if (m < std::numbers::sqrt2 / 2) m *= 2, --exponent;
-  const double u = (m - 1) / (m + 1), v = u * u;
-  double series = 0;
-  for (int k = 15; k >= 1; k -= 2) series = series * v + 1.0 / k;
-  return exponent * std::numbers::ln2 + 2 * u * series;
-}
-
-}  // namespace
 
 std::string validate(const SlaveSettings& s, const SlaveTool& tool, double tick_s) {
   // A point at the end of the tool moves 1 + reach^2 / r^2 times as easily as its centre.

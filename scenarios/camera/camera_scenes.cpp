@@ -8,7 +8,6 @@
 #include "core/points/point_cloud.h"
 
 namespace remote_touch {
-
 namespace {
 
 // The closest point x to q on an ellipsoid with semi-axes e obeys q - x = s x / e^2 for some s (Lagrange),
@@ -76,6 +75,61 @@ Eigen::Matrix3d turned() {
       0, 1, 0,            //
       -0.28, 0, 0.96;
   return axes;
+}
+
+constexpr double kOnSurface_m = 1e-9;
+// Limit of the steps of a ray. A ray that needs more passes very close to the surface and counts as a miss.
+constexpr int kMaxSteps = 20000;
+constexpr double kDifference_m = 1e-6;
+
+// Directions of the spokes, 120 degrees apart, as (x, y).
+constexpr double kSin60 = 0.86602540378443865;
+constexpr double kSpokes[3][2] = {{0, 1}, {kSin60, -0.5}, {-kSin60, -0.5}};
+
+// The functions below use coordinates relative to the wheel's centre. Each part is exact on both sides.
+
+double across(const Vec3& q) {
+  return std::sqrt(q.x() * q.x() + q.y() * q.y());
+}
+
+double to_ring(const Vec3& q, double ring_radius) {
+  const double off = across(q) - ring_radius;
+  return std::sqrt(off * off + q.z() * q.z()) - Handwheel::kTubeRadius_m;
+}
+
+// Distance to a spoke: a capsule from the centre to the middle of the ring's tube.
+double to_spoke(const Vec3& q, const double (&displacement)[2], double ring_radius) {
+  const double along = std::clamp(q.x() * displacement[0] + q.y() * displacement[1], 0.0, ring_radius);
+  const double x = q.x() - along * displacement[0], y = q.y() - along * displacement[1];
+  return std::sqrt(x * x + y * y + q.z() * q.z()) - Handwheel::kSpokeRadius_m;
+}
+
+// Distance to a cylinder about the axis, from z_low to z_high.
+double to_cylinder(const Vec3& q, double radius, double z_low, double z_high) {
+  const double beside = across(q) - radius, beyond = std::max(z_low - q.z(), q.z() - z_high);
+  if (beside > 0 && beyond > 0) return std::sqrt(beside * beside + beyond * beyond);
+  return std::max(beside, beyond);
+}
+
+constexpr double kNoLightLeft = 64;  // exp(-64) = 1.6e-28
+constexpr int kSquarings = 10;
+constexpr double kDepthLoss = 0.25;  // factor on beta
+constexpr double kFar_m = 1e6;       // replaces infinity, because 0 times infinity is NaN
+
+constexpr double kPaintSaturation = 0.85, kPaintLightness = 0.45;
+constexpr HueSaturationLightness kWall{195, 0.3, 0.45};
+constexpr double kAmbient = 0.3;  // share of the light that is ambient
+
+// Scales the three channels by `light`: the lightness changes; hue and saturation do not, up to rounding.
+std::uint32_t dimmed(std::uint32_t rgb, double light) {
+  std::uint32_t result = 0;
+  for (int shift = 16; shift >= 0; shift -= 8)
+    result |= static_cast<std::uint32_t>(std::floor((rgb >> shift & 0xFF) * light + 0.5)) << shift;
+  return result;
+}
+
+std::uint32_t channel(double value) {
+  return static_cast<std::uint32_t>(std::clamp(std::floor(value + 0.5), 0.0, 255.0));
 }
 
 }  // namespace
@@ -201,65 +255,6 @@ PointCloud BeatingHeart::cloud(int frame) const {
   };
   return camera_.measured(camera_.view(cast, /*coloured=*/true), frame);
 }
-
-namespace {
-
-constexpr double kOnSurface_m = 1e-9;
-// Limit of the steps of a ray. A ray that needs more passes very close to the surface and counts as a miss.
-constexpr int kMaxSteps = 20000;
-constexpr double kDifference_m = 1e-6;
-
-// Directions of the spokes, 120 degrees apart, as (x, y).
-constexpr double kSin60 = 0.86602540378443865;
-constexpr double kSpokes[3][2] = {{0, 1}, {kSin60, -0.5}, {-kSin60, -0.5}};
-
-// The functions below use coordinates relative to the wheel's centre. Each part is exact on both sides.
-
-double across(const Vec3& q) {
-  return std::sqrt(q.x() * q.x() + q.y() * q.y());
-}
-
-double to_ring(const Vec3& q, double ring_radius) {
-  const double off = across(q) - ring_radius;
-  return std::sqrt(off * off + q.z() * q.z()) - Handwheel::kTubeRadius_m;
-}
-
-// Distance to a spoke: a capsule from the centre to the middle of the ring's tube.
-double to_spoke(const Vec3& q, const double (&displacement)[2], double ring_radius) {
-  const double along = std::clamp(q.x() * displacement[0] + q.y() * displacement[1], 0.0, ring_radius);
-  const double x = q.x() - along * displacement[0], y = q.y() - along * displacement[1];
-  return std::sqrt(x * x + y * y + q.z() * q.z()) - Handwheel::kSpokeRadius_m;
-}
-
-// Distance to a cylinder about the axis, from z_low to z_high.
-double to_cylinder(const Vec3& q, double radius, double z_low, double z_high) {
-  const double beside = across(q) - radius, beyond = std::max(z_low - q.z(), q.z() - z_high);
-  if (beside > 0 && beyond > 0) return std::sqrt(beside * beside + beyond * beyond);
-  return std::max(beside, beyond);
-}
-
-constexpr double kNoLightLeft = 64;  // exp(-64) = 1.6e-28
-constexpr int kSquarings = 10;
-constexpr double kDepthLoss = 0.25;  // factor on beta
-constexpr double kFar_m = 1e6;       // replaces infinity, because 0 times infinity is NaN
-
-constexpr double kPaintSaturation = 0.85, kPaintLightness = 0.45;
-constexpr HueSaturationLightness kWall{195, 0.3, 0.45};
-constexpr double kAmbient = 0.3;  // share of the light that is ambient
-
-// Scales the three channels by `light`: the lightness changes; hue and saturation do not, up to rounding.
-std::uint32_t dimmed(std::uint32_t rgb, double light) {
-  std::uint32_t result = 0;
-  for (int shift = 16; shift >= 0; shift -= 8)
-    result |= static_cast<std::uint32_t>(std::floor((rgb >> shift & 0xFF) * light + 0.5)) << shift;
-  return result;
-}
-
-std::uint32_t channel(double value) {
-  return static_cast<std::uint32_t>(std::clamp(std::floor(value + 0.5), 0.0, 255.0));
-}
-
-}  // namespace
 
 Handwheel::Handwheel(const Vec3& centre_m, double ring_radius_m)
     : centre_(centre_m), ring_radius_(ring_radius_m) {

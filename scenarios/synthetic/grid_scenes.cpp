@@ -38,6 +38,13 @@ constexpr double kNearMargin_m = 0.004;
 // Tolerance that is far above the rounding of sums of metres.
 constexpr double kRounding_m = 1e-9;
 
+// Returns the nearest update if it is within 1e-6, else the time itself, in updates. Quotients of times are
+// rounded, so a time that is meant to be at an update may be slightly off.
+double at_update_if_near(double updates) {
+  const double nearest = std::round(updates);
+  return std::abs(updates - nearest) < 1e-6 ? nearest : updates;
+}
+
 }  // namespace
 
 NoisyGridSearch::NoisyGridSearch(const Grid& grid, double height_m, double sigma_m, const NoiseStream& stream)
@@ -246,17 +253,6 @@ double TriangleWave::signed_distance(const Vec3& p_W, double time_s) const {
 PointCloud TriangleWave::cloud(int frame) const {
   return sampled(frame, [&](double x, double z) { return Vec3(x, surface_height(x, 0, 0), z); });
 }
-
-namespace {
-
-// Returns the nearest update if it is within 1e-6, else the time itself, in updates. Quotients of times are
-// rounded, so a time that is meant to be at an update may be slightly off.
-double at_update_if_near(double updates) {
-  const double nearest = std::round(updates);
-  return std::abs(updates - nearest) < 1e-6 ? nearest : updates;
-}
-
-}  // namespace
 
 Parameters parameters(LiftMotion::Settings& s) {
   return {

@@ -11,7 +11,6 @@
 #include "core/points/vector.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Returns the vertices, and points of the triangles no farther apart than spacing_m, or than a hundredth of
@@ -69,6 +68,26 @@ Matrix6 transport(const Vec3& by, double lever_m) {
   m.block<3, 3>(0, 3) << 0, by.z(), -by.y(), -by.z(), 0, by.x(), by.y(), -by.x(), 0;
   m.block<3, 3>(0, 3) /= lever_m;
   return m;
+}
+
+// Lengths are in units of the patches (contact radii) unless the name has another unit.
+constexpr double kGroupRadius = 6.5;  // largest radius of a group of positions on the tool
+constexpr double kShownBeyond = 0.8;  // points up to this distance from the tool must be in the patch
+constexpr double kMinReach = 1, kMaxReach = 5,
+                 kContactReach = 3;      // motion of the tool until patches are updated
+constexpr double kOnSheet = 0.5;         // largest distance of a contact from its sheet
+constexpr double kAlike = 0.7;           // minimum cosine between the normals of a contact and of its sheet
+constexpr double kSameDirection = 0.95;  // minimum cosine between the normals of contacts with one face
+constexpr int kEnoughAlike = 3;
+constexpr double kSameSheet = 0.85;  // minimum cosine between the normals of patches of one sheet
+constexpr double kLeft = 2;          // clearance of the tool at which the patch of a contact ends
+constexpr double kNearlyAsLow = 0.5;
+constexpr double kBehind = -0.5;      // a position deeper than this was not in front of the sheet
+constexpr double kLever = 2;          // see CarriedMotion
+constexpr double kTouching_m = 5e-4;  // contacts farther from the tool do not hold it
+
+Vec3 world(const ToolPose& pose, const Vec3& p_T) {
+  return pose.p_W + pose.q_WT * p_T;
 }
 
 }  // namespace
@@ -156,30 +175,6 @@ CarriedMotion::Result CarriedMotion::about(const Vec3& about_W, const Vector6& e
   result.known = true;
   return result;
 }
-
-namespace {
-
-// Lengths are in units of the patches (contact radii) unless the name has another unit.
-constexpr double kGroupRadius = 6.5;  // largest radius of a group of positions on the tool
-constexpr double kShownBeyond = 0.8;  // points up to this distance from the tool must be in the patch
-constexpr double kMinReach = 1, kMaxReach = 5,
-                 kContactReach = 3;      // motion of the tool until patches are updated
-constexpr double kOnSheet = 0.5;         // largest distance of a contact from its sheet
-constexpr double kAlike = 0.7;           // minimum cosine between the normals of a contact and of its sheet
-constexpr double kSameDirection = 0.95;  // minimum cosine between the normals of contacts with one face
-constexpr int kEnoughAlike = 3;
-constexpr double kSameSheet = 0.85;  // minimum cosine between the normals of patches of one sheet
-constexpr double kLeft = 2;          // clearance of the tool at which the patch of a contact ends
-constexpr double kNearlyAsLow = 0.5;
-constexpr double kBehind = -0.5;      // a position deeper than this was not in front of the sheet
-constexpr double kLever = 2;          // see CarriedMotion
-constexpr double kTouching_m = 5e-4;  // contacts farther from the tool do not hold it
-
-Vec3 world(const ToolPose& pose, const Vec3& p_T) {
-  return pose.p_W + pose.q_WT * p_T;
-}
-
-}  // namespace
 
 SheetPatches::SheetPatches(const SheetSettings& settings, double unit_m, std::size_t max_patches,
                            const VoxelTool& tool, const Kernels& kernels)

@@ -127,81 +127,6 @@ Vec3 step_towards(const Vec3& goal, const ProxyParameters& p) {
                            : along(goal, p.xi * p.r1_m, distance);  // (4.12)
 }
 
-}  // namespace
-
-ContactState classify(double nearest_distance_m, const ProxyParameters& p) {
-  if (nearest_distance_m < p.r1_m) return ContactState::entrenched;
-  return nearest_distance_m <= p.r2_m ? ContactState::contact : ContactState::free;
-}
-
-Vec3 unit_normal(const ContactQuery& query, const Vec3& previous) {
-  const Vec3 sum(query.normal_sum[0], query.normal_sum[1], query.normal_sum[2]);
-  const double length = sum.norm();
-  return length > kNoDirection ? Vec3(sum / length) : previous;
-}
-
-Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyParameters& p) {
-  const double distance = u.norm();
-  if (!(distance > 0)) return Vec3::Zero();
-  if (p.step_rule == StepRule::fixed) return step_towards(u, p);
-  const Vec3 direction = u / distance;
-  const double step = p.free_root == FreeRoot::ahead
-                          ? near.first_hit(p_W, direction, p.contact_radius_m(), distance)
-                          : printed_free_root(near.within(p_W, distance + p.contact_radius_m()).view(), p_W,
-                                              direction, p.contact_radius_m(), distance);
-  // A step without an obstacle is u itself, so that P meets the HIP bit for bit.
-  return step >= distance ? u : Vec3(step * direction);  // (4.4) with d_k of (4.9)
-}
-
-Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec3& p_W, const Vec3& normal,
-                     const Vec3& u, const ProxyParameters& p) {
-  Vec3 out = normal;
-  if (out.isZero(0)) out = along(-u, 1, u.norm());
-  if (out.isZero(0)) return Vec3::Zero();
-  if (p.step_rule == StepRule::fixed) return p.fixed_step_m * out;
-  const double d = kernels.proxy.exit_distance(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m);
-  return d * out;  // (4.5) with d_k of (4.10)
-}
-
-Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
-  const double height = u.dot(normal);
-  if (p.exit_rule == ExitRule::out_of_contact && height >= 0 && !u.isZero(0))
-    return (p.r2_m - p.r1_m) * normal;                          // (5.17)
-  if (height < 0) return step_towards(u - height * normal, p);  // (4.6), in the tangent plane
-  return step_towards(u, p);                                    // (4.7)
-}
-
-Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const Vec3& u,
-                 const ProxyParameters& p) {
-  if (goal == u) return free_step(near, p_W, u, p);
-  const Vec3 step = step_towards(goal, p);
-  const double length = step.norm();
-  if (!(length > 0)) return Vec3::Zero();
-  // The radius lies between r1 and r_c, so that a region that touches already, at r1 or more, is not met
-  // again.
-  const double reach = 0.5 * (p.r1_m + p.contact_radius_m());
-  double path_length = near.first_hit(p_W, step / length, reach, length);
-  // A region that ended an earlier step lies exactly at this distance. Rounding can make a motion along this
-  // region meet it again at once, and the proxy would then stay forever. The goal enters no touching region,
-  // so the distance is computed again with a smaller radius.
-  if (path_length < kNoMotion_m)
-    path_length = near.first_hit(p_W, step / length, 0.5 * (p.r1_m + reach), length);
-  return step * (path_length / length);
-}
-
-bool has_converged(const std::optional<Vec3>& goal, const Vec3& u, const ProxyParameters& p) {
-  return goal && goal->squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();
-}
-
-bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
-  if (state == ContactState::free) return u.isZero(0);
-  if (state == ContactState::entrenched || !(u.dot(normal) < 0)) return false;
-  const Vec3 tangential = u - u.dot(normal) * normal;
-  return tangential.squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();  // (4.8)
-}
-
-namespace {
-
 // Binary logarithm of the number of entries. Cycles of more positions are rare.
 constexpr std::size_t kEntryBits = 8;
 
@@ -216,27 +141,6 @@ std::size_t entry_of(const Vec3& v) {
   const auto [x, y, z] = bits(v);
   return (x * 0x9E3779B97F4A7C15u + y * 0xC2B2AE3D27D4EB4Fu + z * 0x165667B19E3779F9u) >> (64 - kEntryBits);
 }
-
-}  // namespace
-
-KnownSteps::KnownSteps() : entries_(std::size_t{1} << kEntryBits) {}
-
-void KnownSteps::set_hip(const Vec3& hip_W) {
-  if (bits(hip_W) == bits(hip_W_)) return;
-  hip_W_ = hip_W;
-  forget();
-}
-
-const KnownStep* KnownSteps::from(const Vec3& proxy_W) const {
-  const Entry& entry = entries_[entry_of(proxy_W)];
-  return entry.generation == generation_ && bits(entry.step.proxy_W) == bits(proxy_W) ? &entry.step : nullptr;
-}
-
-void KnownSteps::remember(const KnownStep& step) {
-  entries_[entry_of(step.proxy_W)] = {generation_, step};
-}
-
-namespace {
 
 Vec3 unit_or(const Vec3& v, const Vec3& other) {
   const double length = v.norm();
@@ -274,34 +178,6 @@ double exit_along(Neighbourhood& near, const Kernels& kernels, const Vec3& p_W, 
   }
   return std::numeric_limits<double>::infinity();
 }
-
-}  // namespace
-
-std::optional<Vec3> straight_exit(Neighbourhood& near, const Kernels& kernels, const Vec3& p_W,
-                                  const Vec3& normal_W, const Vec3& u, const ProxyParameters& p) {
-  double shortest_m = std::numeric_limits<double>::infinity();
-  Vec3 exit_W = p_W;
-  for (const Vec3& direction : directions(normal_W, u)) {
-    const double length_m = exit_along(near, kernels, p_W, direction, shortest_m, p);
-    if (length_m < shortest_m) shortest_m = length_m, exit_W = p_W + length_m * direction;
-  }
-  return shortest_m < std::numeric_limits<double>::infinity() ? std::optional(exit_W) : std::nullopt;
-}
-
-std::optional<double> nearest_region_radius_m(const PointsView& points, const Vec3& p_W) {
-  double nearest_m = std::numeric_limits<double>::infinity();
-  std::optional<double> radius_m;
-  for (std::size_t i = 0; i < points.padded_count; ++i) {
-    if (points.x[i] == kFarAway) continue;
-    const double own_m = points.radius ? points.radius[i] : 0;
-    const double distance_m = (p_W - Vec3(points.x[i], points.y[i], points.z[i])).norm() - own_m;
-    if (distance_m < nearest_m || (distance_m == nearest_m && own_m < *radius_m))
-      nearest_m = distance_m, radius_m = own_m;
-  }
-  return radius_m;
-}
-
-namespace {
 
 // A motion violates a normal if it goes against it by more than the rounding of unit vectors.
 constexpr double kRounding = 1e-12;
@@ -409,6 +285,118 @@ class Projection {
 };
 
 }  // namespace
+
+ContactState classify(double nearest_distance_m, const ProxyParameters& p) {
+  if (nearest_distance_m < p.r1_m) return ContactState::entrenched;
+  return nearest_distance_m <= p.r2_m ? ContactState::contact : ContactState::free;
+}
+
+Vec3 unit_normal(const ContactQuery& query, const Vec3& previous) {
+  const Vec3 sum(query.normal_sum[0], query.normal_sum[1], query.normal_sum[2]);
+  const double length = sum.norm();
+  return length > kNoDirection ? Vec3(sum / length) : previous;
+}
+
+Vec3 free_step(Neighbourhood& near, const Vec3& p_W, const Vec3& u, const ProxyParameters& p) {
+  const double distance = u.norm();
+  if (!(distance > 0)) return Vec3::Zero();
+  if (p.step_rule == StepRule::fixed) return step_towards(u, p);
+  const Vec3 direction = u / distance;
+  const double step = p.free_root == FreeRoot::ahead
+                          ? near.first_hit(p_W, direction, p.contact_radius_m(), distance)
+                          : printed_free_root(near.within(p_W, distance + p.contact_radius_m()).view(), p_W,
+                                              direction, p.contact_radius_m(), distance);
+  // A step without an obstacle is u itself, so that P meets the HIP bit for bit.
+  return step >= distance ? u : Vec3(step * direction);  // (4.4) with d_k of (4.9)
+}
+
+Vec3 entrenched_step(const PointsView& points, const Kernels& kernels, const Vec3& p_W, const Vec3& normal,
+                     const Vec3& u, const ProxyParameters& p) {
+  Vec3 out = normal;
+  if (out.isZero(0)) out = along(-u, 1, u.norm());
+  if (out.isZero(0)) return Vec3::Zero();
+  if (p.step_rule == StepRule::fixed) return p.fixed_step_m * out;
+  const double d = kernels.proxy.exit_distance(points, p_W.data(), out.data(), p.contact_radius_m(), p.r1_m);
+  return d * out;  // (4.5) with d_k of (4.10)
+}
+
+Vec3 contact_step(const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
+  const double height = u.dot(normal);
+  if (p.exit_rule == ExitRule::out_of_contact && height >= 0 && !u.isZero(0))
+    return (p.r2_m - p.r1_m) * normal;                          // (5.17)
+  if (height < 0) return step_towards(u - height * normal, p);  // (4.6), in the tangent plane
+  return step_towards(u, p);                                    // (4.7)
+}
+
+Vec3 region_step(Neighbourhood& near, const Vec3& p_W, const Vec3& goal, const Vec3& u,
+                 const ProxyParameters& p) {
+  if (goal == u) return free_step(near, p_W, u, p);
+  const Vec3 step = step_towards(goal, p);
+  const double length = step.norm();
+  if (!(length > 0)) return Vec3::Zero();
+  // The radius lies between r1 and r_c, so that a region that touches already, at r1 or more, is not met
+  // again.
+  const double reach = 0.5 * (p.r1_m + p.contact_radius_m());
+  double path_length = near.first_hit(p_W, step / length, reach, length);
+  // A region that ended an earlier step lies exactly at this distance. Rounding can make a motion along this
+  // region meet it again at once, and the proxy would then stay forever. The goal enters no touching region,
+  // so the distance is computed again with a smaller radius.
+  if (path_length < kNoMotion_m)
+    path_length = near.first_hit(p_W, step / length, 0.5 * (p.r1_m + reach), length);
+  return step * (path_length / length);
+}
+
+bool has_converged(const std::optional<Vec3>& goal, const Vec3& u, const ProxyParameters& p) {
+  return goal && goal->squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();
+}
+
+bool has_converged(ContactState state, const Vec3& normal, const Vec3& u, const ProxyParameters& p) {
+  if (state == ContactState::free) return u.isZero(0);
+  if (state == ContactState::entrenched || !(u.dot(normal) < 0)) return false;
+  const Vec3 tangential = u - u.dot(normal) * normal;
+  return tangential.squaredNorm() < sine_squared(p.theta_deg) * u.squaredNorm();  // (4.8)
+}
+
+KnownSteps::KnownSteps() : entries_(std::size_t{1} << kEntryBits) {}
+
+void KnownSteps::set_hip(const Vec3& hip_W) {
+  if (bits(hip_W) == bits(hip_W_)) return;
+  hip_W_ = hip_W;
+  forget();
+}
+
+const KnownStep* KnownSteps::from(const Vec3& proxy_W) const {
+  const Entry& entry = entries_[entry_of(proxy_W)];
+  return entry.generation == generation_ && bits(entry.step.proxy_W) == bits(proxy_W) ? &entry.step : nullptr;
+}
+
+void KnownSteps::remember(const KnownStep& step) {
+  entries_[entry_of(step.proxy_W)] = {generation_, step};
+}
+
+std::optional<Vec3> straight_exit(Neighbourhood& near, const Kernels& kernels, const Vec3& p_W,
+                                  const Vec3& normal_W, const Vec3& u, const ProxyParameters& p) {
+  double shortest_m = std::numeric_limits<double>::infinity();
+  Vec3 exit_W = p_W;
+  for (const Vec3& direction : directions(normal_W, u)) {
+    const double length_m = exit_along(near, kernels, p_W, direction, shortest_m, p);
+    if (length_m < shortest_m) shortest_m = length_m, exit_W = p_W + length_m * direction;
+  }
+  return shortest_m < std::numeric_limits<double>::infinity() ? std::optional(exit_W) : std::nullopt;
+}
+
+std::optional<double> nearest_region_radius_m(const PointsView& points, const Vec3& p_W) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  std::optional<double> radius_m;
+  for (std::size_t i = 0; i < points.padded_count; ++i) {
+    if (points.x[i] == kFarAway) continue;
+    const double own_m = points.radius ? points.radius[i] : 0;
+    const double distance_m = (p_W - Vec3(points.x[i], points.y[i], points.z[i])).norm() - own_m;
+    if (distance_m < nearest_m || (distance_m == nearest_m && own_m < *radius_m))
+      nearest_m = distance_m, radius_m = own_m;
+  }
+  return radius_m;
+}
 
 bool is_in_crease(const PointsView& points, const Vec3& p_W, const Vec3& normal_W, double r2, double cosine) {
   for (std::size_t i = 0; i < points.padded_count; ++i) {

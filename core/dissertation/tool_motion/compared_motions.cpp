@@ -9,7 +9,6 @@
 #include "core/dissertation/tool_motion/tool_renderer.h"
 
 namespace remote_touch {
-
 namespace {
 
 // A contact counts as touched if its distance exceeds the gap by no more than this.
@@ -18,6 +17,20 @@ constexpr double kTouching_m = 1e-6;
 constexpr double kTolerance_m = 2 * ContinuousContacts::kGap_m;
 // A tick ends after this number of successive steps without progress, or of steps that contacts stop at once.
 constexpr int kGodObjectPatience = 8;
+
+constexpr int kAxisBits = 21;
+constexpr double kMaxVoxels = 1 << (kAxisBits - 1);
+constexpr std::uint64_t kFree = ~std::uint64_t{0};  // no key has its highest bit
+
+// The multiplier of splitmix64.
+constexpr std::uint64_t kMix = 0xbf58476d1ce4e5b9;
+
+constexpr int kFullPoints = 10;  // if more points push, all are scaled as if this many did
+
+struct PreparedVoxmap final : FramePreparation {
+  PreparedVoxmap(const PointCloud& cloud, double voxel_m) : map(cloud, voxel_m) {}
+  Voxmap map;
+};
 
 }  // namespace
 
@@ -135,17 +148,6 @@ ToolMotionReport GodObjectMotion::move(ToolPose& pose, const ToolPose& device, C
   return report;
 }
 
-namespace {
-
-constexpr int kAxisBits = 21;
-constexpr double kMaxVoxels = 1 << (kAxisBits - 1);
-constexpr std::uint64_t kFree = ~std::uint64_t{0};  // no key has its highest bit
-
-// The multiplier of splitmix64.
-constexpr std::uint64_t kMix = 0xbf58476d1ce4e5b9;
-
-}  // namespace
-
 Voxmap::Voxmap(const PointCloud& cloud, double voxel_m)
     : voxel_m_(voxel_m), slots_(std::bit_ceil(2 * cloud.size() + 2), kFree) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -180,17 +182,6 @@ std::optional<Vec3> Voxmap::surface_middle_W(const Vec3& p_W) const {
   const Vec3 voxel = (p_W / voxel_m_).array().floor();
   return Vec3(voxel_m_ * (voxel + Vec3::Constant(0.5)));
 }
-
-namespace {
-
-constexpr int kFullPoints = 10;  // if more points push, all are scaled as if this many did
-
-struct PreparedVoxmap final : FramePreparation {
-  PreparedVoxmap(const PointCloud& cloud, double voxel_m) : map(cloud, voxel_m) {}
-  Voxmap map;
-};
-
-}  // namespace
 
 Parameters parameters(ToolPenaltyParameters& p) {
   const Parameters own = {

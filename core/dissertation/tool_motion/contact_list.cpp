@@ -9,7 +9,6 @@
 #include "core/dissertation/tool/shape/distance_field.h"
 
 namespace remote_touch {
-
 namespace {
 
 constexpr double kRounding = 1 + 1e-5;  // larger than the rounding of normals
@@ -22,6 +21,67 @@ std::uint64_t in_larger_cells(std::uint64_t cell_and_octant, int doublings) {
   constexpr std::uint64_t kLastOfEach =
       std::uint64_t{1} << 43 | std::uint64_t{1} << 23 | std::uint64_t{1} << 3;
   return cell_and_octant & ~(kLastOfEach * ((std::uint64_t{1} << doublings) - 1));
+}
+
+constexpr double kShortest = 1e-5;  // parts of a path shorter than this fraction are not halved again
+constexpr double kSpare_m = 1e-9;   // more than the rounding of the field on a path
+
+// A cubic on [from, until] by its Bernstein coefficients.
+struct Cubic {
+  double b[4];
+
+  // Returns the cubic with the values f at both ends and at one and two thirds.
+  static Cubic through(const double (&f)[4]) {
+    return {{f[0], (-5 * f[0] + 18 * f[1] - 9 * f[2] + 2 * f[3]) / 6,
+             (2 * f[0] - 9 * f[1] + 18 * f[2] - 5 * f[3]) / 6, f[3]}};
+  }
+  double least() const { return std::min(std::min(b[0], b[1]), std::min(b[2], b[3])); }
+  void halve(Cubic& first, Cubic& second) const {  // de Casteljau
+    const double c01 = 0.5 * (b[0] + b[1]), c12 = 0.5 * (b[1] + b[2]), c23 = 0.5 * (b[2] + b[3]);
+    const double c02 = 0.5 * (c01 + c12), c13 = 0.5 * (c12 + c23), middle = 0.5 * (c02 + c13);
+    first = {{b[0], c01, c02, middle}};
+    second = {{middle, c13, c23, b[3]}};
+  }
+};
+
+// Returns the first fraction at which a cubic can be below min_m, to within kShortest; 1 if it cannot on this
+// part, or only beyond `limit`.
+double first_below(const Cubic& cubic, double min_m, double from, double until, double limit) {
+  if (from > limit || cubic.least() >= min_m) return 1;
+  if (until - from <= kShortest) return from;
+  Cubic first, second;
+  cubic.halve(first, second);
+  const double middle = 0.5 * (from + until), found = first_below(first, min_m, from, middle, limit);
+  return found < 1 ? found : first_below(second, min_m, middle, until, limit);
+}
+
+// Returns the fraction beyond `from` at which a path crosses the next plane between cells; 1, its end, if
+// there is none.
+double next_plane(const Vec3& start, const Vec3& along, double from) {
+  constexpr double kOnPlane = 1e-9;
+  double next = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (along[axis] == 0) continue;
+    const double at = start[axis] + from * along[axis];
+    const double plane = along[axis] > 0 ? std::floor(at + kOnPlane) + 1 : std::ceil(at - kOnPlane) - 1;
+    next = std::min(next, (plane - start[axis]) / along[axis]);
+  }
+  return next;
+}
+
+constexpr std::size_t kMaxStops = 64;
+constexpr double kSamePoint_m = 1e-9;
+constexpr double kMinSlope = 0.3;  // a smaller slope is at a ridge, where the field is not reliable
+
+// Returns the nearest of the points that can stop the tool; 0 if there is none. pre: there is a point.
+std::size_t nearest_outside(const NearPoints& points) {
+  std::size_t nearest = 0;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance_m = points.distance_m(i);
+    if (distance_m >= -ClearWay::kInside_m && distance_m < least_m) least_m = distance_m, nearest = i;
+  }
+  return nearest;
 }
 
 }  // namespace
@@ -179,42 +239,6 @@ Touched ContactList::touched(const ToolPose& pose) {
   return all;
 }
 
-namespace {
-
-constexpr double kShortest = 1e-5;  // parts of a path shorter than this fraction are not halved again
-constexpr double kSpare_m = 1e-9;   // more than the rounding of the field on a path
-
-// A cubic on [from, until] by its Bernstein coefficients.
-struct Cubic {
-  double b[4];
-
-  // Returns the cubic with the values f at both ends and at one and two thirds.
-  static Cubic through(const double (&f)[4]) {
-    return {{f[0], (-5 * f[0] + 18 * f[1] - 9 * f[2] + 2 * f[3]) / 6,
-             (2 * f[0] - 9 * f[1] + 18 * f[2] - 5 * f[3]) / 6, f[3]}};
-  }
-  double least() const { return std::min(std::min(b[0], b[1]), std::min(b[2], b[3])); }
-  void halve(Cubic& first, Cubic& second) const {  // de Casteljau
-    const double c01 = 0.5 * (b[0] + b[1]), c12 = 0.5 * (b[1] + b[2]), c23 = 0.5 * (b[2] + b[3]);
-    const double c02 = 0.5 * (c01 + c12), c13 = 0.5 * (c12 + c23), middle = 0.5 * (c02 + c13);
-    first = {{b[0], c01, c02, middle}};
-    second = {{middle, c13, c23, b[3]}};
-  }
-};
-
-// Returns the first fraction at which a cubic can be below min_m, to within kShortest; 1 if it cannot on this
-// part, or only beyond `limit`.
-double first_below(const Cubic& cubic, double min_m, double from, double until, double limit) {
-  if (from > limit || cubic.least() >= min_m) return 1;
-  if (until - from <= kShortest) return from;
-  Cubic first, second;
-  cubic.halve(first, second);
-  const double middle = 0.5 * (from + until), found = first_below(first, min_m, from, middle, limit);
-  return found < 1 ? found : first_below(second, min_m, middle, until, limit);
-}
-
-}  // namespace
-
 ClearWay::ClearWay(const VoxelTool& tool)
     : tool_(tool), slopes_(tool.grid, tool.distance_m), max_slope_(max_slope(tool.grid, tool.distance_m)) {}
 
@@ -254,24 +278,6 @@ SlabWay ClearWay::slab_way(const Motion& motion, double far_m) const {
   return way;
 }
 
-namespace {
-
-// Returns the fraction beyond `from` at which a path crosses the next plane between cells; 1, its end, if
-// there is none.
-double next_plane(const Vec3& start, const Vec3& along, double from) {
-  constexpr double kOnPlane = 1e-9;
-  double next = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (along[axis] == 0) continue;
-    const double at = start[axis] + from * along[axis];
-    const double plane = along[axis] > 0 ? std::floor(at + kOnPlane) + 1 : std::ceil(at - kOnPlane) - 1;
-    next = std::min(next, (plane - start[axis]) / along[axis]);
-  }
-  return next;
-}
-
-}  // namespace
-
 // Steps from cell to cell along the chord. Returns the fraction at which the field can first be too low; 1 if
 // it cannot, or only beyond `limit`.
 double ClearWay::first_below(const Chord& chord, double limit) const {
@@ -298,25 +304,6 @@ double ClearWay::first_below(const Chord& chord, double limit) const {
   }
   return 1;
 }
-
-namespace {
-
-constexpr std::size_t kMaxStops = 64;
-constexpr double kSamePoint_m = 1e-9;
-constexpr double kMinSlope = 0.3;  // a smaller slope is at a ridge, where the field is not reliable
-
-// Returns the nearest of the points that can stop the tool; 0 if there is none. pre: there is a point.
-std::size_t nearest_outside(const NearPoints& points) {
-  std::size_t nearest = 0;
-  double least_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double distance_m = points.distance_m(i);
-    if (distance_m >= -ClearWay::kInside_m && distance_m < least_m) least_m = distance_m, nearest = i;
-  }
-  return nearest;
-}
-
-}  // namespace
 
 ContinuousContacts::ContinuousContacts(const ToolParameters& parameters, const VoxelTool& tool)
     : tool_(tool),

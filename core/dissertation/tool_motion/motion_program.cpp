@@ -8,7 +8,6 @@
 #include <limits>
 
 namespace remote_touch {
-
 namespace {
 
 // Small vectors and square matrices, stored in pairs of doubles for SSE2. The bits are the same from every
@@ -180,6 +179,21 @@ PairOfRows worse(const PairOfRows& a, const PairOfRows& b) {
   return {is_larger ? a.distance : b.distance, is_larger ? a.row : b.row};
 }
 
+// Adds the squares in the order in which Eigen adds them.
+template <int kFirst, int kCount>
+Pair sum_of_squares(const Pair* terms) {
+  if constexpr (kCount == 1)
+    return terms[kFirst] * terms[kFirst];
+  else
+    return sum_of_squares<kFirst, kCount / 2>(terms) +
+           sum_of_squares<kFirst + kCount / 2, kCount - kCount / 2>(terms);
+}
+
+// The slack s of all rows is kSlackScale z and costs z^2 / 2 + kSlackCost z. Per metre that is far more than
+// any contact can gain, because a desired motion is metres long at most. So the slack stays zero if the rows
+// are feasible.
+constexpr double kSlackScale = 0.01, kSlackCost = 0.1;
+
 }  // namespace
 
 template <int N>
@@ -213,20 +227,6 @@ bool QuadraticProgram<N>::add(const Vector& row, double bound) {
   lengths_[i] = scale * length;
   return true;
 }
-
-namespace {
-
-// Adds the squares in the order in which Eigen adds them.
-template <int kFirst, int kCount>
-Pair sum_of_squares(const Pair* terms) {
-  if constexpr (kCount == 1)
-    return terms[kFirst] * terms[kFirst];
-  else
-    return sum_of_squares<kFirst, kCount / 2>(terms) +
-           sum_of_squares<kFirst + kCount / 2, kCount - kCount / 2>(terms);
-}
-
-}  // namespace
 
 // Reads, checks and scales the rows in pairs.
 template <int N>
@@ -333,15 +333,6 @@ ProgramResult<N> QuadraticProgram<N>::nearest(const Vector& target) const {
 
 template class QuadraticProgram<6>;
 template class QuadraticProgram<7>;
-
-namespace {
-
-// The slack s of all rows is kSlackScale z and costs z^2 / 2 + kSlackCost z. Per metre that is far more than
-// any contact can gain, because a desired motion is metres long at most. So the slack stays zero if the rows
-// are feasible.
-constexpr double kSlackScale = 0.01, kSlackCost = 0.1;
-
-}  // namespace
 
 MotionProgram::MotionProgram(const ToolParameters& parameters, const VoxelTool& tool)
     : MotionProgram(parameters.motion_metric == MotionMetric::tool

@@ -9,7 +9,6 @@
 #include "core/dissertation/tool_motion/touch_finder.h"
 
 namespace remote_touch {
-
 namespace {
 
 using disk_search::kCuts;
@@ -101,6 +100,21 @@ double side_of(const VoxelTool& tool, const SurfaceDisk& disk, const DiskPositio
 // Returns the unit direction in which the tool leaves the position soonest; +y if the field is flat there.
 Vec3 exit_direction(const FieldSample& at, double steep) {
   return steep > 0 ? Vec3(-at.gradient_T / steep) : Vec3(Vec3::UnitY());
+}
+
+constexpr double kClustersPer_m = 100;  // touching points within a centimetre are counted as one cluster
+
+// Drops most repeated numbers, which would only make the sorting longer. Returns how many are left.
+std::size_t drop_repeated(std::uint64_t* numbers, std::size_t count) {
+  std::uint64_t seen[64];
+  std::fill(std::begin(seen), std::end(seen), ~std::uint64_t{0});  // no cell has this number
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t& last = seen[(numbers[i] * 0x9e3779b97f4a7c15u) >> 58];
+    if (last == numbers[i]) continue;
+    last = numbers[kept++] = numbers[i];
+  }
+  return kept;
 }
 
 }  // namespace
@@ -358,25 +372,6 @@ void NearPoints::finish_outside(const VoxelTool& tool, double reach_m) {
   }
   count_ = kept;
 }
-
-namespace {
-
-constexpr double kClustersPer_m = 100;  // touching points within a centimetre are counted as one cluster
-
-// Drops most repeated numbers, which would only make the sorting longer. Returns how many are left.
-std::size_t drop_repeated(std::uint64_t* numbers, std::size_t count) {
-  std::uint64_t seen[64];
-  std::fill(std::begin(seen), std::end(seen), ~std::uint64_t{0});  // no cell has this number
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t& last = seen[(numbers[i] * 0x9e3779b97f4a7c15u) >> 58];
-    if (last == numbers[i]) continue;
-    last = numbers[kept++] = numbers[i];
-  }
-  return kept;
-}
-
-}  // namespace
 
 void TouchedPoints::reserve(std::size_t padded_size) {
   groups_.reserve(padded_size);

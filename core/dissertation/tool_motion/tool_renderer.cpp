@@ -9,7 +9,6 @@
 #include "core/dissertation/tool_motion/rigid_tool.h"
 
 namespace remote_touch {
-
 namespace {
 
 // The rule as printed, 6.2.3 to 6.2.5. Points in shell voxels are contacts, and points in interior voxels are
@@ -170,6 +169,21 @@ class LookAheadOnPoints final : public ToolMotion {
   LookAheadMotion motion_;
 };
 
+struct PreparedToolFrame final : FramePreparation {
+  TiledCloud tiles;
+  std::shared_ptr<const FramePreparation> for_rule;
+};
+
+std::shared_ptr<const PreparedToolFrame> prepared_tool_frame(const Frame& frame, const ToolMotion& rule,
+                                                             double merged_disk_m, const Kernels& kernels) {
+  const auto made = std::make_shared<PreparedToolFrame>();
+  PointCloud buffer;
+  const PointCloud& cloud = frame.points->every_point(kernels, buffer);
+  made->tiles.assign(cloud, merged_disk_m);
+  made->for_rule = rule.prepared(cloud);
+  return made;
+}
+
 }  // namespace
 
 std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, const VoxelTool& tool) {
@@ -213,25 +227,6 @@ ToolRenderer::ToolRenderer(const ToolParameters& parameters, std::shared_ptr<con
       slave_(parameters.slave_command) {
   assert(validate(parameters).empty());
 }
-
-namespace {
-
-struct PreparedToolFrame final : FramePreparation {
-  TiledCloud tiles;
-  std::shared_ptr<const FramePreparation> for_rule;
-};
-
-std::shared_ptr<const PreparedToolFrame> prepared_tool_frame(const Frame& frame, const ToolMotion& rule,
-                                                             double merged_disk_m, const Kernels& kernels) {
-  const auto made = std::make_shared<PreparedToolFrame>();
-  PointCloud buffer;
-  const PointCloud& cloud = frame.points->every_point(kernels, buffer);
-  made->tiles.assign(cloud, merged_disk_m);
-  made->for_rule = rule.prepared(cloud);
-  return made;
-}
-
-}  // namespace
 
 void ToolRenderer::prepare(Frame& frame) const {
   frame.prepared = prepared_tool_frame(frame, *motion_, used_merged_disk_m(p_), kernels_);
