@@ -14,7 +14,6 @@
 namespace remote_touch {
 
 // Columns to compare: in a file, read one at a time as needed, or in memory.
-
 class ColumnSource {
  public:
   virtual ~ColumnSource() = default;
@@ -75,7 +74,7 @@ class ColumnsInMemory final : public ColumnSource {
 // A row is a number or a vector. Its deviation is the length of the difference, in the column's units. The
 // row is inside the tolerance if the deviation is at most absolute + relative * |row of the baseline|.
 //
-// Numbers are compared as in column.h. Names (enumerations), texts and hashes are outside unless they are
+// Numbers are compared as in trace.h. Names (enumerations), texts and hashes are outside unless they are
 // equal. Different types, widths, units, value names or lengths are a problem. Columns of different types or
 // widths are not compared further; otherwise the rows that both have are compared nevertheless. Two columns
 // without rows are the same.
@@ -102,10 +101,9 @@ std::vector<double> deviations(const Column& baseline, const Column& candidate);
 
 // The running hash of a trace, without the trace. It can be sent to another machine to find the first tick at
 // which two runs differ. It has 8 bytes per tick, or less if only every n-th tick is kept.
-
 struct TickHashes {
   std::vector<std::int32_t> tick;   // increasing; the last is the trace's last
-  std::vector<std::uint64_t> hash;  // the running hash at that tick (column.h)
+  std::vector<std::uint64_t> hash;  // the running hash at that tick (trace.h)
 };
 
 // Returns every n-th tick of a trace (n = every), and the last. pre: every > 0.

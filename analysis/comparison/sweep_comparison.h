@@ -21,7 +21,6 @@
 namespace remote_touch {
 
 // The judgement of a measure that was compared.
-
 enum class Judgement {
   equal,          // within the tolerance
   within_margin,  // sweeps only: the intervals of the differences lie within the margins

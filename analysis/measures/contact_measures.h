@@ -36,7 +36,6 @@ inline double time_of(const Trace& trace, double tick) {
 // A proxy that begins behind the surface has not passed through it. If d was unknown in between, the proxy
 // may have gone round a border of the surface, through a hole in the measurement, or through the surface:
 // then it is not known how it came to the back.
-
 class SurfaceSide {
  public:
   explicit SurfaceSide(double held_depth_m) : held_depth_m_(held_depth_m) {}

@@ -1,4 +1,5 @@
-// Curves and waves that are fitted to noisy values.
+// Curves and waves that are fitted to noisy values, and limits: the value on an axis at which an event has a
+// given probability.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +46,6 @@ std::vector<double> isotonic_falling(const std::vector<double>& values, const st
 double crossing(const std::vector<double>& x, const std::vector<double>& falling, double level);
 
 // The part of a signal that has a given frequency.
-
 struct Sinusoid {
   double amplitude = 0;
   double phase_rad = 0;  // phi in amplitude * cos(2 pi f t + phi), from -pi to pi

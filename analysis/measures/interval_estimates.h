@@ -1,3 +1,5 @@
+// Statistics of plain numbers: means and higher moments, extremes that keep NaN, and 95 % intervals of means,
+// of fractions of runs and of quantiles.
 #pragma once
 
 #include <cmath>
@@ -14,10 +16,6 @@ namespace remote_touch {
 // Value of a measure if a run has nothing to measure. It is not computed as 0 / 0, because the sign of that
 // NaN depends on the machine.
 inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-
-// Means and higher moments, and extremes that keep NaN.
-
-// The arithmetic mean, and higher moments.
 
 // Adds the numbers in the order of the list. Returns NaN for an empty list.
 double mean(const std::vector<double>& values);
@@ -83,12 +81,9 @@ double min_where(std::size_t count, Qualifies&& qualifies, Value&& value) {
   return min_of(values_where(count, qualifies, value));
 }
 
-// Means and fractions of runs, each with its 95 % interval.
-
-// A number of an answer with its 95 % interval.
-
-// Every interval is two-sided, at 95 %. Every p is two-sided. NaN: there is no such number. A p and an
-// interval come from the same test: p <= 0.05 exactly if the interval does not hold 0.
+// A number of an answer with its 95 % interval. Every interval is two-sided, at 95 %. Every p is two-sided.
+// NaN: there is no such number. A p and an interval come from the same test: p <= 0.05 exactly if the
+// interval does not hold 0.
 struct Estimate {
   double value = std::numeric_limits<double>::quiet_NaN();
   double low = std::numeric_limits<double>::quiet_NaN();

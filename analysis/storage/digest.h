@@ -15,7 +15,6 @@
 namespace remote_touch {
 
 // SHA-256, for digests of results, of stored files and of input files.
-
 class Sha256 {
  public:
   Sha256();

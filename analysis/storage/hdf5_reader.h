@@ -1,4 +1,5 @@
-// Queries of the content of an HDF5 file, which the HDF5 library answers in this process or in a child.
+// Reads an HDF5 file one column, or some rows of one, at a time, because a file may be larger than the
+// memory. The HDF5 library answers queries of the content in this process or in a child.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@
 
 namespace remote_touch {
 
-// Members throw std::exception with what is wrong with the file, without its name.
+// Queries of the content. Members throw std::exception with what is wrong with the file, without its name.
 class Hdf5Source {
  public:
   virtual ~Hdf5Source() = default;
@@ -56,9 +57,6 @@ std::string packed(const Column& column);
 // whatever happened to the child.
 Hdf5Summary unpacked_summary(const std::string& bytes);
 Column unpacked_column(const std::string& bytes);
-
-// Reads an HDF5 file one column, or some rows of one, at a time, because a file may be larger than the
-// memory.
 
 // Thrown if the file's name now belongs to another file than the one that was opened, for example because a
 // sweep replaced its file at the end. Values that were read from both do not fit together. The new file can

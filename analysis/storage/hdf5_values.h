@@ -1,4 +1,5 @@
-// Handles of the HDF5 library, for the files that call it.
+// Handles of the HDF5 library, values of an HDF5 file, and the names of its dimensions and enumerations. For
+// analysis/storage/hdf5_* only.
 #pragma once
 
 #include <hdf5.h>
@@ -82,10 +83,8 @@ inline void write_text(hid_t file, const std::string& object, const std::string&
   write_attribute(file, object, name, type, space, type, value.empty() ? "\0" : value.data());
 }
 
-// Values of an HDF5 file, and the names of its dimensions and enumerations. For analysis/storage/hdf5_* only.
-
 // Values of attributes and datasets of an HDF5 file that any program may have written: kinds and sizes are
-// checked before memory is allocated. For analysis/storage/hdf5_* only.
+// checked before memory is allocated.
 
 // Returns the text of an attribute; several texts are joined by ", ". Empty if it is not a text, or has
 // variable length.
@@ -103,7 +102,7 @@ Column read_dataset(hid_t data, const std::string& name, const RowRange* rows);
 
 // Names that other programs need in a file: one for every dimension and every enumeration. The netCDF library
 // and h5netcdf cannot open a dataset of which only some dimensions have names, and netCDF cannot open an
-// enumeration without a name. For analysis/storage/hdf5_* only.
+// enumeration without a name.
 
 // Adds a dimension that has a name and no values, as netCDF writes it, unless it is there already.
 void add_dimension(hid_t file, const std::string& path, hsize_t size);

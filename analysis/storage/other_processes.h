@@ -1,4 +1,5 @@
-// Other processes: a child that does what may crash, and locks that let one process at a time write.
+// Other processes: a child that does what may crash, locks that let one process at a time write, and the
+// bytes that processes of one machine exchange.
 #pragma once
 
 #include <cstddef>
@@ -88,7 +89,6 @@ class FolderLock {
 
 // Packs values one after the other, as they are in memory and without names. The bytes are for another
 // process of this machine, or for files that never leave it.
-
 class Packer {
  public:
   virtual ~Packer() = default;

@@ -1,4 +1,5 @@
-// Named columns of numbers or texts with units, their tolerances and hashes, and the log of a task.
+// The trace of a run: its columns of numbers or texts with units, their tolerances and hashes, the log of a
+// task, and the states of hand and slave in a tick.
 #pragma once
 
 #include <cstdint>
@@ -60,10 +61,8 @@ std::vector<std::string> split_names(const std::string& joined);
 // std::bad_variant_access if the column is not of type double.
 const std::vector<double>& numbers(const Table& table, const std::string& column);
 
-// Allowed deviation of a number from the number of a baseline.
-
-// The deviation |candidate - baseline| may be at most absolute + relative * |baseline|. If both are zero, the
-// numbers must be equal.
+// Allowed deviation of a number from the number of a baseline. The deviation |candidate - baseline| may be at
+// most absolute + relative * |baseline|. If both are zero, the numbers must be equal.
 struct Tolerance {
   double absolute = 0;
   double relative = 0;
@@ -104,8 +103,6 @@ std::uint64_t points_hash(const PointCloud& cloud);
 // on. Bisection therefore finds that tick from about log2(ticks) hashes of each run.
 std::vector<std::uint64_t> running_hash(const std::vector<Column>& columns);
 
-// The log of a task's steps, from the columns of a trace.
-
 struct Trace;
 
 // A step that has begun. Its times are times of ticks. ended_s is NaN if the step had not ended at the end of
@@ -123,8 +120,6 @@ struct SequenceEntry {
 
 // Returns the entries in the order of the steps; empty for a trace without a task.
 std::vector<SequenceEntry> sequence_log(const Trace& trace);
-
-// The trace of a run, its columns, and the states of hand and slave in a tick.
 
 // The state of a simulated hand: its intended pose, and the force and torque that it felt.
 struct HandState {
@@ -168,7 +163,6 @@ struct SlaveState {
 };
 
 // The record of a run: one row for each haptic tick, in the columns of trace_columns.h.
-
 struct Trace {
   std::size_t length() const { return time_s.size(); }
   void reserve(std::size_t ticks);

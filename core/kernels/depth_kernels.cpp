@@ -1,6 +1,6 @@
-// The spatial bilateral filter (7.1), (7.2). It processes 16, 8 or 4 pixels of a row at a time. It sums
-// differences to the depth of the pixel itself, so that the relative error of single precision, 1e-7, applies
-// to them and not to the depths.
+// The kernels of the depth pipeline. The spatial bilateral filter (7.1), (7.2) processes 16, 8 or 4 pixels of
+// a row at a time. It sums differences to the depth of the pixel itself, so that the relative error of single
+// precision, 1e-7, applies to them and not to the depths.
 
 #include "core/kernels/depth_kernels.h"
 
@@ -446,5 +446,15 @@ void plane_normals(const RowBand& band, const PointPlanes& in, const PixelRays& 
   for (int row = band.first - band.half; row < band.last; ++row)
     work(band, row, row < band.first, in, rays, step, out);
 }
+
+const DepthKernels kDepthKernels = {
+    .depth_to_points = depth_to_points,
+    .filter_depth = filter_depth,
+    .plane_normals = plane_normals,
+    .inverse_depth_normals = inverse_depth_normals,
+    .sharp_normals = sharp_normals,
+    .points_to_cloud = points_to_cloud,
+    .normals_to_cloud = normals_to_cloud,
+};
 
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

@@ -1,38 +1,8 @@
-// The tables of one level whose kernels are in several files.
-#include "core/kernels/depth_kernels.h"
+// The table of the kernels of a tool at one level, which are in several files.
 #include "core/kernels/level.h"
-#include "core/kernels/proxy_kernels.h"
 #include "core/kernels/tool_kernels.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {
-
-Kernel<&DepthKernels::depth_to_points> depth_to_points;
-Kernel<&DepthKernels::filter_depth> filter_depth;
-Kernel<&DepthKernels::plane_normals> plane_normals;
-Kernel<&DepthKernels::inverse_depth_normals> inverse_depth_normals;
-Kernel<&DepthKernels::sharp_normals> sharp_normals;
-Kernel<&DepthKernels::points_to_cloud> points_to_cloud;
-Kernel<&DepthKernels::normals_to_cloud> normals_to_cloud;
-
-const DepthKernels kDepthKernels = {
-    .depth_to_points = depth_to_points,
-    .filter_depth = filter_depth,
-    .plane_normals = plane_normals,
-    .inverse_depth_normals = inverse_depth_normals,
-    .sharp_normals = sharp_normals,
-    .points_to_cloud = points_to_cloud,
-    .normals_to_cloud = normals_to_cloud,
-};
-
-Kernel<&ProxyKernels::contact_query> contact_query;
-Kernel<&ProxyKernels::first_hit> first_hit;
-Kernel<&ProxyKernels::exit_distance> exit_distance;
-
-const ProxyKernels kProxyKernels = {
-    .contact_query = contact_query,
-    .first_hit = first_hit,
-    .exit_distance = exit_distance,
-};
 
 Kernel<&ToolKernels::near_spheres> near_spheres;
 Kernel<&ToolKernels::slabs_in_field> slabs_in_field;

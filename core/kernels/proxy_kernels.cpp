@@ -184,4 +184,10 @@ double exit_distance(const PointsView& points, const double p[3], const double d
                        : exit_distance_columns<false>(points, p, direction, reach, inner);
 }
 
+const ProxyKernels kProxyKernels = {
+    .contact_query = contact_query,
+    .first_hit = first_hit,
+    .exit_distance = exit_distance,
+};
+
 }  // namespace remote_touch::REMOTE_TOUCH_LEVEL

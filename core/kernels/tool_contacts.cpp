@@ -1,4 +1,4 @@
-// The contacts of many disks at once. The operations are those of near_disks.cpp, in their order, and are
+// The contacts of many disks at once. The operations are those of near_points.cpp, in their order, and are
 // explained there.
 #include "core/kernels/field_lanes.h"
 #include "core/kernels/level.h"

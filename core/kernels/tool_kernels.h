@@ -240,7 +240,7 @@ struct ToolKernels {
 }  // namespace remote_touch
 
 // Constants of the search for the nearest position on a disk, and of the contact computed from it. They are
-// shared by near_disks.h, near_disks.cpp and the kernels that process many disks at once.
+// shared by near_points.h, near_points.cpp and the kernels that process many disks at once.
 namespace remote_touch::disk_search {
 
 inline constexpr int kLines = 2;            // lines to search: one for an edge of the tool, two for a corner

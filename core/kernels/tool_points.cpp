@@ -1,5 +1,5 @@
 // Surface disks near a tool, 6.2.2: their positions, the trilinear distance field there, and a lower bound of
-// the distance of any position on a disk. The operations are those of voxel_tool.cpp and near_disks.cpp, in
+// the distance of any position on a disk. The operations are those of voxel_tool.cpp and near_points.cpp, in
 // the same order.
 
 #include <immintrin.h>
@@ -211,7 +211,7 @@ std::size_t points_in_field(const PointColumns& points, const std::uint32_t* gro
 
 // The points of a cloud that a tool touches, 6.2.2: points that lie in voxels, and points outside the voxels
 // whose distance is small enough. Every touched point is counted. The operations are those of voxel_tool.cpp
-// and near_disks.cpp, in the same order.
+// and near_points.cpp, in the same order.
 
 namespace {
 

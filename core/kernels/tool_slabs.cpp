@@ -125,7 +125,7 @@ namespace {
       way.turned, slabs.c_T - Doubles3{broadcast(way.a_T[0]), broadcast(way.a_T[1]), broadcast(way.a_T[2])});
   const Doubles3 along_T = end_T - slabs.c_T;
   // The chords of the points differ from that of the centre by up to `spread`; the field on the curves is
-  // lower than on the chords by up to `bend`, as in continuous_contacts.cpp.
+  // lower than on the chords by up to `bend`, as in contact_list.cpp.
   const Doubles spread = way.turn * slabs.radius;
   const Doubles bend =
       way.slope / 8 * way.turn * (way.turn * (norm(slabs.c_T) + slabs.radius + way.shift) + 2 * way.shift);

@@ -1,4 +1,4 @@
-// A surface of triangles, from which a tool is made.
+// A surface of triangles, from which a tool is made: whether it encloses a solid, and its repair.
 #pragma once
 
 #include <algorithm>

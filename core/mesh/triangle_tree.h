@@ -1,5 +1,5 @@
-// A tree over the triangles of a mesh. It finds the nearest triangle and computes the generalised winding
-// number.
+// Trees over the triangles of a mesh. They find the nearest triangle, and TriangleTree computes the
+// generalised winding number.
 #pragma once
 
 #include <xmmintrin.h>
@@ -76,7 +76,6 @@ class TriangleTree {
 // faces, at a time in single precision. These comparisons only rule faces out, with a margin for their
 // rounding, so no result depends on them. TriangleTree finds the nearest face as well, faster if it may start
 // at a face close by; this tree needs no such start, so its answer depends on the position alone.
-
 class FaceTree {
  public:
   // pre: mesh is the result of welded_mesh(), and has a triangle. Its size is below 1e15 m.

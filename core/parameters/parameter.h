@@ -1,6 +1,9 @@
 // Parameters as data: a configuration struct lists its fields once, in a function `parameters(Struct&)`, and
 // reading, range checks, help and the configuration stored with a result all use that list. A function
 // `validate(const Struct&)` describes the first invalid combination in one line; empty if there is none.
+//
+// Beside them: the units of parameters, a fraction over time (scheduled()), and InputError, the one
+// exception for bad input.
 #pragma once
 
 #include <algorithm>
@@ -90,10 +93,9 @@ std::span<const Unit> known_units();
 // "gamma").
 const Unit* unit_of(const std::string& name);
 
-// A fraction over time: rows of time in seconds and fraction.
-
-// Returns the fraction at a time. It is linear between two rows and jumps where two rows have the same time.
-// It is constant before the first row and after the last. It is 1 if there are no rows.
+// Returns a fraction at a time, from rows of time in seconds and fraction. It is linear between two rows and
+// jumps where two rows have the same time. It is constant before the first row and after the last. It is 1 if
+// there are no rows.
 double scheduled(const std::vector<double>& rows, double time_s);
 
 // Returns a message about the first row whose fraction is above 1 or whose time is before that of the

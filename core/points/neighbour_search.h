@@ -1,6 +1,6 @@
-// Searches for the points near a position. Every search returns the same set: all points whose forbidden
-// regions meet a ball, |x - centre| <= radius + r_f, compared as squares in double; without regions r_f is 0.
-// The searches differ in which points they test.
+// Searches for the points near a position, and orders of points in which neighbours follow each other. Every
+// search returns the same set: all points whose forbidden regions meet a ball, |x - centre| <= radius + r_f,
+// compared as squares in double; without regions r_f is 0. The searches differ in which points they test.
 #pragma once
 
 #include <array>
@@ -18,19 +18,13 @@
 
 namespace remote_touch {
 
-// Orders of points: along a space-filling curve, and in compact runs.
-
-// The order of the points of a cloud along a space-filling curve: most points follow a neighbour.
-
-// Returns the indices of the measured points along a Morton curve through the cloud's bounding box. Points in
-// the same cell of the curve keep the order of the cloud.
+// Returns the indices of the measured points along a Morton curve through the cloud's bounding box: most
+// points follow a neighbour. Points in the same cell of the curve keep the order of the cloud.
 std::vector<std::uint32_t> morton_order(const PointCloud& cloud);
 
-// An order of points in which runs of points are compact: their boxes are nearly cubes.
-
-// Returns the indices of the points in such an order. Each run of 8, 64, 512 or 4096 that begins at a
-// multiple of its length is one part of a halving of the cloud, across its longest side each time. So all
-// runs but the last are full. pre: the points are finite.
+// Returns the indices of the points in an order with compact runs, whose boxes are nearly cubes. Each run of
+// 8, 64, 512 or 4096 that begins at a multiple of its length is one part of a halving of the cloud, across
+// its longest side each time. So all runs but the last are full. pre: the points are finite.
 std::vector<std::uint32_t> compact_order(std::span<const Vec3> points);
 
 // The points near the proxy, copied into contiguous columns that the kernels read.
@@ -185,11 +179,10 @@ class UniformGridSearch final : public CloudSearch {
 // otherwise.
 std::unique_ptr<NeighbourSearch> make_search(PointCloud cloud, double cell_m = 0.004);
 
-// The points around a moving proxy, gathered once and kept while the proxy stays near.
-
-// A kept list belongs to a small cube of space, not to the path of the proxy: around() always returns the
-// same points for a position, so results do not depend on history or on the search used. A few lists are
-// kept, because a proxy on noisy points moves back and forth between neighbouring cubes.
+// The points around a moving proxy, gathered once and kept while the proxy stays near. A kept list belongs to
+// a small cube of space, not to the path of the proxy: around() always returns the same points for a
+// position, so results do not depend on history or on the search used. A few lists are kept, because a proxy
+// on noisy points moves back and forth between neighbouring cubes.
 class Neighbourhood {
  public:
   // reach (m): the list of a queried position holds every point with r_n <= reach, and some beyond.

@@ -1,4 +1,4 @@
-// Sorting into cells in linear time, columns that are aligned to cache lines, and quantiles.
+// Columns of numbers: sorted into cells in linear time, aligned to cache lines, and their quantiles.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,6 @@
-// A point cloud in columns, and the image layout of a cloud that comes from an image.
+// A point cloud in columns, the colours of its points, and the pinhole camera and depth image that a cloud
+// may come from. Camera frame C: x right, y down, z forward along the optical axis, metres; pixel (u, v) =
+// (column, row), the centre of the first pixel is (0, 0).
 #pragma once
 
 #include <cmath>
@@ -66,10 +68,9 @@ struct PointCloud {
   }
 };
 
-// The largest allowed distance of a scene and a hand from the origin of the world.
-
-// The limit along each axis. The method has absolute tolerances down to 1e-9 m. The spacing of doubles is
-// 1e-13 m at this limit, but 1e-10 m at 1e6 m.
+// The largest allowed distance of a scene and a hand from the origin of the world, along each axis. The
+// method has absolute tolerances down to 1e-9 m. The spacing of doubles is 1e-13 m at this limit, but 1e-10 m
+// at 1e6 m.
 inline constexpr double kMaxCoordinate_m = 1000;
 
 inline bool is_near_origin(const Vec3& p_W) {
@@ -93,8 +94,6 @@ inline std::string far_from_origin(const std::string& what) {
   return what + " more than " + std::to_string(static_cast<int>(kMaxCoordinate_m)) +
          " m from the origin along an axis: expected a scene and a hand near the origin";
 }
-
-// Pinhole camera, depth image, and the colour of a point, which the segmentation by colour of 7.3.2 uses.
 
 // The value in the colour column of a cloud for a point whose colour is unknown.
 inline constexpr std::uint32_t kNoColour = 0xFF000000;
@@ -122,9 +121,6 @@ HueSaturationLightness hue_saturation_lightness(std::uint32_t rgb);
 // Returns the nearest colour with 8 bits per channel, 0xRRGGBB. pre: the values are in the ranges above; a
 // hue of 360 is allowed and means 0.
 std::uint32_t rgb(const HueSaturationLightness& colour);
-
-// Pinhole camera and depth image. Camera frame C: x right, y down, z forward along the optical axis, metres;
-// pixel (u, v) = (column, row), the centre of the first pixel is (0, 0).
 
 // z_m[v * width + u] is the distance along the optical axis; NaN where the sensor measured nothing.
 struct DepthImage {

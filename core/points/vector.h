@@ -11,9 +11,8 @@ namespace remote_touch {
 using Vec3 = Eigen::Vector3d;
 using RigidTransform = Eigen::Isometry3d;
 
-// Axis-aligned boxes around positions.
-
-// A default box is empty: its min() is above its max(). It grows by extend().
+// An axis-aligned box around positions. A default box is empty: its min() is above its max(). It grows by
+// extend().
 using BoundingBox = Eigen::AlignedBox3d;
 
 // Returns the smallest box that contains all positions of a range. It is empty if there are none.
@@ -42,8 +41,6 @@ std::pair<double, double> sin_cos(double angle);
 Eigen::Quaterniond rotation(const Vec3& vector);
 // Returns the shortest rotation vector of a rotation; its length is 0 to pi.
 Vec3 rotation_vector(const Eigen::Quaterniond& rotation);
-
-// The angle between two directions.
 
 // Returns the angle between two vectors of any length, 0 to pi, with an error below 2e-15. pre: neither is
 // zero. Unlike acos() and atan2(), it has the same bits with every C library. Half of the angle has the sine

@@ -1,5 +1,5 @@
-// The target of a guidance virtual fixture: the mean position of the points of a class, and the plane that
-// they lie in, 7.3.2.
+// The data that a renderer receives: frames of a sensor, with the targets of guidance in them, 7.3.2, and the
+// state of a device.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,8 @@
 
 namespace remote_touch {
 
-// The target of one fixture in one frame; world frame.
+// The target of one guidance virtual fixture in one frame, 7.3.2: the mean position of the points of a class,
+// and the plane that they lie in; world frame.
 struct GuidanceTarget {
   std::size_t points = 0;      // number of points that the rule selects; 0: no target in the frame
   Vec3 mean_W = Vec3::Zero();  // weighted mean of their positions
@@ -36,11 +37,8 @@ struct GuidanceTarget {
 // the cloud has no image.
 GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& weights);
 
-// The data that a renderer receives from a sensor and from a device.
-
 // The properties that a renderer can require of the points of its frames. A run is refused if its frames lack
 // one of them, because there would be no force, or a wrong one.
-
 enum class FrameNeed {
   normals,    // points with normals
   organised,  // rows and columns, so that the neighbours of a point are known

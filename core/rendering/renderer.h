@@ -1,4 +1,5 @@
-// The interface of every haptic renderer: frames at the camera's rate, steps at the haptic rate.
+// The interface of every haptic renderer: frames at the camera's rate, steps at the haptic rate. Beside it,
+// what most renderers need: the order of frames, and data that is prepared from a frame.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +18,8 @@
 
 namespace remote_touch {
 
-// A force with a torque, as a renderer commands it and a device exerts it.
-
-// Force on the hand, and torque about the device's position; world frame.
+// Force on the hand, and torque about the device's position, as a renderer commands them and a device exerts
+// them; world frame.
 struct Wrench {
   Vec3 force_N = Vec3::Zero();
   Vec3 torque_Nm = Vec3::Zero();
@@ -123,8 +123,6 @@ class Renderer : public FrameReceiver {
   virtual RenderOutput step(const DeviceState& device, double time_s) = 0;
 };
 
-// The wrench of a renderer's output.
-
 // Returns the wrench that the renderer commands. Without a tool it has no torque.
 inline Wrench rendered_wrench(const RenderOutput& out) {
   return {out.force_N, out.tool ? out.tool->torque_Nm : Vec3(Vec3::Zero())};
@@ -151,7 +149,6 @@ inline Wrench rendered_wrench(const RenderOutput& out) {
 // is 0, however deep the press is. Once the HIP has passed the points, F pushes it further, x is below the
 // surface too, and the height is negative. Dampers are not considered, because no method of the scorecard has
 // one.
-
 struct RenderedContact {
   // The contact of a tool, which has a shape and not a radius.
   static RenderedContact unknown() { return {std::numeric_limits<double>::quiet_NaN()}; }
@@ -186,17 +183,14 @@ enum class VelocityForce { minus, plus, none };  // sign of the velocity term of
 // of the device, a soft constraint.
 enum class SlaveCommand { rendered, hip };
 
-// The number of ticks between two calls of a renderer or of a simulated hand.
-
-// Returns the number of ticks from before_s to now_s, rounded, and at least 1. It is also 1 if the time does
-// not advance, decreases or is NaN.
+// Returns the number of ticks between two calls of a renderer or of a simulated hand: from before_s to now_s,
+// rounded, and at least 1. It is also 1 if the time does not advance, decreases or is NaN.
 inline double elapsed_ticks(double before_s, double now_s, double haptic_rate_hz) {
   return std::max(1.0, std::floor((now_s - before_s) * haptic_rate_hz + 0.5));
 }
 
 // The newest frame of a stream. A frame that was captured no later than the newest one is dropped, and the
 // drop is reported once.
-
 class FrameOrder {
  public:
   // Returns true if the frame was captured after the newest one, or is the first.
@@ -220,9 +214,8 @@ class FrameOrder {
 };
 
 // The data structure that a renderer reads in place of a cloud's columns, such as a tree. It is built once
-// per frame, in advance by prepare() or in on_frame().
-
-// Form: any class with assign(const PointCloud&, settings...).
+// per frame, in advance by prepare() or in on_frame(). Form: any class with assign(const PointCloud&,
+// settings...).
 template <class Form>
 struct PreparedForm final : FramePreparation {
   Form form;

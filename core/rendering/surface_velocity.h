@@ -9,12 +9,11 @@
 
 namespace remote_touch {
 
-// The interval between the frames of a stream, without pauses of the stream.
-
-// A stream continues at its former rate after a pause, so a pause does not predict when the next frame comes.
-// The part of an interval above a limit counts as a pause. The limit is kMaxRatio times the previous interval
-// without its own pause. It grows with each longer interval, so a stream that becomes slower is accepted
-// after a few frames. The first interval of a stream has no limit.
+// The interval between the frames of a stream, without pauses of the stream. A stream continues at its former
+// rate after a pause, so a pause does not predict when the next frame comes. The part of an interval above a
+// limit counts as a pause. The limit is kMaxRatio times the previous interval without its own pause. It grows
+// with each longer interval, so a stream that becomes slower is accepted after a few frames. The first
+// interval of a stream has no limit.
 class UsualInterval {
  public:
   // Two frames in a row may be lost without a pause, as with the default max_prediction_s of 0.1 s at 30 Hz.

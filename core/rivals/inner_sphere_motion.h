@@ -12,7 +12,7 @@
 // the present pose, by half a voxel at most, and by less and less if steps turn back.
 //
 // Not from the sources: the coupling and the steps. But for the shorter steps they are those of the penalty
-// methods (penalty_motion.h), so that the methods differ in the force of the points only.
+// methods (compared_motions.h), so that the methods differ in the force of the points only.
 //
 // Known limits, which the comparison should show. The force grows with the square of the depth at first, so
 // the surface feels soft. The part of the tool behind the surface is inside, however thin the object is. So a

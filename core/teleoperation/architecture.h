@@ -1,9 +1,5 @@
-// Time-domain passivity control of a channel with delay between a hand and a slave: a controller at each port
-// changes its signal, as little as possible, so that no more energy leaves the channel there than the far
-// port has sent as its credit. Derivation, bound and sources: README.md of runners/experiment/hand.
-//
-// All forces act on the body at the port. Energy that enters the channel in a tick is -F . d at the hand and
-// f . d at the slave, where d is the displacement of the hand, or of the slave's command.
+// Architectures of teleoperation with force feedback, and the passivity control that keeps one of them
+// stable.
 #pragma once
 
 #include <memory>
@@ -16,6 +12,13 @@
 #include "core/teleoperation/slave.h"
 
 namespace remote_touch {
+
+// Time-domain passivity control of a channel with delay between a hand and a slave: a controller at each port
+// changes its signal, as little as possible, so that no more energy leaves the channel there than the far
+// port has sent as its credit. Derivation, bound and sources: README.md of runners/experiment/hand.
+//
+// All forces act on the body at the port. Energy that enters the channel in a tick is -F . d at the hand and
+// f . d at the slave, where d is the displacement of the hand, or of the slave's command.
 
 struct PassivitySettings {
   double max_damping_Ns_per_m = 100;
@@ -146,8 +149,8 @@ class AdmittancePassivityController {
 // The port of the hand is -F . dx in all of them, with the force F that the device really exerts. in - out
 // over both ports is the energy in the channel. Sources: D. A. Lawrence, IEEE Trans. Robotics and Automation
 // 9(5), 1993; G. Niemeyer and J.-J. E. Slotine, IEEE J. Oceanic Engineering 16(1), 1991, and Int. J. Robotics
-// Research 23(9), 2004; architecture.h. Compared by E. J. Rodriguez-Seda, D. Lee and M. W. Spong, IEEE
-// Trans. Robotics 25(4), 2009. Numbers and bounds: README.md of runners/experiment/hand.
+// Research 23(9), 2004; passivity control above. Compared by E. J. Rodriguez-Seda, D. Lee and M. W. Spong,
+// IEEE Trans. Robotics 25(4), 2009. Numbers and bounds: README.md of runners/experiment/hand.
 //
 // All positions, forces and waves here are in the frame in which the hand works. Nothing allocates in a tick.
 

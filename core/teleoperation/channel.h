@@ -1,4 +1,5 @@
-// A channel with delay, jitter and loss, through which the two sides of a teleoperation send samples.
+// A channel with delay, jitter and loss, through which the two sides of a teleoperation send samples, and
+// perceptual dead-bands: samples that differ too little from what the other side has to be felt are not sent.
 #pragma once
 
 #include <algorithm>
@@ -144,10 +145,8 @@ class Channel {
   ChannelCounts counts_;
 };
 
-// Perceptual dead-band: samples of a signal that differ too little from what the other side has to be felt
-// are not sent.
-
-// The threshold is max(weber_fraction |x^|, least). If both settings are 0, every sample is sent.
+// A perceptual dead-band. The threshold is max(weber_fraction |x^|, least). If both settings are 0, every
+// sample is sent.
 //
 // A fraction suits forces and velocities. The magnitude of a position depends on the origin, so a signal of
 // positions or poses needs weber_fraction 0 and a length as `least`.

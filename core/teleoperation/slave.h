@@ -1,4 +1,5 @@
-// A slave robot in contact with the true scene: a ball on a carriage that follows a commanded position.
+// Slave robots in contact with the true scene: a ball on a carriage that follows a commanded position, and a
+// rigid tool that follows a commanded pose.
 #pragma once
 
 #include <cmath>
@@ -127,7 +128,6 @@ inline Vec3 cut(const Vec3& v, double max_length) {
 }
 
 // The error of the registration of the slave to the camera, whose cloud the operator touches.
-
 struct RegistrationError {
   double offset_m = 0;
   double rotation_deg = 0;
@@ -147,11 +147,8 @@ inline std::string validate(const RegistrationError&) {
 // only in what the sweep varies.
 RigidTransform registration_of(const RegistrationError& error, const NoiseKey& key);
 
-// A slave robot with a rigid tool in contact with the true scene. It follows a commanded pose.
-
-// The surface of a rigid tool as points with which a slave robot touches the scene.
-
-// Frame T is that of the tool: its origin is the centre of mass, as in VoxelTool.
+// The surface of a rigid tool as points with which a slave robot touches the scene. Frame T is that of the
+// tool: its origin is the centre of mass, as in VoxelTool.
 struct SlaveTool {
   std::vector<Vec3> points_T;
   std::vector<double> areas_m2;  // area of the part of the surface that each point stands for

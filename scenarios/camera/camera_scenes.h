@@ -1,5 +1,5 @@
-// A depth camera that looks down on a beating organ on a table, as in 5.3.3. The surface moves all the time
-// and is known exactly at every instant.
+// Scenes before a simulated camera that are known exactly at every instant: a beating organ on a table, as in
+// 5.3.3, and two handwheel valves in a tank of turbid water, the scene of 7.5.1.
 #pragma once
 
 #include <array>
@@ -91,9 +91,6 @@ Parameters parameters(BeatingHeart::Settings& s);
 inline std::string validate(const BeatingHeart::Settings& s) {
   return validate(s.camera);
 }
-
-// A colour and depth camera looks at two handwheel valves in a tank of turbid water: the scene of 7.5.1
-// without a recording, with known classes for every pixel.
 
 // A valve's handwheel: a ring on three round spokes, with a hub, and a stem back to the wall behind it. The
 // axis is along z and the wheel lies in the plane z = centre.z; the stem ends at the wall z = 0. One spoke

@@ -17,7 +17,6 @@ namespace remote_touch {
 
 // Noise along the viewing rays as depth sensors have it: it grows with the square of the distance, and it is
 // correlated between neighbouring points and between successive frames.
-
 struct RayNoise {
   double sigma_m = 0;        // standard deviation at a distance of 1 m; it is sigma_m (distance / 1 m)^2
   double correlation_m = 0;  // pitch of the square lattice across the view that carries the noise

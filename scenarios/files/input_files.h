@@ -1,4 +1,5 @@
-// Text files and JSON of unknown origin, read whole, and their refusal.
+// Files that a user names. Text and JSON of unknown origin, read whole, and their refusal; the order of the
+// files of a folder.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +19,8 @@
 
 namespace remote_touch {
 
-// Refuses a file, with what is wrong with it in one line.
-
-// Throws InputError about the subject. The problem is given in parts: texts, and numbers, which are written
-// as by std::to_string().
+// Throws InputError about the subject, in one line. The problem is given in parts: texts, and numbers, which
+// are written as by std::to_string().
 template <class... Parts>
 [[noreturn]] void refuse(const std::string& subject, Parts... parts) {
   std::string problem;
@@ -143,8 +142,6 @@ class NumberColumns {
   std::vector<std::string> names_, unused_;
   std::vector<std::optional<Column>> columns_;  // one for each quantity
 };
-
-// The order of the files of a folder.
 
 // Tests of file names that decide which files of a folder belong to a recording.
 

@@ -21,8 +21,6 @@
 
 namespace remote_touch {
 
-// Notes on a run for the user, and phases of a motion.
-
 // A remark on a run that the user should read: the run is valid, but it may not be what was meant.
 struct Note {
   std::string kind;  // the same for all notes of this kind, see note_kinds(): "no contact"
@@ -36,9 +34,8 @@ struct Phase {
   double ends_s = std::numeric_limits<double>::infinity();
 };
 
-// The time at which a surface that moves is considered.
-
-// newest_frame: the surface as at the last capture. moving: the surface as it moves between frames.
+// The time at which a surface that moves is considered. newest_frame: the surface as at the last capture.
+// moving: the surface as it moves between frames.
 enum class SurfaceTime { newest_frame, moving };
 
 // Two times count as equal if they differ by less than this, because sums and quotients of times are rounded.
@@ -135,10 +132,8 @@ class Scenario {
   }
 };
 
-// The frames of a scenario that were used last.
-
-// Hand, renderer and truth use the same frames in turn, and making a frame may take far longer than copying
-// it. Several threads may call get() at the same time.
+// The frames of a scenario that were used last. Hand, renderer and truth use the same frames in turn, and
+// making a frame may take far longer than copying it. Several threads may call get() at the same time.
 class KeptFrames {
  public:
   using Points = std::shared_ptr<const NeighbourSearch>;

@@ -35,7 +35,7 @@ enum class PoseLines { of_frames, stamped, either };
 // If a comment before the first pose, or the first line, names columns, they are read by these names: `tx ty
 // tz` (or x, px), with `qx qy qz qw` or the rows `r00 r01 r02 r10 ... r22` of R, and `t` (or time, timestamp,
 // stamp) of stamped poses or `frame`, which counts from 0. Names may end in a unit, "tx_mm" or "t [ms]", see
-// text_file.h; columns of other names are not used. Without such names a line of 16 numbers is a 4 x 4
+// input_files.h; columns of other names are not used. Without such names a line of 16 numbers is a 4 x 4
 // matrix row by row, and a line of 8 numbers is stamped: `t tx ty tz qx qy qz qw`. A pose whose numbers are
 // all nan or infinite is unknown, unless it is stamped. R is replaced by the nearest exact rotation (Higham
 // 1986), since a file has few digits, and a quaternion is normalised. If two stamps are equal, the first pose

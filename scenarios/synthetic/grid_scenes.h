@@ -1,4 +1,5 @@
-// Scenes whose points are at the nodes of a rectangular grid, with noise that is computed where it is needed.
+// Scenes whose points are at the nodes of a rectangular grid, with noise that is computed where it is needed:
+// clouds at rest, and flat clouds that are lifted, 4.3.2.
 #pragma once
 
 #include <limits>
@@ -16,10 +17,8 @@
 
 namespace remote_touch {
 
-// A rectangular grid of points in the x-z plane, and the noise that a scenario puts on its points.
-
-// columns x rows points, spacing_m apart; point row * columns + column. The middle of the grid lies at the
-// origin of x and z, moved by the phases in units of the spacing.
+// A rectangular grid in the x-z plane: columns x rows points, spacing_m apart; point row * columns + column.
+// The middle of the grid lies at the origin of x and z, moved by the phases in units of the spacing.
 struct Grid {
   int columns = 100;
   int rows = 100;
@@ -232,8 +231,6 @@ class TriangleWave final : public GridScene {
 
 Parameters parameters(TriangleWave::Settings& s);
 std::string validate(const TriangleWave::Settings& s);
-
-// Flat clouds that are lifted, 4.3.2, and their motion.
 
 // Motion of a surface that is lifted, 4.3.2: it waits, rises at constant velocity, accelerates and rests. It
 // is a function of time, which a camera samples at its frames. 4.3.2 gives the heights at the frames: v_j =

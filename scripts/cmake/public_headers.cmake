@@ -5,9 +5,9 @@ set(public_headers
   analysis/comparison/compared_columns.h analysis/storage/result_file.h analysis/measures/measures.h
   analysis/storage/hdf5_file.h analysis/trace/trace.h core/beyond/tracked_surface/tracked_renderers.h
   core/dissertation/proxy/proxy_renderer.h core/dissertation/virtual_fixtures/fixture_rules.h core/points/point_cloud.h
-  core/points/point_cloud.h core/points/vector.h core/kernels/isa.h core/points/noise.h
+  core/points/vector.h core/kernels/isa.h core/points/noise.h
   core/parameters/parameter.h core/rendering/frame.h core/rendering/renderer.h
-  core/rendering/renderer.h core/points/neighbour_search.h
+  core/points/neighbour_search.h
   runners/evaluation/verification/contact_model.h runners/experiment/catalog/catalog.h
   runners/experiment/catalog/experiment.h runners/experiment/hand/trajectory.h
   runners/experiment/simulation/simulation.h runners/interfaces/cli/program.h

@@ -1,4 +1,5 @@
-// Positions on a tool, and the motion with which surfaces carry it.
+// The patches of tracked sheets around a tool: the positions on the tool that they follow, and the motion
+// with which their surfaces carry the tool.
 #pragma once
 
 #include <memory>
@@ -44,9 +45,6 @@ class ToolPositions {
   std::vector<Group> groups_;
 };
 
-// Estimate of the motion of a tool that surfaces carry. The motion of each surface is measured along its
-// normal only.
-
 // A position where a surface holds the tool, and the motion of the surface there along its unit normal.
 struct CarriedPosition {
   Vec3 p_W, normal_W;
@@ -54,7 +52,8 @@ struct CarriedPosition {
   double weight = 1;
 };
 
-// Least squares over positions p_k for a displacement t of their weighted mean c and a rotation vector w
+// Estimate of the motion of a tool that surfaces carry, each of which is measured along its normal only:
+// least squares over positions p_k for a displacement t of their weighted mean c and a rotation vector w
 // about it: n_k . (t + w x (p_k - c)) = d_k. The motion is zero in directions that the positions do not
 // determine. These are the directions in the space of (t, lever w) in which the mean square of the rows is
 // below kObservable. So a single position gives a displacement along its normal, a row of positions adds a
@@ -85,8 +84,6 @@ class CarriedMotion {
   Eigen::Matrix<double, 6, 6> rows_ = Eigen::Matrix<double, 6, 6>::Zero();
   Vector6 right_ = Vector6::Zero();
 };
-
-// The patches of tracked sheets around a tool, and the motion of the tool with them.
 
 // The contact of the tool when a frame arrives.
 struct ToolHold {

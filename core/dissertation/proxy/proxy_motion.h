@@ -1,6 +1,5 @@
-// The equations of 4.2 and 5.3 that a proxy P needs of every point x near it, one statement each. The kernels
-// of core/kernels/proxy_kernels.h compute them for many points at a time and are tested against this form.
-// Number: double or long double. Positions and radii are in m, directions have unit length.
+// Motion of the proxy. First the equations of 4.2 and 5.3, then one step of the movement algorithm, 4.2.3 and
+// 4.2.4 (chapter 5: the same with r_n and r_f), and the motion among regions.
 #pragma once
 
 #include <cmath>
@@ -17,6 +16,9 @@
 #include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 
+// The equations of 4.2 and 5.3 that a proxy P needs of every point x near it, one statement each. The kernels
+// of core/kernels/proxy_kernels.h compute them for many points at a time and are tested against this form.
+// Number: double or long double. Positions and radii are in m, directions have unit length.
 namespace remote_touch::equations {
 
 template <class Number>
@@ -79,7 +81,6 @@ Number exit_distance(const Vec<Number>& P, const Vec<Number>& x, const Vec<Numbe
 
 }  // namespace remote_touch::equations
 
-// One step of the proxy movement algorithm, 4.2.3 and 4.2.4 (chapter 5: the same with r_n and r_f).
 namespace remote_touch {
 
 // Settings of the point cloud proxy, Table 4.2, and the readings of an equation that can be chosen.
@@ -218,18 +219,12 @@ class KnownSteps {
   Vec3 hip_W_ = Vec3::Zero();
 };
 
-}  // namespace remote_touch
-
-// Motion of a proxy among regions: the way out of a union of them, and a motion that enters none.
-namespace remote_touch {
-
-// The way out of a union of regions that encloses the proxy. Not in the dissertation.
-
-// Returns a position outside all regions (r_n >= r1): the end of the shortest of nine straight lines from p.
-// One line leads along the normal. Four lead across it: towards u, away from u, and to both sides. Four lie
-// halfway between the normal and these. No line leads against the normal, so the proxy stays on its side. If
-// the normal is zero, the direction away from u replaces it; if u is zero too, an axis of the world replaces
-// it. Returns nullopt if no line leaves all regions after kMaxExits of them.
+// Returns the way out of a union of regions that encloses the proxy, which is not in the dissertation: a
+// position outside all regions (r_n >= r1), the end of the shortest of nine straight lines from p. One line
+// leads along the normal. Four lead across it: towards u, away from u, and to both sides. Four lie halfway
+// between the normal and these. No line leads against the normal, so the proxy stays on its side. If the
+// normal is zero, the direction away from u replaces it; if u is zero too, an axis of the world replaces it.
+// Returns nullopt if no line leaves all regions after kMaxExits of them.
 //
 // (5.11) chooses a new direction in every step and can move in circles, but a straight line leaves every
 // region only once.

@@ -15,7 +15,6 @@
 namespace remote_touch {
 
 // Force rendering, 4.2.6: a spring and damper between the HIP and the contact point of the proxy.
-
 class VirtualCoupling {
  public:
   // haptic_rate_hz is f_h of (4.16).

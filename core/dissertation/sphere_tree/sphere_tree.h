@@ -1,5 +1,5 @@
-// A tree of bounding spheres over spheres, 7.3.2 and 7.4: one test skips everything below a node that is far
-// away.
+// Trees of bounding spheres over spheres, 7.3.2 and 7.4, of forbidden regions and of tools: one test skips
+// everything below a node that is far away.
 #pragma once
 
 #include <algorithm>
@@ -88,12 +88,10 @@ class SphereTree {
   std::vector<RunStart> run_starts_;  // start of each node in these columns
 };
 
-// The forbidden regions of a frame as a sphere tree, 7.3.2.
-
-// Every measured point with r_f above 0 has a leaf of that radius, in the world frame. The points of a patch
-// form a node of the lowest level. A patch is 16 x 16 pixels of an image, and patches follow each other in
-// blocks of 4 x 4. If the cloud has no image, a patch is kPatchPoints such points along a space-filling
-// curve.
+// The forbidden regions of a frame as a sphere tree, 7.3.2. Every measured point with r_f above 0 has a leaf
+// of that radius, in the world frame. The points of a patch form a node of the lowest level. A patch is 16 x
+// 16 pixels of an image, and patches follow each other in blocks of 4 x 4. If the cloud has no image, a patch
+// is kPatchPoints such points along a space-filling curve.
 class RegionTree {
  public:
   static constexpr int kPatchSide_px = 16;
@@ -123,8 +121,6 @@ class RegionTree {
 // [118] for this. Leaves are balls inscribed in the tool, all enlarged by the same inflation_m. It is about
 // the smallest with which max_leaves of them cover the surface.
 
-// Sample positions on a mesh's surface.
-
 // Returns positions on every triangle, its corners among them. They are no farther apart than spacing_m along
 // its longest side and along the height above it.
 std::vector<Vec3> surface_samples(const TriangleMesh& mesh, double spacing_m);
@@ -136,7 +132,6 @@ double surface_area_m2(const TriangleMesh& mesh);
 
 // Covers many points by few spheres with a greedy algorithm: each next sphere is the one that covers most of
 // the remaining points.
-
 class SphereCover {
  public:
   // points: to be covered; choice: spheres to choose from; cell_m: cell size of the grid that finds points,

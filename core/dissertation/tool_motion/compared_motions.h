@@ -1,4 +1,21 @@
-// A god-object with six degrees of freedom for comparison, after M. Ortega, S. Redon and S. Coquillart, "A
+// Motions of a tool by other authors, for comparison: a god-object with six degrees of freedom, and penalty
+// methods.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/contact_list.h"
+#include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_motion/tool_renderer.h"
+#include "core/parameters/parameter.h"
+#include "core/points/point_cloud.h"
+
+namespace remote_touch {
+
+// The god-object with six degrees of freedom, after M. Ortega, S. Redon and S. Coquillart, "A
 // six degree-of-freedom god-object method for haptic display of rigid bodies with surface properties", IEEE
 // TVCG 13(3), 2007. The tool never penetrates what it touches, and the hand feels the part of its motion that
 // the contacts prevent. Each step computes
@@ -33,20 +50,6 @@
 // tool until the hand moves, and the surface has passed the tool when it leaves the tool on the other side.
 // The outer side of a disk in the tool is the side from which a surface was touched last, as with the
 // look-ahead rule.
-#pragma once
-
-#include <cstdint>
-#include <optional>
-#include <vector>
-
-#include "core/dissertation/tool/shape/voxel_tool.h"
-#include "core/dissertation/tool_motion/contact_list.h"
-#include "core/dissertation/tool_motion/rigid_tool.h"
-#include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/parameters/parameter.h"
-#include "core/points/point_cloud.h"
-
-namespace remote_touch {
 
 struct ToolGodObjectParameters {
   int steps_per_tick = 60;
@@ -88,7 +91,6 @@ class GodObjectMotion final : public ToolMotion {
 // The points of a frame as voxels: the voxmap of McNeely, Puterbaugh and Troy 1999, for a scene of which only
 // points are known. A voxel with a point in it is a surface voxel. All others are free, because points do not
 // show what is behind them.
-
 class Voxmap {
  public:
   // Voxel (i, j, k) spans voxel_m (i .. i + 1, j .. j + 1, k .. k + 1) of the world. Points that are not
@@ -120,7 +122,7 @@ class Voxmap {
 //
 // Voxmap and pointshell (`voxmap`): W. McNeely, K. Puterbaugh and J. Troy, "Six degree-of-freedom haptic
 // rendering using voxel sampling", SIGGRAPH 1999. The tool consists of points with normals into it
-// (voxel_tool.h). The scene consists of voxels (voxmap.h), which prepare() makes from each frame. The depth
+// (voxel_tool.h). The scene consists of voxels (Voxmap), which prepare() makes from each frame. The depth
 // of a tool point in a surface voxel is its depth below the tangent plane: the plane through the middle of
 // the voxel, perpendicular to the normal of the point.
 //

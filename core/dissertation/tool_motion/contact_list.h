@@ -1,4 +1,5 @@
-// Computes the contacts of a pose for the contact rules, from the points that TouchFinder detects.
+// The contacts of a pose for the contact rules, from the points that TouchFinder detects; for the continuous
+// rule also the part of a motion that is possible before the first point enters the tool.
 #pragma once
 
 #include <limits>
@@ -18,7 +19,6 @@
 namespace remote_touch {
 
 // The contacts that the look-ahead rule needs from a scene: everything that the tool could touch soon.
-
 struct NearContacts {
   std::span<const ToolContact> contacts;
   double deepest_m = 0;  // largest depth, negative if nothing is touched; -infinity: nothing was found
@@ -108,10 +108,6 @@ class ContactList final : public NearContactSource {
   std::vector<std::uint32_t> chosen_;  // numbers of disks
 };
 
-// The points of a cloud for the continuous rule. near() returns the contacts of the look-ahead rule, kept a
-// small gap away. clear_fraction() returns the part of a motion that is possible before the first point
-// enters the tool. Not in the dissertation.
-
 // Computes the part of a motion that a tool may make before the first point of a cloud enters it, by
 // conservative advancement of points through the tool's field (distance_field.h). Compare Xu and Barbic 2016.
 // Not in the dissertation.
@@ -119,7 +115,6 @@ class ContactList final : public NearContactSource {
 // A point moves on a curve in the tool frame. The second derivative of the curve bounds its distance from its
 // chord. The field along the chord is a cubic in every cell. A cubic is nowhere below the smallest of its
 // Bernstein coefficients, so the result is certain and does not depend on samples.
-
 class ClearWay {
  public:
   // A point less than kTouch_m outside the tool counts as touched, m. A point deeper than kInside_m in the

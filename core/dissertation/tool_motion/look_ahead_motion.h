@@ -15,7 +15,6 @@ namespace remote_touch {
 // A contact cannot limit a motion that moves every point of the tool by less than the distance of the
 // contact. So the nearest contacts are queried first, and farther ones only if the motion is longer. The
 // result is still the motion that all contacts within the look-ahead allow. Not in the dissertation.
-
 class LookAheadProgram {
  public:
   // A contact deeper than this is a collision. A smaller depth is the error of a linear constraint on a
@@ -91,7 +90,6 @@ class LookAheadMotion {
 // The tool is not moved out if a surface on the other side is nearer, or if a surface that faces the tool is
 // in the way. Points that are still in the tool are then treated as in the look-ahead rule, and it is not
 // certain that the tool passes no points in that tick. Not in the dissertation.
-
 class ContinuousMotion final : public ToolMotion {
  public:
   // tool: made with outer_field; it has to outlive this.

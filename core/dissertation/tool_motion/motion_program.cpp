@@ -75,8 +75,7 @@ struct Square {
 };
 
 // The active rows, which are the rows that the solution of a quadratic program fulfils with equality, and
-// their changes: the inner part of the method of Goldfarb and Idnani (1983). This file is for
-// motion_program.cpp only.
+// their changes: the inner part of the method of Goldfarb and Idnani (1983).
 
 // The rounding error of row . y, for a row of unit length and coordinates of y up to 1.
 constexpr double kRounding = 1e-14;
@@ -164,7 +163,7 @@ struct ActiveRows {
   }
 };
 
-constexpr int kLanes = 8;
+constexpr int kRowLanes = 8;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kMax = 1e150;         // its square is finite
 constexpr double kInfeasible = 5e-13;  // smaller violations may be rounding errors of rows that nearly agree
@@ -199,7 +198,7 @@ constexpr double kSlackScale = 0.01, kSlackCost = 0.1;
 template <int N>
 QuadraticProgram<N>::QuadraticProgram(int capacity)
     : capacity_(capacity),
-      stride_((capacity + kLanes - 1) / kLanes * kLanes),
+      stride_((capacity + kRowLanes - 1) / kRowLanes * kRowLanes),
       rows_(static_cast<std::size_t>(stride_ * N)),
       bounds_(static_cast<std::size_t>(stride_), -kInfinite),
       lengths_(static_cast<std::size_t>(stride_), 1) {}
@@ -264,9 +263,9 @@ template <int N>
 typename QuadraticProgram<N>::Violation QuadraticProgram<N>::max_violation(const double* y) const {
   Pair y_twice[N];
   for (int k = 0; k < N; ++k) y_twice[k] = both(y[k]);
-  PairOfRows worst[kLanes / 2];
-  for (int first = 0; first < count_; first += kLanes)
-    for (int p = 0; p < kLanes / 2; ++p) {
+  PairOfRows worst[kRowLanes / 2];
+  for (int first = 0; first < count_; first += kRowLanes)
+    for (int p = 0; p < kRowLanes / 2; ++p) {
       const int row = first + 2 * p;
       Pair distance = pair_at(bounds_.data() + row);
       for (int k = 0; k < N; ++k) distance -= pair_at(rows_.data() + k * stride_ + row) * y_twice[k];

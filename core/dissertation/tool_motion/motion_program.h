@@ -1,8 +1,4 @@
-// Computes the point nearest to a target that fulfils linear inequalities: (6.4) subject to (6.5), in the
-// coordinates y = M^(1/2) a_g, in which the kinetic distance is the Euclidean one. The dual active set method
-// of Goldfarb and Idnani (1983) starts at the target and repeatedly adds the row that is violated most. Rows
-// whose multiplier would become negative are removed, and may be added again. The size is fixed: nothing is
-// allocated after construction.
+// The constrained motion of the tool, 6.2.3, as a quadratic program, and the solver of such programs.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// Computes the points near a tool as disks in the tool's field.
+// The points near a tool: as disks in the tool's field, as single points, and how many of them it touches.
 //
 // A search also finds points that lie a little beyond the reach. All of them are kept, and are only measured
 // again, as long as the tool has moved so little that no other point can have come within reach. A kept group
@@ -65,7 +65,7 @@ ToolContact near_contact(const VoxelTool& tool, const SurfaceDisk& disk, const D
 // its lower bound as distance.
 ToolContact far_contact(const SurfaceDisk& disk, double lower_bound_m);
 
-// The result is kept: another query for the same pose costs nothing.
+// Computes the disks near a tool. The result is kept: another query for the same pose costs nothing.
 class NearDisks {
  public:
   // Distance beyond the reach that is searched too.
@@ -150,16 +150,6 @@ class NearDisks {
   double reach_m_ = 0, max_lower_m_ = 0;
 };
 
-// Finds the points near a tool as single points: none is merged, and none is a disk.
-
-// Keeps the groups of points that are near a tool, so that not every pose needs a new search.
-//
-// If the cloud has a packed() one, the groups are those of that one.
-//
-// A search also finds groups that lie a little beyond the reach. All of them are kept, and are only measured
-// again, as long as the tool has moved so little that no other point can have come within reach. A kept group
-// is skipped if it was so far away at the search that none of its points can have come within reach.
-
 // The groups that a kernel has to measure. A group whose nearest_m is above passed_m has no point within
 // reach. If is_new is true, the kernel writes the nearest_m of all others.
 struct GroupsInReach {
@@ -170,6 +160,8 @@ struct GroupsInReach {
   double passed_m;
 };
 
+// Keeps the groups of points that are near a tool, so that not every pose needs a new search. If the cloud
+// has a packed() one, the groups are those of that one.
 class KeptGroups {
  public:
   static constexpr double kSpare_m = 4e-4;  // distance beyond the reach that is searched too
@@ -193,6 +185,7 @@ class KeptGroups {
   bool is_new_ = false;  // not all groups were measured since the search
 };
 
+// Finds the points near a tool as single points: none is merged, and none is a disk.
 class NearPoints {
  public:
   void on_frame() { groups_.on_frame(), count_ = 0; }  // call it for each new cloud
@@ -232,11 +225,6 @@ class NearPoints {
   std::size_t count_ = 0;
 };
 
-// Counts the points of a cloud that the tool touches at a pose. Every point is counted by itself.
-//
-// Groups of points are kept from one pose to the next (KeptGroups). The voxel in which a point lies, or
-// its distance, classifies most points. Only for the others, the nearest position on the disk is searched.
-
 struct Touched {
   ContactState state = ContactState::free;  // entrenched: some points are in interior voxels
   int points = 0;
@@ -244,6 +232,9 @@ struct Touched {
   double nearest_distance_m = 0;  // smallest field value of a point; infinite beyond the reach
 };
 
+// Counts the points of a cloud that the tool touches at a pose. Every point is counted by itself. The voxel
+// in which a point lies, or its distance, classifies most points. Only for the others, the nearest position
+// on the disk is searched.
 class TouchedPoints {
  public:
   static constexpr double kTouch_m = 1e-4;  // a disk closer to the tool than this is touched

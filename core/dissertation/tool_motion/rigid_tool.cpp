@@ -92,6 +92,7 @@ ToolParameters tool_parameters(const EvenCoupling& p) {
 }
 
 namespace {
+
 constexpr double kMaxHipDistance_m = 1e6;  // same limit as for the proxy: no hand is farther away
 }
 

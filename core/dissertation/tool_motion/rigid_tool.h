@@ -1,4 +1,7 @@
-// Settings of the 6-DOF renderer, 6.3, including the choices between different readings of an equation.
+// A rigid tool: the settings of its renderer, 6.3, its poses and the small motions between them, (6.1),
+// (6.2), and its coupling to the device, (6.9). A generalised displacement, which the dissertation calls an
+// acceleration, consists of a translation (three metres) and a rotation (three radians) per unit step. A
+// rotation is a rotation vector in the world frame; its exponential map is applied from the left.
 #pragma once
 
 #include <limits>
@@ -18,6 +21,7 @@ enum class ContactRule { look_ahead, voxels, continuous };
 enum class TorqueRule { inverse_jacobian, printed };  // torque of (6.9)
 enum class MotionMetric { tool, coupling };           // M of (6.4)
 
+// Settings of the 6-DOF renderer, including the choices between different readings of an equation.
 struct ToolParameters {
   ContactRule contact_rule = ContactRule::look_ahead;
   int detections_per_tick = 60;
@@ -55,9 +59,7 @@ inline double max_stiffness_N_per_m(const ToolParameters& p) {
 }
 
 // The settings of the coupling (6.9) with the same stiffness in all directions. The methods for comparison
-// share them.
-
-// The members mean the same as those of ToolParameters.
+// share them. The members mean the same as those of ToolParameters.
 struct EvenCoupling {
   double stiffness_N_per_m = 600, gyration_radius_m = 0.03;
   double max_force_N = 20, max_torque_Nm = 1;
@@ -75,11 +77,6 @@ double max_stiffness_N_per_m(const Settings& s) {
 }
 // Returns tool settings with this coupling and without merged disks; the other settings have their defaults.
 ToolParameters tool_parameters(const EvenCoupling& p);
-
-// Poses of a rigid tool and the small motions between them, (6.1), (6.2). A generalised displacement, which
-// the dissertation calls an acceleration, consists of a translation (three metres) and a rotation (three
-// radians) per unit step. A rotation is a rotation vector in the world frame; its exponential map is applied
-// from the left.
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -110,10 +107,7 @@ double max_point_displacement_m(const Vector6& a_g, double reach_m);
 // Returns the displacement, scaled down so that this bound is at most max_m.
 Vector6 capped(const Vector6& a_g, double reach_m, double max_m);
 
-// Force and torque between tool and device, 6.2.6.
-
 // The commanded position of a slave robot with a tool, 5.2. Its orientation is that of the same pose.
-
 class SlavePosition {
  public:
   explicit SlavePosition(SlaveCommand rule) : rule_(rule) {}

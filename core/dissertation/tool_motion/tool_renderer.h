@@ -1,4 +1,5 @@
-// Moves the tool towards the device in one tick: the algorithm of 6.2.5, in three variants ("rules").
+// 6-DOF rendering of streaming point clouds with a rigid tool, chapter 6. The motion of the tool towards the
+// device in one tick is the algorithm of 6.2.5, in three variants ("rules").
 #pragma once
 
 #include <algorithm>
@@ -16,7 +17,6 @@ namespace remote_touch {
 
 // Detects whether a tool still approaches its device within a tick. Steps that move back and forth forever
 // count as rest, however long they are.
-
 class MotionProgress {
  public:
   // min_m: an approach by this or less is no progress. patience: number of successive updates without
@@ -72,8 +72,6 @@ class ToolMotion {
 
 // The tool has to outlive the result; for ContactRule::continuous it is made with outer_field.
 std::unique_ptr<ToolMotion> make_tool_motion(const ToolParameters& parameters, const VoxelTool& tool);
-
-// 6-DOF rendering of streaming point clouds with a rigid tool, chapter 6.
 
 // The motion of a surface from one frame to the next, as a motion of the tool: world axes, about its centre
 // of mass.

@@ -66,7 +66,6 @@ class FixtureRule {
 };
 
 // A rule that selects every measured point of a frame, as in 5.3.3.
-
 class Everywhere final : public FixtureRule {
  public:
   struct Settings {
@@ -80,7 +79,6 @@ Parameters parameters(Everywhere::Settings& s);
 std::string validate(const Everywhere::Settings& s);
 
 // A rule that selects the points on one side of a plane, as in 5.3.2.
-
 class HalfSpace final : public FixtureRule {
  public:
   struct Settings {
@@ -103,7 +101,6 @@ Parameters parameters(HalfSpace::Settings& s);
 std::string validate(const HalfSpace::Settings& s);
 
 // A rule that selects points by their colour, 7.3.2: the hue marks objects to protect or to guide to.
-
 class HueRange final : public FixtureRule {
  public:
   struct Settings {
@@ -141,7 +138,6 @@ std::string validate(const HueRange::Settings& s);
 
 // A rule that selects the points around a centre: a position in the world, or the point that a pixel has in
 // each frame.
-
 class NearPoint final : public FixtureRule {
  public:
   struct Settings {

@@ -126,7 +126,7 @@ Table with_second_implementation(Table regions) {
 }
 
 // Returns, for each noise strength, the acceleration at which half of the lifts pop through, with its
-// interval (limit.h); the end of the map if that is beyond it; NaN where the curve rises and falls.
+// interval (curve_fits.h); the end of the map if that is beyond it; NaN where the curve rises and falls.
 Table contour(const std::string& name, const SweepResult& result) {
   const std::vector<double>& popped = result.measure("popped_through");
   TableRows rows;

@@ -1,7 +1,7 @@
 // The depth pipeline of core/dissertation/depth in OpenCL C 1.2. The kernels do the operations of
-// core/kernels/depth_kernels.cpp and plane_normals.cpp, and of the hues of
-// core/dissertation/virtual_fixtures, for each pixel in the same order, so that the bits are the same. A
-// change of one must be made in the other too; tests/runners/experiment/opencl compares them.
+// core/kernels/depth_kernels.cpp, and of the hues of core/dissertation/virtual_fixtures, for each pixel in the
+// same order, so that the bits are the same. A change of one must be made in the other too;
+// tests/runners/experiment/opencl compares them.
 //
 // A work item is a pixel. Images have rows of `stride` pixels. Pixels beyond the camera's width are holes.
 // Integer inputs, and the columns of the cloud, have rows of the camera's `width`. The columns lie one after
@@ -127,7 +127,7 @@ __kernel void filter_depths(__global const double* restrict depth_m, __global co
   smooth_z[here] = measured(depth) ? (float)((depth + change_unit_m * more) * smooth_scale) : NOWHERE;
 }
 
-// The moments in sheared coordinates, as in plane_normals.cpp.
+// The moments in sheared coordinates, as in depth_kernels.cpp.
 typedef struct {
   float one, i, j, ii, ij, jj;
 } Sums;

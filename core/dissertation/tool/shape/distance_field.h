@@ -16,7 +16,6 @@ namespace remote_touch {
 
 // The trilinear field in one cell of a tool's grid, m. Positions are relative to the cell's first node, in
 // units of the cell's edge.
-
 class CellField {
  public:
   CellField(const VoxelGrid& grid, const std::vector<float>& nodes, const std::array<int, 3>& cell) {
@@ -79,7 +78,6 @@ double max_slope(const VoxelGrid& grid, const std::vector<float>& distance_m,
 
 // Bounds of the slope of a trilinear field around a position: the range of its gradient in blocks of cells.
 // They show with one table access that a point which slides along a flat face of a tool stays outside.
-
 class SlopeBlocks {
  public:
   static constexpr int kShift = 2, kSize = 1 << kShift;  // cells along a block

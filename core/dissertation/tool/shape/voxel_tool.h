@@ -83,7 +83,6 @@ VoxelTool make_voxel_tool(TriangleMesh mesh, const VoxelToolSettings& settings, 
                           const std::string& name = "mesh");
 
 // Volume, centre of mass and inertia of a solid of uniform density.
-
 struct MassProperties {
   double volume_m3 = 0;
   Vec3 centre = Vec3::Zero();
@@ -100,7 +99,6 @@ MassProperties mass_properties(const VoxelGrid& grid, const std::vector<std::uin
 
 // The surface of a tool as points with normals: the pointshell of W. McNeely, K. Puterbaugh and J. Troy, "Six
 // degree-of-freedom haptic rendering using voxel sampling", SIGGRAPH 1999.
-
 struct Pointshell {
   std::vector<Vec3> p_T, n_T;  // n_T: unit, into the tool
 
