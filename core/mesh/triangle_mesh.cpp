@@ -9,8 +9,6 @@
 #include <set>
 #include <tuple>
 
-#include "core/points/vector.h"
-
 namespace remote_touch {
 namespace {
 
@@ -437,6 +435,24 @@ std::string text(const MeshRepair& done) {
   add("turned", done.flipped_triangles, "triangles");
   add("filled", done.filled_holes, "holes");
   return all.empty() ? "nothing" : all;
+}
+
+std::vector<Vec3> surface_points(const TriangleMesh& mesh, double spacing_m) {
+  std::vector<Vec3> points = mesh.vertices;
+  for (const auto& corners : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[static_cast<std::size_t>(corners[0])],
+               &b = mesh.vertices[static_cast<std::size_t>(corners[1])],
+               &c = mesh.vertices[static_cast<std::size_t>(corners[2])];
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    constexpr double kMostAlong = 100;
+    const int n = static_cast<int>(std::min(std::ceil(longest / spacing_m), kMostAlong));
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; i + j <= n; ++j)
+        if (i + j > 0 && j < n)
+          points.push_back(a + (static_cast<double>(i) / n) * (b - a) +
+                           (static_cast<double>(j) / n) * (c - a));
+  }
+  return points;
 }
 
 }  // namespace remote_touch

@@ -27,6 +27,10 @@ inline bool has_its_vertices(const TriangleMesh& mesh) {
   });
 }
 
+// Returns the vertices, and points of the triangles no farther apart than spacing_m, or than a hundredth of
+// the longest side of a very large triangle.
+std::vector<Vec3> surface_points(const TriangleMesh& mesh, double spacing_m);
+
 // Cuts a polygon, concave ones too, into triangles. Returns each triangle as the indices of its corners in
 // the list, in the direction of the polygon. Their areas sum up to the area of the polygon: they neither
 // overlap nor leave it. A convex polygon becomes a fan about its first corner. Empty for a polygon whose

@@ -2,36 +2,14 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/beyond/tracked_surface/height_map.h"
-#include "core/points/vector.h"
 
 namespace remote_touch {
 namespace {
-
-// Returns the vertices, and points of the triangles no farther apart than spacing_m, or than a hundredth of
-// the longest side of a very large triangle.
-std::vector<Vec3> surface_points(const TriangleMesh& mesh, double spacing_m) {
-  std::vector<Vec3> points = mesh.vertices;
-  for (const auto& corners : mesh.triangles) {
-    const Vec3 &a = mesh.vertices[static_cast<std::size_t>(corners[0])],
-               &b = mesh.vertices[static_cast<std::size_t>(corners[1])],
-               &c = mesh.vertices[static_cast<std::size_t>(corners[2])];
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    constexpr double kMostAlong = 100;
-    const int n = static_cast<int>(std::min(std::ceil(longest / spacing_m), kMostAlong));
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; i + j <= n; ++j)
-        if (i + j > 0 && j < n)
-          points.push_back(a + (static_cast<double>(i) / n) * (b - a) +
-                           (static_cast<double>(j) / n) * (c - a));
-  }
-  return points;
-}
 
 // Stores for every point the squared distance to the nearest chosen point.
 class FarthestPoints {
@@ -73,8 +51,7 @@ Matrix6 transport(const Vec3& by, double lever_m) {
 // Lengths are in units of the patches (contact radii) unless the name has another unit.
 constexpr double kGroupRadius = 6.5;  // largest radius of a group of positions on the tool
 constexpr double kShownBeyond = 0.8;  // points up to this distance from the tool must be in the patch
-constexpr double kMinReach = 1, kMaxReach = 5,
-                 kContactReach = 3;      // motion of the tool until patches are updated
+constexpr double kMinReach = 1, kMaxReach = 5, kContactReach = 3;  // motion until patches are updated
 constexpr double kOnSheet = 0.5;         // largest distance of a contact from its sheet
 constexpr double kAlike = 0.7;           // minimum cosine between the normals of a contact and of its sheet
 constexpr double kSameDirection = 0.95;  // minimum cosine between the normals of contacts with one face
@@ -271,8 +248,7 @@ int SheetPatches::patch_of(const ToolHold& hold, const ToolContact& contact) con
 void SheetPatches::count_contacts(const ToolHold& hold) {
   for (Patch& patch : patches_) patch.contacts = 0;
   for (std::size_t k = 0; k < hold.contacts.size(); ++k) {
-    const bool touches = hold.contacts[k].depth_m >= -kTouching_m;
-    patch_of_[k] = touches ? patch_of(hold, hold.contacts[k]) : -1;
+    patch_of_[k] = hold.contacts[k].depth_m >= -kTouching_m ? patch_of(hold, hold.contacts[k]) : -1;
     if (patch_of_[k] >= 0) ++patches_[static_cast<std::size_t>(patch_of_[k])].contacts;
   }
 }

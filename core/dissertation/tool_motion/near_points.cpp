@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "core/dissertation/tool_motion/contact_thinning.h"
-#include "core/dissertation/tool_motion/touch_finder.h"
 
 namespace remote_touch {
 namespace {

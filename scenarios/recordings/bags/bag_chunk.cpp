@@ -1,4 +1,4 @@
-#include "scenarios/recordings/bags/bag_chunk.h"
+#include "scenarios/recordings/bags/bag_file.h"
 
 #include <bzlib.h>
 #include <lz4frame.h>

@@ -17,7 +17,6 @@
 #include <utility>
 
 #include "scenarios/files/input_files.h"
-#include "scenarios/recordings/bags/bag_chunk.h"
 
 namespace remote_touch {
 

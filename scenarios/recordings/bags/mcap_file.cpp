@@ -8,7 +8,7 @@
 
 #include "core/parameters/parameter.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/recordings/bags/bag_chunk.h"
+#include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/recordings/bags/messages.h"
 
 namespace remote_touch {
