@@ -5,7 +5,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/theory/exact_contacts.h"
+#include "analysis/theory/surface_contacts.h"
 #include "core/kernels/isa.h"
 #include "core/points/point_cloud.h"
 #include "runners/evaluation/figures/parts/ball_gaps.h"

@@ -67,7 +67,7 @@ class ContactWatch {
 
   // Returns a note "lost at the first touch" if the proxy is behind the true surface at the end, passed it
   // before a third frame came after the first contact, and the surface moved towards the proxy. Case 1 and
-  // case 2 of analysis/theory/pop_through_limits.h lose the proxy at the first and second frame after the
+  // case 2 of analysis/theory/surface_contacts.h lose the proxy at the first and second frame after the
   // touch. After two frames the proxy has an estimate of the velocity. ball_radius_m: as in spacing_notes().
   std::vector<Note> first_touch_notes(const Scenario& scenario, double ball_radius_m,
                                       const Kernels& kernels) const;

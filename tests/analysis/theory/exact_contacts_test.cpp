@@ -1,4 +1,4 @@
-#include "analysis/theory/exact_contacts.h"
+#include "analysis/theory/surface_contacts.h"
 
 #include <gtest/gtest.h>
 

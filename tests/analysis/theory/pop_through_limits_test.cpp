@@ -1,4 +1,4 @@
-#include "analysis/theory/pop_through_limits.h"
+#include "analysis/theory/surface_contacts.h"
 
 #include <gtest/gtest.h>
 

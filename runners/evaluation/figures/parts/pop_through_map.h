@@ -9,7 +9,7 @@
 
 #include "analysis/measures/curve_fits.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/theory/pop_through_limits.h"
+#include "analysis/theory/surface_contacts.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 

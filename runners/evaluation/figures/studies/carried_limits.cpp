@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/theory/exact_contacts.h"
+#include "analysis/theory/surface_contacts.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"

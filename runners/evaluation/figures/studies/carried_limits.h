@@ -76,8 +76,8 @@ void add_limit_panel(Figure& figure, const Table& limits, const DerivedLimit& de
                      const LimitLabels& labels, const PanelFrame& frame, int derived_samples = 61);
 
 // Distances by which one frame may move an edge, a corner, a ball or a plane against the plate of figure
-// tool-shapes, by each contact rule: the closed forms of analysis/theory/exact_contacts.h for what counts as
-// inside by that rule.
+// tool-shapes, by each contact rule: the closed forms of analysis/theory/surface_contacts.h for what counts
+// as inside by that rule.
 
 // Settings of the sweeps tool-shape-*, tool-walls and tool-wall-sides.
 inline constexpr double kJumpFrames_hz = 30, kHalfPlate_m = 0.02, kPlate_m = 0.01;

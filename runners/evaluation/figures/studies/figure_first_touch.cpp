@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/theory/pop_through_limits.h"
+#include "analysis/theory/surface_contacts.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {

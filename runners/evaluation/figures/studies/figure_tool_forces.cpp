@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "analysis/measures/interval_estimates.h"
-#include "analysis/theory/exact_contacts.h"
+#include "analysis/theory/surface_contacts.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

@@ -8,7 +8,7 @@
 
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/tally_file.h"
-#include "analysis/theory/pop_through_limits.h"
+#include "analysis/theory/surface_contacts.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/measures.h"
-#include "analysis/theory/pop_through_limits.h"
+#include "analysis/theory/surface_contacts.h"
 #include "core/points/neighbour_search.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/scenes.h"
