@@ -39,6 +39,84 @@ double turning_stiffness(const EvenSpring& spring) {
   return spring.stiffness_N_per_m * spring.gyration_radius_m * spring.gyration_radius_m;
 }
 
+// Probability that a standard normal number is larger than x.
+double above(double x) {
+  return 0.5 * std::erfc(x * std::sqrt(0.5));
+}
+
+// Returns the position at which a decreasing function passes one half, by bisection.
+template <class Function>
+double median(double low, double high, Function&& falling) {
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (falling(middle) > 0.5 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// Returns the distance from the proxy's centre to the plane if the nearest points are this far from the
+// centre.
+double plane_distance_m(const FirstTouch& touch, double point_distance_m) {
+  const double b = touch.nearest_beside_m;
+  return std::sqrt(point_distance_m * point_distance_m - b * b);
+}
+
+double resting_m(const FirstTouch& touch) {
+  return plane_distance_m(touch, 0.5 * (touch.r1_m + touch.r2_m));
+}
+
+double plane_height(const Trace& trace, std::size_t i, const Vec3& normal) {
+  return trace.proxy_position_m[i].dot(normal) - trace.signed_distance_m[i];
+}
+
+// Returns the normal that (4.3) used. If (4.3) moved nothing, it is the normal with which the tick before
+// ended.
+Vec3 normal_of_update(const Trace& trace, std::size_t first_tick) {
+  const Vec3 frame_correction = trace.frame_correction_m[first_tick];
+  return frame_correction.isZero(0) ? trace.normal[first_tick - 1] : Vec3(frame_correction.normalized());
+}
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+
+bool counts(const LiftUpdate& update, SettledFrom settled) {
+  return update.above_before && update.frame > settled.frame;
+}
+
+struct Sums {
+  double sum = 0, squares = 0;
+  std::size_t count = 0;
+  void add(double value) {
+    sum += value, squares += value * value;
+    ++count;
+  }
+  double mean() const { return sum / static_cast<double>(count); }
+  double variance() const {
+    const double n = static_cast<double>(count);
+    const double value = n > 1 ? (squares - sum * sum / n) / (n - 1) : kNotKnown;
+    return value < 0 ? 0 : value;  // NaN stays NaN
+  }
+  double deviation() const { return std::sqrt(variance()); }
+};
+
+// Error of v_hat_j against v_{j-1}, which is v_j, the velocity of the update itself, without acceleration.
+double velocity_error(const LiftUpdate& update) {
+  return update.estimate_m_per_s - update.velocity_m_per_s;
+}
+
+// 1 - correlation of the velocity error at one update with that at the next.
+double gain(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double mean) {
+  double product = 0, square = 0;
+  for (const std::vector<LiftUpdate>& lift : lifts)
+    for (std::size_t i = 1; i < lift.size(); ++i) {
+      if (!counts(lift[i - 1], settled) || !counts(lift[i], settled)) continue;
+      const double before = velocity_error(lift[i - 1]) - mean, after = velocity_error(lift[i]) - mean;
+      product += before * after, square += before * before;
+    }
+  // Below this the errors are rounding, not noise.
+  constexpr double kRounding = 1e-16;
+  return square > kRounding ? std::clamp(1 - product / square, 0.0, 1.0) : 1;
+}
+
 }  // namespace
 
 // The derivative of the energy k (h - height)^2 / 2 + k r^2 (phi - angle)^2 / 2 increases between flat and
@@ -87,25 +165,6 @@ RestingWrench bar_in_slot(double a_m, double b_m, double w_m, const EvenSpring& 
   const double beyond = std::max(0.0, std::abs(angle_rad) - stop_angle_rad(a_m, b_m, w_m));
   return {{0, 0}, -std::copysign(turning_stiffness(spring) * beyond, angle_rad)};
 }
-
-namespace {
-
-// Probability that a standard normal number is larger than x.
-double above(double x) {
-  return 0.5 * std::erfc(x * std::sqrt(0.5));
-}
-
-// Returns the position at which a decreasing function passes one half, by bisection.
-template <class Function>
-double median(double low, double high, Function&& falling) {
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (low + high);
-    (falling(middle) > 0.5 ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-}  // namespace
 
 UnderPlate under_edge(double slope_rad, double half_m, double turn_rad) {
   return {half_m * std::tan(slope_rad + turn_rad), half_m * std::tan(std::max(0.0, turn_rad - slope_rad))};
@@ -215,21 +274,6 @@ double scatter_bound(const Lift& lift, const NoiseEffect& noise) {
   return low;
 }
 
-namespace {
-
-// Returns the distance from the proxy's centre to the plane if the nearest points are this far from the
-// centre.
-double plane_distance_m(const FirstTouch& touch, double point_distance_m) {
-  const double b = touch.nearest_beside_m;
-  return std::sqrt(point_distance_m * point_distance_m - b * b);
-}
-
-double resting_m(const FirstTouch& touch) {
-  return plane_distance_m(touch, 0.5 * (touch.r1_m + touch.r2_m));
-}
-
-}  // namespace
-
 double max_first_touch_velocity(const FirstTouch& touch) {
   return plane_distance_m(touch, touch.r1_m) * touch.frame_rate_hz;
 }
@@ -268,21 +312,6 @@ double rms_residual(const PopThroughLaw& law, const std::vector<LimitPoint>& poi
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
-namespace {
-
-double plane_height(const Trace& trace, std::size_t i, const Vec3& normal) {
-  return trace.proxy_position_m[i].dot(normal) - trace.signed_distance_m[i];
-}
-
-// Returns the normal that (4.3) used. If (4.3) moved nothing, it is the normal with which the tick before
-// ended.
-Vec3 normal_of_update(const Trace& trace, std::size_t first_tick) {
-  const Vec3 frame_correction = trace.frame_correction_m[first_tick];
-  return frame_correction.isZero(0) ? trace.normal[first_tick - 1] : Vec3(frame_correction.normalized());
-}
-
-}  // namespace
-
 std::vector<LiftUpdate> lift_updates(const Trace& trace, const Vec3& normal, double r1_m,
                                      double frame_rate_hz) {
   std::vector<LiftUpdate> updates;
@@ -303,51 +332,6 @@ std::vector<LiftUpdate> lift_updates(const Trace& trace, const Vec3& normal, dou
   if (!updates.empty()) updates.back().above_after = trace.signed_distance_m.back() > 0;
   return updates;
 }
-
-namespace {
-
-constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
-
-bool counts(const LiftUpdate& update, SettledFrom settled) {
-  return update.above_before && update.frame > settled.frame;
-}
-
-struct Sums {
-  double sum = 0, squares = 0;
-  std::size_t count = 0;
-  void add(double value) {
-    sum += value, squares += value * value;
-    ++count;
-  }
-  double mean() const { return sum / static_cast<double>(count); }
-  double variance() const {
-    const double n = static_cast<double>(count);
-    const double value = n > 1 ? (squares - sum * sum / n) / (n - 1) : kNotKnown;
-    return value < 0 ? 0 : value;  // NaN stays NaN
-  }
-  double deviation() const { return std::sqrt(variance()); }
-};
-
-// Error of v_hat_j against v_{j-1}, which is v_j, the velocity of the update itself, without acceleration.
-double velocity_error(const LiftUpdate& update) {
-  return update.estimate_m_per_s - update.velocity_m_per_s;
-}
-
-// 1 - correlation of the velocity error at one update with that at the next.
-double gain(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double mean) {
-  double product = 0, square = 0;
-  for (const std::vector<LiftUpdate>& lift : lifts)
-    for (std::size_t i = 1; i < lift.size(); ++i) {
-      if (!counts(lift[i - 1], settled) || !counts(lift[i], settled)) continue;
-      const double before = velocity_error(lift[i - 1]) - mean, after = velocity_error(lift[i]) - mean;
-      product += before * after, square += before * before;
-    }
-  // Below this the errors are rounding, not noise.
-  constexpr double kRounding = 1e-16;
-  return square > kRounding ? std::clamp(1 - product / square, 0.0, 1.0) : 1;
-}
-
-}  // namespace
 
 NoiseEffect noise_effect(const std::vector<std::vector<LiftUpdate>>& lifts, SettledFrom settled, double r1_m,
                          double frame_rate_hz) {

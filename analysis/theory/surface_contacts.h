@@ -1,4 +1,6 @@
-// Contacts with exact surfaces in closed form: what a ball can touch, and how a rigid tool rests and jumps.
+// Contacts with a surface in theory: what a ball can touch, how a rigid tool rests and jumps, and the limits
+// of the motion of a surface beyond which it passes the proxy, with the quantities of 4.4 that they depend
+// on.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,13 +11,11 @@
 
 namespace remote_touch {
 
-// The surface that a ball can touch: the morphological closing of a profile with a ball, the oracle of Fig
-// 4.14.
-
-// heights[i] is the profile at position i * spacing. The closing at a position is the lowest point that a
-// ball of that radius, rolled over the profile from above, can reach there; never below the profile. The
-// ball's centre is tried at the samples only, for which the result is exact. Within a radius of the ends the
-// ball rests on the samples that exist. All lengths in one unit.
+// Returns the surface that a ball can touch: the morphological closing of a profile with a ball, the oracle
+// of Fig 4.14. heights[i] is the profile at position i * spacing. The closing at a position is the lowest
+// point that a ball of that radius, rolled over the profile from above, can reach there; never below the
+// profile. The ball's centre is tried at the samples only, for which the result is exact. Within a radius of
+// the ends the ball rests on the samples that exist. All lengths in one unit.
 std::vector<double> ball_closing(const std::vector<double>& heights, double spacing, double radius);
 
 // Closed forms of the force and torque between a hand and a rigid tool that rests without friction on exact
@@ -86,9 +86,6 @@ struct NoisyPoint {
 // have noise of sigma along the plate's thickness, drawn anew in each frame. The plate rests on the highest
 // point of the frame before, at the median of its position. pre: some points are under the plate.
 double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, double sigma_m);
-
-// Limits of the motion of a surface, beyond which it passes the proxy, and the quantities of 4.4 that they
-// depend on.
 
 struct Trace;
 
