@@ -248,7 +248,7 @@ std::vector<Note> ContactWatch::start_notes(const Scenario& scenario, double res
 
 std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, double ball_radius_m,
                                                   const Kernels& kernels) const {
-  constexpr int kFrames = 2;  // see pop_through_limits.h
+  constexpr int kFrames = 2;  // see surface_contacts.h
   if (!crossing_ || crossing_->frames > kFrames) return {};
   const Site& site = crossing_->site;
   const double before_s = std::max(0.0, site.time_s - 1 / scenario.frame_rate_hz());  // no NaN

@@ -131,7 +131,7 @@ Table formula_table(const Losses& losses) {
                   rows);
 }
 
-// The lost start times form one interval (pop_through_limits.h). The number of evenly spaced start times in
+// The lost start times form one interval (surface_contacts.h). The number of evenly spaced start times in
 // an interval differs from the formula by less than one.
 void add_formula_claim(Figure& figure, const Losses& losses, const std::string& where) {
   Claims(figure, where)
