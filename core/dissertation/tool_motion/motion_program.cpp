@@ -78,7 +78,7 @@ struct Square {
 // their changes: the inner part of the method of Goldfarb and Idnani (1983).
 
 // The rounding error of row . y, for a row of unit length and coordinates of y up to 1.
-constexpr double kRounding = 1e-14;
+constexpr double kRowRounding = 1e-14;
 // A row counts as a linear combination of other rows if the squared length of its component normal to them is
 // at most this value.
 constexpr double kParallelSquared = 1e-16;
@@ -111,7 +111,7 @@ struct ActiveRows {
                             : std::numeric_limits<double>::infinity();
       int leaving = -1;
       for (int j = 0; j < count; ++j)
-        if (coefficient[j] > kRounding && multiplier[j] < step * coefficient[j])
+        if (coefficient[j] > kRowRounding && multiplier[j] < step * coefficient[j])
           step = multiplier[j] / coefficient[j], leaving = j;
       if (!(step < std::numeric_limits<double>::infinity())) return false;
       if (is_free) y.add(step, outside);
@@ -300,12 +300,12 @@ ProgramResult<N> QuadraticProgram<N>::nearest(const Vector& target) const {
     std::memcpy(plain, y.pair, sizeof plain);
     const Violation worst = max_violation(plain);
     const double scale = std::max(start_scale, y.max_abs());
-    if (worst.distance <= std::max(min, kRounding * scale)) {
+    if (worst.distance <= std::max(min, kRowRounding * scale)) {
       result.status = ProgramStatus::optimal;
       Packed<N> distance;
       for (int j = 0; j < held.count; ++j)
         distance.set(j, bound(held.number[j]) - unit_row(held.number[j]).dot(y));
-      if (settled || distance.max_abs() <= kRounding * scale) break;
+      if (settled || distance.max_abs() <= kRowRounding * scale) break;
       held.settle(distance, start, y);
       settled = true;
       continue;
