@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 
 namespace remote_touch {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/points/point_cloud.h"
 
 namespace remote_touch::benchmarks {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/rendering/frame.h"
 
 namespace remote_touch::benchmarks {

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/beyond/tracked_surface/sheet_tracker.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/motion_program.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/tiled_cloud.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/point_kernels.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/point_cloud.h"

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/contact_thinning.h"
 #include "core/dissertation/tool_motion/look_ahead_motion.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/rendering/renderer.h"
 

@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "core/dissertation/tool/shape/distance_field.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/contact_thinning.h"
 #include "core/dissertation/tool_motion/motion_program.h"
 #include "core/dissertation/tool_motion/near_points.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
+#include "core/dissertation/tool_shape/distance_field.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/tool_kernels.h"
 
 namespace remote_touch {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 
 namespace remote_touch {
 

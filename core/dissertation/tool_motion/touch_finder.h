@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "core/dissertation/tool/shape/distance_field.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/tiled_cloud.h"
+#include "core/dissertation/tool_shape/distance_field.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/points/neighbour_search.h"
 

@@ -10,7 +10,7 @@
 
 #include "analysis/measures/contact_measures.h"
 #include "analysis/measures/interval_estimates.h"
-#include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/dissertation/tool_shape/generated_tools.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "scenarios/camera/camera_scenes.h"
 

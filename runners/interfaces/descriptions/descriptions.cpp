@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/dissertation/tool_shape/generated_tools.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/scorecard/benchmark.h"

@@ -13,8 +13,8 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/points/vector.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/interface/scenario.h"

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/dissertation/tool_shape/generated_tools.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/parameters/parameter.h"
 #include "tests/support/box_tool.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/dissertation/tool_shape/generated_tools.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"

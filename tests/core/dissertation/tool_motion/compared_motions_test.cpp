@@ -9,8 +9,8 @@
 #include <random>
 #include <set>
 
-#include "core/dissertation/tool/shape/generated_tools.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
+#include "core/dissertation/tool_shape/generated_tools.h"
 #include "core/points/vector.h"
 #include "tests/core/dissertation/tool_motion/free_space.h"
 #include "tests/support/box_tool.h"

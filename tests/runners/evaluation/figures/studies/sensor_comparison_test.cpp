@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/dissertation/tool_shape/generated_tools.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

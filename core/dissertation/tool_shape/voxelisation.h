@@ -1,7 +1,7 @@
 // A mesh as voxels of three values, 6.2.2.
 #pragma once
 
-#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"
 

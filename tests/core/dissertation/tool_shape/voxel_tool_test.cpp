@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/dissertation/tool/shape/distance_field.h"
-#include "core/dissertation/tool/shape/voxelisation.h"
+#include "core/dissertation/tool_shape/distance_field.h"
+#include "core/dissertation/tool_shape/voxelisation.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"

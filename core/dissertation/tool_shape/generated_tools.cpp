@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/generated_tools.h"
+#include "core/dissertation/tool_shape/generated_tools.h"
 
 #include <algorithm>
 #include <cmath>

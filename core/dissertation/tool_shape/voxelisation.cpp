@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/voxelisation.h"
+#include "core/dissertation/tool_shape/voxelisation.h"
 
 #include <algorithm>
 #include <cmath>

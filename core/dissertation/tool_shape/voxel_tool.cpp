@@ -1,12 +1,12 @@
-#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
-#include "core/dissertation/tool/shape/distance_field.h"
-#include "core/dissertation/tool/shape/voxelisation.h"
+#include "core/dissertation/tool_shape/distance_field.h"
+#include "core/dissertation/tool_shape/voxelisation.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/dissertation/tool/shape/voxel_tool.h"
+#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/tool_kernels.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"

@@ -1,9 +1,9 @@
-#include "core/dissertation/tool/shape/voxelisation.h"
+#include "core/dissertation/tool_shape/voxelisation.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "core/dissertation/tool/shape/distance_field.h"
+#include "core/dissertation/tool_shape/distance_field.h"
 #include "tests/support/meshes.h"
 
 namespace remote_touch::voxelisation_test {

@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/distance_field.h"
+#include "core/dissertation/tool_shape/distance_field.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "core/dissertation/tool/shape/voxelisation.h"
+#include "core/dissertation/tool_shape/voxelisation.h"
 #include "tests/support/meshes.h"
 
 namespace remote_touch::distance_field_test {

@@ -1,4 +1,4 @@
-#include "core/dissertation/tool/shape/distance_field.h"
+#include "core/dissertation/tool_shape/distance_field.h"
 
 #include <limits>
 
