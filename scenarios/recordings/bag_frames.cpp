@@ -7,7 +7,7 @@
 
 #include "core/parameters/parameter.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/recordings/bags/frames_from_messages.h"
+#include "scenarios/recordings/frames_from_messages.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

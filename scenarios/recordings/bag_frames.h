@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/points/point_cloud.h"
-#include "scenarios/recordings/bags/bag_file.h"
-#include "scenarios/recordings/bags/frames_from_messages.h"
-#include "scenarios/recordings/bags/messages.h"
+#include "scenarios/recordings/bag_file.h"
+#include "scenarios/recordings/frames_from_messages.h"
+#include "scenarios/recordings/messages.h"
 
 namespace remote_touch {
 

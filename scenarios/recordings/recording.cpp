@@ -13,8 +13,8 @@
 #include "scenarios/files/input_files.h"
 #include "scenarios/files/pcd_file.h"
 #include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/recordings/bag_file.h"
 #include "scenarios/recordings/bag_frames.h"
-#include "scenarios/recordings/bags/bag_file.h"
 #include "scenarios/recordings/camera_path.h"
 #include "scenarios/recordings/image_folders.h"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "scenarios/recordings/bag_frames.h"
-#include "scenarios/recordings/bags/frames_from_messages.h"
+#include "scenarios/recordings/frames_from_messages.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::ros_message {

@@ -1,4 +1,4 @@
-#include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/bag_file.h"
 
 #include <bzlib.h>
 #include <lz4frame.h>

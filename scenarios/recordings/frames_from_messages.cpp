@@ -1,4 +1,4 @@
-#include "scenarios/recordings/bags/frames_from_messages.h"
+#include "scenarios/recordings/frames_from_messages.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "scenarios/recordings/bags/messages.h"
+#include "scenarios/recordings/messages.h"
 
 #include <bit>
 #include <cmath>

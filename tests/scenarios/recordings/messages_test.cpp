@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/points/point_cloud.h"
-#include "scenarios/recordings/bags/frames_from_messages.h"
+#include "scenarios/recordings/frames_from_messages.h"
 #include "tests/support/bag_files.h"
 #include "tests/support/test_files.h"
 

@@ -1,5 +1,5 @@
 // Tests bags of all kinds, intact and damaged. Bags of other writers are tested in tests/system/bags.
-#include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/bag_file.h"
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>

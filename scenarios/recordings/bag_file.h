@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "scenarios/files/input_files.h"
-#include "scenarios/recordings/bags/messages.h"
+#include "scenarios/recordings/messages.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/bag_file.h"
 
 #include <fcntl.h>
 #include <sqlite3.h>

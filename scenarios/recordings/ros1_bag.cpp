@@ -6,7 +6,7 @@
 
 #include "core/parameters/parameter.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/recordings/bags/bag_file.h"
+#include "scenarios/recordings/bag_file.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/points/point_cloud.h"
-#include "scenarios/recordings/bags/messages.h"
+#include "scenarios/recordings/messages.h"
 
 namespace remote_touch {
 
