@@ -14,9 +14,9 @@
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/camera/depth_sensor.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/mesh_object.h"
+#include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {
 

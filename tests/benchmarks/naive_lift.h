@@ -8,7 +8,7 @@
 
 #include "core/dissertation/proxy/proxy_motion.h"
 #include "core/points/vector.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 
 namespace remote_touch::naive {
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "scenarios/camera/depth_camera.h"
-#include "scenarios/camera/sensor_faults.h"
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/depth_camera.h"
+#include "scenarios/simulated/sensor_faults.h"
+#include "scenarios/simulated/shape.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch {

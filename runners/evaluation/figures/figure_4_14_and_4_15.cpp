@@ -13,7 +13,7 @@
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"
 #include "runners/evaluation/figures/parts/fixture_run.h"
-#include "scenarios/camera/depth_camera.h"
+#include "scenarios/simulated/depth_camera.h"
 
 namespace remote_touch {
 

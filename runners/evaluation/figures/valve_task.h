@@ -7,7 +7,7 @@
 
 #include "core/dissertation/tool_shape/voxel_tool.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
-#include "scenarios/camera/camera_scenes.h"
+#include "scenarios/simulated/camera_scenes.h"
 
 namespace remote_touch {
 

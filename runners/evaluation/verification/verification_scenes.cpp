@@ -9,7 +9,7 @@
 #include "core/points/neighbour_search.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 
 namespace remote_touch {
 namespace {

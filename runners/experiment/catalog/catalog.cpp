@@ -15,12 +15,12 @@
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "runners/experiment/sessions/session_scene.h"
-#include "scenarios/camera/camera_scenes.h"
-#include "scenarios/camera/depth_camera.h"
 #include "scenarios/recordings/recorded_scene.h"
-#include "scenarios/synthetic/grid_scenes.h"
-#include "scenarios/synthetic/panel_scenes.h"
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/camera_scenes.h"
+#include "scenarios/simulated/depth_camera.h"
+#include "scenarios/simulated/grid_scenes.h"
+#include "scenarios/simulated/panel_scenes.h"
+#include "scenarios/simulated/shape.h"
 
 namespace remote_touch {
 namespace {

@@ -16,7 +16,7 @@
 #include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/sessions/session_file.h"
-#include "scenarios/camera/sensor_faults.h"
+#include "scenarios/simulated/sensor_faults.h"
 
 namespace remote_touch {
 

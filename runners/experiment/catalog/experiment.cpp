@@ -14,8 +14,8 @@
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "scenarios/camera/depth_sensor.h"
 #include "scenarios/files/input_files.h"
+#include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/points/point_cloud.h"
 #include "core/rivals/rival_renderer.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::implicit_surface_renderer_test {

@@ -10,7 +10,7 @@
 
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::mls_surface_renderer_test {

@@ -12,11 +12,11 @@
 #include <tuple>
 #include <vector>
 
-#include "scenarios/camera/camera_scenes.h"
-#include "scenarios/camera/depth_camera.h"
-#include "scenarios/synthetic/grid_scenes.h"
-#include "scenarios/synthetic/panel_scenes.h"
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/camera_scenes.h"
+#include "scenarios/simulated/depth_camera.h"
+#include "scenarios/simulated/grid_scenes.h"
+#include "scenarios/simulated/panel_scenes.h"
+#include "scenarios/simulated/shape.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::scenario_test {

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "core/points/vector.h"
-#include "scenarios/camera/sensor_faults.h"
-#include "scenarios/synthetic/grid_scenes.h"
-#include "scenarios/synthetic/panel_scenes.h"
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/grid_scenes.h"
+#include "scenarios/simulated/panel_scenes.h"
+#include "scenarios/simulated/sensor_faults.h"
+#include "scenarios/simulated/shape.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::true_normal_test {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "analysis/measures/contact_measures.h"
-#include "scenarios/camera/depth_sensor.h"
+#include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {
 

@@ -11,7 +11,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/shape.h"
 
 namespace remote_touch {
 

@@ -7,7 +7,7 @@
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"
-#include "scenarios/camera/camera_scenes.h"
+#include "scenarios/simulated/camera_scenes.h"
 
 namespace remote_touch {
 

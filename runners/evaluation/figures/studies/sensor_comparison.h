@@ -12,10 +12,10 @@
 #include "core/kernels/kernels.h"
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
-#include "scenarios/camera/depth_sensor.h"
 #include "scenarios/interface/scenario.h"
 #include "scenarios/meshes/mesh_scene.h"
 #include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {
 

@@ -15,7 +15,7 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

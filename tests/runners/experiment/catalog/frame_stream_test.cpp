@@ -11,7 +11,7 @@
 #include "analysis/trace/trace.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "scenarios/recordings/recorded_scene.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 #include "tests/doubles/frame_recorder.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

@@ -9,7 +9,7 @@
 #include "analysis/measures/force_fidelity.h"
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

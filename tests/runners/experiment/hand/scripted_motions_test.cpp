@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::scripted_motions_test {

@@ -9,10 +9,10 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/image_scan.h"
 #include "runners/experiment/hand/scripted_motions.h"
-#include "scenarios/camera/camera_scenes.h"
-#include "scenarios/camera/depth_camera.h"
-#include "scenarios/synthetic/grid_scenes.h"
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/camera_scenes.h"
+#include "scenarios/simulated/depth_camera.h"
+#include "scenarios/simulated/grid_scenes.h"
+#include "scenarios/simulated/shape.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::trajectory_test {

@@ -1,5 +1,5 @@
 // A lift against its closed form: the motion is a function of time, which frames sample.
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/shape.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

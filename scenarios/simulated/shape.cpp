@@ -1,4 +1,4 @@
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/points/vector.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "scenarios/synthetic/panel_scenes.h"
+#include "scenarios/simulated/panel_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::panel_scenes_test {

@@ -1,4 +1,4 @@
-#include "scenarios/camera/camera_scenes.h"
+#include "scenarios/simulated/camera_scenes.h"
 
 #include <gtest/gtest.h>
 

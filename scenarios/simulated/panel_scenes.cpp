@@ -1,4 +1,4 @@
-#include "scenarios/synthetic/panel_scenes.h"
+#include "scenarios/simulated/panel_scenes.h"
 
 #include <algorithm>
 #include <array>

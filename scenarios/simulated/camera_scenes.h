@@ -10,8 +10,8 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "scenarios/camera/depth_camera.h"
 #include "scenarios/interface/scenario.h"
+#include "scenarios/simulated/depth_camera.h"
 
 namespace remote_touch {
 

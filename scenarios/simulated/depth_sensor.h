@@ -11,7 +11,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
-#include "scenarios/camera/depth_camera.h"
+#include "scenarios/simulated/depth_camera.h"
 
 namespace remote_touch {
 

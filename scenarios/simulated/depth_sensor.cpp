@@ -1,4 +1,4 @@
-#include "scenarios/camera/depth_sensor.h"
+#include "scenarios/simulated/depth_sensor.h"
 
 #include <algorithm>
 #include <cmath>

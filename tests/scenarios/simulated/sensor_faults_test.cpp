@@ -1,4 +1,4 @@
-#include "scenarios/camera/sensor_faults.h"
+#include "scenarios/simulated/sensor_faults.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 
 #include <algorithm>
 #include <cmath>

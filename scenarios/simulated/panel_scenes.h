@@ -10,7 +10,7 @@
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "scenarios/camera/depth_camera.h"
+#include "scenarios/simulated/depth_camera.h"
 
 #include <algorithm>
 #include <cmath>

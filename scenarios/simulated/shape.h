@@ -7,8 +7,8 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "scenarios/synthetic/grid_scenes.h"
-#include "scenarios/synthetic/panel_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
+#include "scenarios/simulated/panel_scenes.h"
 
 namespace remote_touch {
 

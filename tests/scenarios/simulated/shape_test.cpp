@@ -1,6 +1,6 @@
 // The shapes of moving-shape against brute force over dense samples of their surfaces.
 
-#include "scenarios/synthetic/shape.h"
+#include "scenarios/simulated/shape.h"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "scenarios/synthetic/grid_scenes.h"
+#include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
