@@ -8,8 +8,8 @@
 
 #include "core/points/number_columns.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/meshes/mesh_object.h"
-#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/objects/mesh_object.h"
+#include "scenarios/objects/recorded_truth.h"
 #include "scenarios/recordings/image_folders.h"
 
 namespace remote_touch {

@@ -11,7 +11,7 @@
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/meshes/pose_file.h"
+#include "scenarios/objects/pose_file.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

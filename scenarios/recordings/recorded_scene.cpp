@@ -6,7 +6,7 @@
 #include "core/points/vector.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/meshes/mesh_object.h"
+#include "scenarios/objects/mesh_object.h"
 #include "scenarios/recordings/bag_frames.h"
 
 namespace remote_touch {

@@ -13,7 +13,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/objects/recorded_truth.h"
 #include "scenarios/recordings/camera_path.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/recordings/recording.h"

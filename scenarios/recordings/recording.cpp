@@ -12,7 +12,7 @@
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/files/pcd_file.h"
-#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/objects/recorded_truth.h"
 #include "scenarios/recordings/bag_file.h"
 #include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/camera_path.h"

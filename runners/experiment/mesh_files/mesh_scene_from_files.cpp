@@ -15,7 +15,7 @@
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/meshes/mesh_object.h"
+#include "scenarios/objects/mesh_object.h"
 
 namespace remote_touch {
 namespace {

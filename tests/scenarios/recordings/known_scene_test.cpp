@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/points/vector.h"
-#include "scenarios/meshes/mesh_scene.h"
+#include "scenarios/objects/mesh_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "tests/support/meshes.h"
 #include "tests/support/note_kinds.h"

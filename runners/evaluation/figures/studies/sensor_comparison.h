@@ -13,8 +13,8 @@
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/meshes/mesh_scene.h"
-#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/objects/mesh_scene.h"
+#include "scenarios/objects/recorded_truth.h"
 #include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {

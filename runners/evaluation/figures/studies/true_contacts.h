@@ -12,7 +12,7 @@
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "scenarios/meshes/mesh_scene.h"
+#include "scenarios/objects/mesh_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
 
 namespace remote_touch {

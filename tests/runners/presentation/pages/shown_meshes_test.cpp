@@ -8,7 +8,7 @@
 
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
-#include "scenarios/meshes/mesh_scene.h"
+#include "scenarios/objects/mesh_scene.h"
 #include "tests/core/mesh/mesh_shapes.h"
 #include "tests/support/meshes.h"
 #include "tests/support/recorded_data.h"

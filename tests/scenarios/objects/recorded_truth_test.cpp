@@ -1,5 +1,5 @@
 // The true surface in the frames of a recording, from meshes that a test provides, and what is refused.
-#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/objects/recorded_truth.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/meshes/mesh_object.h"
+#include "scenarios/objects/mesh_object.h"
 
 namespace remote_touch {
 

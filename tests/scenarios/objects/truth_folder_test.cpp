@@ -1,4 +1,4 @@
-#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/objects/recorded_truth.h"
 
 #include <gtest/gtest.h>
 

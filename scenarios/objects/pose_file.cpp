@@ -1,4 +1,4 @@
-#include "scenarios/meshes/pose_file.h"
+#include "scenarios/objects/pose_file.h"
 
 #include <algorithm>
 #include <cmath>

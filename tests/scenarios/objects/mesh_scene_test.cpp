@@ -1,4 +1,4 @@
-#include "scenarios/meshes/mesh_scene.h"
+#include "scenarios/objects/mesh_scene.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>

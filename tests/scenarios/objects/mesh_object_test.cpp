@@ -1,4 +1,4 @@
-#include "scenarios/meshes/mesh_object.h"
+#include "scenarios/objects/mesh_object.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 
 #include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/meshes/mesh_object.h"
+#include "scenarios/objects/mesh_object.h"
 
 namespace remote_touch {
 

@@ -12,7 +12,7 @@
 #include "core/points/point_cloud.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/files/depth_images.h"
-#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/objects/recorded_truth.h"
 #include "tests/support/recorded_data.h"
 
 namespace remote_touch::real_truth_test {

@@ -15,7 +15,7 @@
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "scenarios/interface/scenario.h"
-#include "scenarios/meshes/mesh_object.h"
+#include "scenarios/objects/mesh_object.h"
 #include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "scenarios/meshes/recorded_truth.h"
+#include "scenarios/objects/recorded_truth.h"
 
 #include <algorithm>
 #include <array>
@@ -12,8 +12,8 @@
 #include "core/points/point_cloud.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/meshes/mesh_object.h"
-#include "scenarios/meshes/pose_file.h"
+#include "scenarios/objects/mesh_object.h"
+#include "scenarios/objects/pose_file.h"
 
 namespace remote_touch {
 

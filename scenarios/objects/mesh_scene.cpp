@@ -1,4 +1,4 @@
-#include "scenarios/meshes/mesh_scene.h"
+#include "scenarios/objects/mesh_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include "core/points/point_cloud.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/meshes/mesh_object.h"
-#include "scenarios/meshes/pose_file.h"
+#include "scenarios/objects/mesh_object.h"
+#include "scenarios/objects/pose_file.h"
 
 namespace remote_touch {
 namespace {
