@@ -16,7 +16,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/sweeps/sweep_tally.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -14,7 +14,7 @@
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

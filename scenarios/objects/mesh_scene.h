@@ -14,8 +14,8 @@
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/objects/mesh_object.h"
+#include "scenarios/scene/scenario.h"
 #include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {

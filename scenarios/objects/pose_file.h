@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/points/vector.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/objects/mesh_object.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -10,9 +10,9 @@
 
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/objects/pose_file.h"
 #include "scenarios/recordings/recording.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/points/point_cloud.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

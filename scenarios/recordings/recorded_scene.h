@@ -12,11 +12,11 @@
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/objects/recorded_truth.h"
 #include "scenarios/recordings/camera_path.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/recordings/recording.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -12,8 +12,8 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/bag_frames.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

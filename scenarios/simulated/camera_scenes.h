@@ -10,7 +10,7 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 #include "scenarios/simulated/depth_camera.h"
 
 namespace remote_touch {

@@ -15,7 +15,7 @@
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 #include "scenarios/simulated/grid_scenes.h"
 
 namespace remote_touch {

@@ -12,7 +12,7 @@ set(public_headers
   runners/experiment/catalog/experiment.h runners/experiment/hand/trajectory.h
   runners/experiment/simulation/simulation.h runners/interfaces/cli/program.h
   runners/interfaces/plugins/plugin_library.h runners/interfaces/plugins/remote_touch_plugin.h
-  scenarios/interface/scenario.h)
+  scenarios/scene/scenario.h)
 if(TARGET runners_evaluation_contract)
   list(APPEND public_headers runners/evaluation/contract/contract_tests.h)
 endif()

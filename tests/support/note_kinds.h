@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -14,8 +14,8 @@
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

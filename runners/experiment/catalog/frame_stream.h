@@ -13,7 +13,7 @@
 #include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/sessions/sensor_frame.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -11,7 +11,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/image_surface.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -13,7 +13,7 @@
 #include "runners/experiment/hand/image_surface.h"
 #include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -8,8 +8,8 @@
 #include "runners/experiment/hand/trajectory.h"
 #include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/experiment/sessions/session_file.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/recordings/recording.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

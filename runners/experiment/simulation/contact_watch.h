@@ -12,7 +12,7 @@
 #include "core/kernels/kernels.h"
 #include "core/points/vector.h"
 #include "core/rendering/renderer.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -12,7 +12,7 @@
 #include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

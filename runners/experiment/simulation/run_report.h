@@ -8,7 +8,7 @@
 #include "analysis/measures/measures.h"
 #include "analysis/storage/hdf5_file.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

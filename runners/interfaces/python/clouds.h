@@ -10,7 +10,7 @@
 #include "core/points/noise.h"
 #include "core/rendering/renderer.h"
 #include "runners/interfaces/python/arrays.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -9,7 +9,7 @@
 #include "runners/presentation/pages/shown_meshes.h"
 #include "runners/presentation/pages/view_page.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/points/vector.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

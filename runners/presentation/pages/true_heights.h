@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/points/vector.h"
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 namespace remote_touch {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <core/parameters/parameter.h>
-#include <scenarios/interface/scenario.h>
+#include <scenarios/scene/scenario.h>
 
 namespace lab {
 

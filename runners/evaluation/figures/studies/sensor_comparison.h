@@ -12,9 +12,9 @@
 #include "core/kernels/kernels.h"
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
-#include "scenarios/interface/scenario.h"
 #include "scenarios/objects/mesh_scene.h"
 #include "scenarios/objects/recorded_truth.h"
+#include "scenarios/scene/scenario.h"
 #include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {

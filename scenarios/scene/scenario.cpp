@@ -1,4 +1,4 @@
-#include "scenarios/interface/scenario.h"
+#include "scenarios/scene/scenario.h"
 
 #include <algorithm>
 #include <cmath>
