@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/measures.h"
-#include "analysis/measures/paired_test.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/measures.h"
+#include "analysis/trace/paired_test.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

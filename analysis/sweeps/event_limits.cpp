@@ -7,9 +7,9 @@
 #include <numeric>
 #include <set>
 
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/sweeps/sweep_means.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/curve_fits.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/curve_fits.h"
 
 namespace remote_touch {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <map>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/paired_test.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/paired_test.h"
 
 namespace remote_touch {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch {
 

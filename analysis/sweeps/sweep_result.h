@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

@@ -5,10 +5,10 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "analysis/measures/curve_fits.h"
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/storage/digest.h"
 #include "analysis/sweeps/sweep_means.h"
+#include "analysis/trace/curve_fits.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {

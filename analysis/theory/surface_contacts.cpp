@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/curve_fits.h"
+#include "analysis/trace/curve_fits.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <set>
 
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {

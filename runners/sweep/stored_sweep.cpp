@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <optional>
 
-#include "analysis/measures/contact_measures.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/tally_file.h"
+#include "analysis/trace/contact_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/simulation/run_notes.h"

@@ -11,11 +11,11 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/measures/measures.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/sweeps/sweep_tally.h"
+#include "analysis/trace/measures.h"
 #include "scenarios/scene/scenario.h"
 
 namespace remote_touch {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/measures.h"
 #include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/measures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/sweep/sweep_parts.h"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/measures.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/measures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -2,7 +2,7 @@
 # runners/interfaces/program/README.md says what they are for.
 
 set(public_headers
-  analysis/comparison/compared_columns.h analysis/storage/result_file.h analysis/measures/measures.h
+  analysis/comparison/compared_columns.h analysis/storage/result_file.h analysis/trace/measures.h
   analysis/storage/hdf5_file.h analysis/trace/trace.h core/beyond/tracked_surface/tracked_renderers.h
   core/dissertation/proxy/proxy_renderer.h core/dissertation/virtual_fixtures/fixture_rules.h core/points/point_cloud.h
   core/points/vector.h core/kernels/isa.h core/points/noise.h

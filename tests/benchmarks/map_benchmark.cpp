@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/measures/measures.h"
 #include "analysis/storage/digest.h"
+#include "analysis/trace/measures.h"
 #include "core/kernels/isa.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"

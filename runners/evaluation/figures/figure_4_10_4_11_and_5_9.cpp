@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/dissertation/tool_shape/generated_tools.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"

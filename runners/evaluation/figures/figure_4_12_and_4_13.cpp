@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/curve_fits.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/curve_fits.h"
+#include "analysis/trace/interval_estimates.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 #include "runners/experiment/settings/changed_settings.h"
 

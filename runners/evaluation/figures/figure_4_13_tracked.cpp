@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/measures.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/theory/surface_contacts.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/kernels/isa.h"
 #include "core/points/point_cloud.h"
 #include "runners/evaluation/figures/parts/ball_gaps.h"

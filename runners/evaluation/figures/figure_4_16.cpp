@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/measures.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/fixture_run.h"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/curve_fits.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/curve_fits.h"
+#include "analysis/trace/interval_estimates.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/fixture_run.h"
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/measures.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/fixture_run.h"
 #include "runners/evaluation/figures/parts/recorded_fixture.h"

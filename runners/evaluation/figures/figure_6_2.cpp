@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/points/noise.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

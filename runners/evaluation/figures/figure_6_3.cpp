@@ -3,8 +3,8 @@
 #include <cmath>
 #include <span>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/measures.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/box_contacts.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/measures/force_measures.h"
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/force_measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/measures.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"

@@ -2,7 +2,7 @@
 // lifts.
 #include <cmath>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {

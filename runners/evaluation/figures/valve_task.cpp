@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/points/vector.h"

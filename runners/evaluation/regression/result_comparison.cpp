@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "analysis/comparison/compared_columns.h"
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
+#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"

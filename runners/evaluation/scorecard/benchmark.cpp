@@ -10,7 +10,7 @@
 #include <span>
 #include <typeinfo>
 
-#include "analysis/measures/contact_measures.h"
+#include "analysis/trace/contact_measures.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/changed_settings.h"

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/measures/force_measures.h"
+#include "analysis/trace/force_measures.h"
 #include "runners/evaluation/scorecard/scorecard.h"
 
 namespace remote_touch {

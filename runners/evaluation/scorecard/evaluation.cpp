@@ -7,9 +7,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/paired_test.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/paired_test.h"
 
 namespace remote_touch {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/measures.h"
 
 namespace remote_touch {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/paired_test.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/paired_test.h"
 #include "runners/evaluation/scorecard/card_summaries.h"
 
 namespace remote_touch {

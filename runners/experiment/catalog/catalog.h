@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/factory.h"
 

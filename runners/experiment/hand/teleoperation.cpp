@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/contact_measures.h"
+#include "analysis/trace/contact_measures.h"
 #include "core/kernels/kernels.h"
 #include "core/points/vector.h"
 #include "core/rendering/renderer.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/measures.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/trace/measures.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/scene/scenario.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

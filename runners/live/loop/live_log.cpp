@@ -4,7 +4,7 @@
 #include <new>
 #include <optional>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/hand/simulated_hand.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
 #include "runners/live/devices/device_address.h"
 #include "runners/live/devices/device_table.h"

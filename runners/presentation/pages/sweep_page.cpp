@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/measures/measures.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/measures/contact_measures.h"
+#include "analysis/trace/contact_measures.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/experiment/settings/provenance.h"

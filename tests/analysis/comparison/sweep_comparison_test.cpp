@@ -6,8 +6,8 @@
 #include <functional>
 #include <utility>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/paired_test.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/paired_test.h"
 #include "tests/analysis/comparison/example_sweeps.h"
 
 namespace remote_touch::sweep_comparison_test {

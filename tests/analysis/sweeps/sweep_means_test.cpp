@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/paired_test.h"
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/paired_test.h"
 
 namespace remote_touch::sweep_means_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <random>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 #include "runners/experiment/catalog/experiment.h"

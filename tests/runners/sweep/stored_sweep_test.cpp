@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "tests/support/test_files.h"

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "analysis/measures/contact_measures.h"
+#include "analysis/trace/contact_measures.h"
 #include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "core/kernels/isa.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 

@@ -5,8 +5,8 @@
 #include <iterator>
 #include <map>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/measures.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/changed_settings.h"
 

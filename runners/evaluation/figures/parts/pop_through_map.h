@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/curve_fits.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/theory/surface_contacts.h"
+#include "analysis/trace/curve_fits.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/storage/result_file.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "runners/evaluation/figures/studies/depth_errors.h"
 #include "runners/evaluation/figures/studies/true_contacts.h"

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
 #include "scenarios/recordings/recorded_scene.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/measures/force_fidelity.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/force_fidelity.h"
+#include "analysis/trace/interval_estimates.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/wall_limit.h"

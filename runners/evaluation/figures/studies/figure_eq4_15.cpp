@@ -1,6 +1,6 @@
 // Equation (4.15): the force between the updates of a cloud that moves at a constant velocity, for the three
 // readings of its sign.
-#include "analysis/measures/force_measures.h"
+#include "analysis/trace/force_measures.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/theory/surface_contacts.h"
+#include "analysis/trace/interval_estimates.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {

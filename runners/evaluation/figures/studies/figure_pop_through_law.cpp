@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/sweeps/sweep_tally.h"
+#include "analysis/trace/interval_estimates.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/stored_study.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/measures.h"
 #include "runners/evaluation/figures/parts/pop_through_map.h"
 
 namespace remote_touch {

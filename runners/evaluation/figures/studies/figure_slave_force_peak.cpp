@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/theory/haptic_loops.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/tool_and_slave_measures.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/studies/slave_tasks.h"

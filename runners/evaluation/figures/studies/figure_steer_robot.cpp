@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/force_fidelity.h"
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/theory/haptic_loops.h"
+#include "analysis/trace/force_fidelity.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/tool_and_slave_measures.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 

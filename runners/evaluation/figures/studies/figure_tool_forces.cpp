@@ -5,8 +5,8 @@
 #include <functional>
 #include <sstream>
 
-#include "analysis/measures/interval_estimates.h"
 #include "analysis/theory/surface_contacts.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

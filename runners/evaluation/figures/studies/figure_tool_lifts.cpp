@@ -2,7 +2,7 @@
 // it, and how do thickness, tilt, rotation and noise change that? Simulated; not in the dissertation.
 #include <algorithm>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/parts/figure_context.h"

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "analysis/measures/image_measures.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/image_measures.h"
+#include "analysis/trace/interval_estimates.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/measures/curve_fits.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/curve_fits.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
 #include "core/points/number_columns.h"
 #include "runners/experiment/hand/image_surface.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/image_measures.h"
+#include "analysis/trace/image_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
 #include "core/points/noise.h"

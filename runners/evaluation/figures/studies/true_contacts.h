@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

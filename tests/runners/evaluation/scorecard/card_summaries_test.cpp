@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "tests/runners/evaluation/scorecard/example_cards.h"
 
 namespace remote_touch::card_summaries_test {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "analysis/measures/contact_measures.h"
+#include "analysis/trace/contact_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/point_cloud.h"
 #include "core/rivals/implicit_surface_renderers.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "tests/support/test_files.h"

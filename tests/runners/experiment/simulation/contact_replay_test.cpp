@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/force_fidelity.h"
-#include "analysis/measures/force_measures.h"
+#include "analysis/trace/force_fidelity.h"
+#include "analysis/trace/force_measures.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/test_files.h"
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/measures.h"
 #include "analysis/theory/surface_contacts.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/measures.h"
 #include "core/points/neighbour_search.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/scenes.h"

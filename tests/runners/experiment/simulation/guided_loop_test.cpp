@@ -11,7 +11,7 @@
 #include "core/points/vector.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "tests/analysis/measures/measure_named.h"
+#include "tests/analysis/trace/measure_named.h"
 
 namespace remote_touch::guided_loop_test {
 namespace {

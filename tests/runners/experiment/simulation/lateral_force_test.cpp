@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep.h"

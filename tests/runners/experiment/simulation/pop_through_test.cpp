@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 

@@ -1,7 +1,7 @@
 // The predecessor [1]: fixed small steps and no velocity estimate, as settings of the same renderer.
 #include <gtest/gtest.h>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 

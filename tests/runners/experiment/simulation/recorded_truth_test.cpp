@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/measures.h"
 #include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/recorded_wall.h"

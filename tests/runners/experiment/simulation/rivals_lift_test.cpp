@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "runners/experiment/simulation/simulation.h"
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/beyond/tracked_surface/tracked_renderers.h"
 #include "core/kernels/isa.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/tool_and_slave_measures.h"
 #include "analysis/storage/digest.h"
+#include "analysis/trace/tool_and_slave_measures.h"
 #include "core/dissertation/tool_motion/tiled_cloud.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/simulation/simulation.h"

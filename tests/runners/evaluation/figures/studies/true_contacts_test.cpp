@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "analysis/measures/contact_measures.h"
+#include "analysis/trace/contact_measures.h"
 #include "runners/evaluation/figures/studies/camera_errors.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/evaluation/figures/studies/true_wall.h"

@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "analysis/measures/curve_fits.h"
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/paired_test.h"
+#include "analysis/trace/curve_fits.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/paired_test.h"
 
 namespace remote_touch::estimates_test {
 namespace {

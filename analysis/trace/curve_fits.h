@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch {
 

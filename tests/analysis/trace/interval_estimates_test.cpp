@@ -1,4 +1,4 @@
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>

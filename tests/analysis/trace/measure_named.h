@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "analysis/measures/curve_fits.h"
+#include "analysis/trace/curve_fits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/measures/image_measures.h"
+#include "analysis/trace/image_measures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/points/number_columns.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "analysis/measures/tool_and_slave_measures.h"
+#include "analysis/trace/tool_and_slave_measures.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
-#include "tests/analysis/measures/measure_named.h"
+#include "tests/analysis/trace/measure_named.h"
 
 namespace remote_touch::tool_and_slave_measures_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "analysis/measures/contact_measures.h"
+#include "analysis/trace/contact_measures.h"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "analysis/measures/force_measures.h"
-#include "analysis/measures/measures.h"
+#include "analysis/trace/force_measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
-#include "tests/analysis/measures/measure_named.h"
+#include "tests/analysis/trace/measure_named.h"
 
 namespace remote_touch::run_events_test {
 namespace {

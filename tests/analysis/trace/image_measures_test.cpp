@@ -1,4 +1,4 @@
-#include "analysis/measures/image_measures.h"
+#include "analysis/trace/image_measures.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch::image_measures_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/points/point_cloud.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "analysis/measures/force_fidelity.h"
+#include "analysis/trace/force_fidelity.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
-#include "tests/analysis/measures/measure_named.h"
+#include "tests/analysis/trace/measure_named.h"
 
 namespace remote_touch::force_fidelity_test {
 namespace {

@@ -1,11 +1,11 @@
-#include "analysis/measures/paired_test.h"
+#include "analysis/trace/paired_test.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch {
 

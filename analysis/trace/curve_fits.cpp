@@ -1,4 +1,4 @@
-#include "analysis/measures/curve_fits.h"
+#include "analysis/trace/curve_fits.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/points/noise.h"
 
 namespace remote_touch {

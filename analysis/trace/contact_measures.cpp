@@ -1,11 +1,11 @@
-#include "analysis/measures/contact_measures.h"
+#include "analysis/trace/contact_measures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "analysis/measures/force_measures.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/force_measures.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/points/number_columns.h"
 
 namespace remote_touch {

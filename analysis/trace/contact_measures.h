@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {

@@ -1,5 +1,5 @@
 // Tests and intervals for pairs: closed forms, published examples, enumeration and simulation.
-#include "analysis/measures/paired_test.h"
+#include "analysis/trace/paired_test.h"
 
 #include <gtest/gtest.h>
 

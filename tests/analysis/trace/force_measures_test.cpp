@@ -1,4 +1,4 @@
-#include "analysis/measures/force_measures.h"
+#include "analysis/trace/force_measures.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <set>
 #include <vector>
 
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
-#include "tests/analysis/measures/measure_named.h"
+#include "tests/analysis/trace/measure_named.h"
 
 namespace remote_touch::force_measures_test {
 namespace {

@@ -1,11 +1,11 @@
-#include "analysis/measures/tool_and_slave_measures.h"
+#include "analysis/trace/tool_and_slave_measures.h"
 
 #include <cmath>
 #include <optional>
 #include <vector>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

@@ -1,14 +1,14 @@
-#include "analysis/measures/measures.h"
+#include "analysis/trace/measures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/force_fidelity.h"
-#include "analysis/measures/force_measures.h"
-#include "analysis/measures/interval_estimates.h"
-#include "analysis/measures/tool_and_slave_measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/force_fidelity.h"
+#include "analysis/trace/force_measures.h"
+#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/tool_and_slave_measures.h"
 
 namespace remote_touch {
 

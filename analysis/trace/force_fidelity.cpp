@@ -1,11 +1,11 @@
-#include "analysis/measures/force_fidelity.h"
+#include "analysis/trace/force_fidelity.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "analysis/measures/contact_measures.h"
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
 

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "analysis/measures/interval_estimates.h"
+#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
 
 namespace remote_touch {
