@@ -6,7 +6,7 @@ option(REMOTE_TOUCH_SANITIZED_TESTS "Build tests of some rooms under sanitizers"
 # Rooms that read what others wrote or call libraries of others, and rooms where a sanitizer or a crash found a mistake.
 set(rooms_under_address
   analysis/storage core/points runners/experiment/opencl runners/experiment/mesh_files runners/interfaces/plugins
-  runners/libraries runners/live/devices runners/live/sensors scenarios/recordings scenarios/recordings
+  runners/libraries runners/live/devices runners/live/sensors scenarios/recordings
   scenarios/files)
 # Rooms whose threads share memory.
 set(rooms_under_thread
