@@ -208,7 +208,7 @@ struct Choice {
 // The neighbour that is i columns and j rows away has, relative to the centre's point, the sheared
 // coordinates (i z / fx, j z / fy, dz): with rays a, p - p0 = (i z / fx + a_x dz, j z / fy + a_y dz, dz). So
 // all moments follow from sums of w dz^n i^a j^b, in which i and j are numbers and not columns to be loaded.
-struct Sums {
+struct PlaneSums {
   Floats one = {}, i = {}, j = {}, ii = {}, ij = {}, jj = {};
 };
 
@@ -222,7 +222,7 @@ struct RowSums {
   }
 };
 
-inline void add(Sums& sums, const RowSums& row, float j) {
+inline void add(PlaneSums& sums, const RowSums& row, float j) {
   sums.one += row.one, sums.i += row.i, sums.ii += row.ii;
   sums.j += j * row.one, sums.ij += j * row.i, sums.jj += (j * j) * row.one;
 }
@@ -241,9 +241,9 @@ inline Floats wendland(Floats squared) {
 
 // Returns the covariance in the camera frame from sums of w, w dz, w dz^2. The mean is subtracted in sheared
 // coordinates.
-inline Symmetric covariance(const Sums sums[3], Floats z, Floats ray_x, Floats ray_y, float step_x,
+inline Symmetric covariance(const PlaneSums sums[3], Floats z, Floats ray_x, Floats ray_y, float step_x,
                             float step_y) {
-  const Sums &w = sums[0], &k = sums[1], &l = sums[2];
+  const PlaneSums &w = sums[0], &k = sums[1], &l = sums[2];
   const Floats each = 1.0f / w.one;
   const auto product = [&](Floats of_w, Floats of_k, Floats of_l) {
     return (of_w * z + 2.0f * of_k) * z + of_l;
@@ -258,7 +258,7 @@ inline Symmetric covariance(const Sums sums[3], Floats z, Floats ray_x, Floats r
   return {xx + ray_x * (xd + xz), xy + ray_x * yd + ray_y * xz, xz, yy + ray_y * (yd + yz), yz, dd};
 }
 
-struct Normal {
+struct PlaneNormal {
   Floats x, y, z;
 };
 
@@ -270,7 +270,7 @@ inline Symmetric adjugate(const Symmetric& m) {
 // Returns the eigenvector of the smallest eigenvalue, towards the sensor. It is NaN if there is no point at
 // depth z. It is also NaN if there is no plane, that is if the middle eigenvalue is below kThinnest of the
 // sum, as for points on a line.
-inline Normal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats ray_y) {
+inline PlaneNormal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats ray_y) {
   const Floats scale = 1.0f / (m.xx + m.yy + m.zz);
   m = {m.xx * scale, m.xy * scale, m.xz * scale, m.yy * scale, m.yz * scale, m.zz * scale};
   // Laguerre's method computes the smallest root of f = t^3 - t^2 + c1 t - c0, starting at 0. All three roots
@@ -288,7 +288,7 @@ inline Normal smallest_eigenvector(Symmetric m, Floats z, Floats ray_x, Floats r
   // with the largest factor is used.
   const Symmetric b = adjugate({m.xx - t, m.xy, m.xz, m.yy - t, m.yz, m.zz - t});
   const auto x_max = (b.xx >= b.yy) & (b.xx >= b.zz), y_max = b.yy >= b.zz;
-  Normal n = {y_max ? b.xy : b.xz, y_max ? b.yy : b.yz, y_max ? b.yz : b.zz};
+  PlaneNormal n = {y_max ? b.xy : b.xz, y_max ? b.yy : b.yz, y_max ? b.yz : b.zz};
   n = {x_max ? b.xx : n.x, x_max ? b.xy : n.y, x_max ? b.xz : n.z};
   const Floats length = root(n.x * n.x + n.y * n.y + n.z * n.z);
   const Floats away = n.x * ray_x + n.y * ray_y + n.z;
@@ -330,7 +330,7 @@ void normals_of_row(const RowBand& band, int row, bool only_weights, const Point
       }
       continue;
     }
-    Sums sums[3];
+    PlaneSums sums[3];
     const auto add_row = [&](int j, Floats middle, const auto& psi) __attribute__((always_inline)) {
       const Floats dz = depth(j, 0), k0 = middle * dz;
       RowSums w{middle, {}, {}}, k{k0, {}, {}}, l{k0 * dz, {}, {}};
@@ -351,7 +351,7 @@ void normals_of_row(const RowBand& band, int row, bool only_weights, const Point
     for (int j = 1; j <= taps; ++j) add_row(-j, kept(-j, 0), kept);
     const Floats ray_x = load(rays.x + u), ray_y = Floats{} + rays.y[row];
     const Symmetric m = covariance(sums, z0, ray_x, ray_y, step[0], step[1]);
-    const Normal n = smallest_eigenvector(m, z0, ray_x, ray_y);
+    const PlaneNormal n = smallest_eigenvector(m, z0, ray_x, ray_y);
     const std::ptrdiff_t to = row * out.stride + u;
     store(out.x + to, n.x), store(out.y + to, n.y), store(out.z + to, n.z);
   }
