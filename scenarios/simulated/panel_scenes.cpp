@@ -11,15 +11,15 @@ namespace remote_touch {
 namespace {
 
 // Tolerance for a border that falls on a point of the grid, and for distances that differ only by rounding.
-constexpr double kSamePlace_m = 1e-9;
+constexpr double kOnPanel_m = 1e-9;
 // Normals whose directions differ by less than this belong to parallel planes.
 constexpr double kParallel = 1e-6;
 
 int first_index(double half_m, double phase_m, double spacing_m) {
-  return static_cast<int>(std::ceil((-half_m - phase_m - kSamePlace_m) / spacing_m));
+  return static_cast<int>(std::ceil((-half_m - phase_m - kOnPanel_m) / spacing_m));
 }
 int last_index(double half_m, double phase_m, double spacing_m) {
-  return static_cast<int>(std::floor((half_m - phase_m + kSamePlace_m) / spacing_m));
+  return static_cast<int>(std::floor((half_m - phase_m + kOnPanel_m) / spacing_m));
 }
 
 // Returns true if the vector from the nearest point q on the panels to p is a combination of the normals of
@@ -31,7 +31,7 @@ bool faces_the_inside(std::span<const FlatPanel> panels, const Vec3& p, const Ve
   std::size_t count = 0;
   for (const FlatPanel& panel : panels) {
     if (count == axes.size()) break;
-    if ((panel.nearest(q) - q).norm() > kSamePlace_m) continue;
+    if ((panel.nearest(q) - q).norm() > kOnPanel_m) continue;
     Vec3 axis = panel.normal;
     for (std::size_t i = 0; i < count; ++i) axis -= axis.dot(axes[i]) * axes[i];
     if (axis.norm() < kParallel) continue;
@@ -39,7 +39,7 @@ bool faces_the_inside(std::span<const FlatPanel> panels, const Vec3& p, const Ve
     rest -= rest.dot(axes[count]) * axes[count];
     ++count;
   }
-  return rest.norm() <= kSamePlace_m;
+  return rest.norm() <= kOnPanel_m;
 }
 
 // Columns of Settings::plates.
@@ -78,8 +78,8 @@ double signed_distance(std::span<const FlatPanel> panels, const Vec3& p) {
     const Vec3 on_panel = panel.nearest(p);
     const double distance = (p - on_panel).norm();
     const double height = panel.normal.dot(p - panel.centre);
-    if (distance > nearest + kSamePlace_m) continue;
-    if (distance < nearest - kSamePlace_m || std::abs(height) > std::abs(over)) over = height;
+    if (distance > nearest + kOnPanel_m) continue;
+    if (distance < nearest - kOnPanel_m || std::abs(height) > std::abs(over)) over = height;
     if (distance < nearest) nearest = distance, foot = on_panel;
   }
   if (over >= 0) return nearest;
