@@ -1,7 +1,6 @@
 #include "runners/evaluation/contract/contract_tests.h"
 
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,12 +12,12 @@
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 #include "core/points/point_cloud.h"
-#include "runners/evaluation/contract/flat_scene.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch {
+
 namespace {
 
 // One rule for one entry.

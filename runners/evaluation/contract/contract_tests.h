@@ -1,3 +1,39 @@
+// A flat cloud as a frame, for tests and benchmarks.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "core/kernels/isa.h"
+#include "core/points/neighbour_search.h"
+#include "core/rendering/frame.h"
+#include "runners/experiment/catalog/catalog.h"
+
+namespace remote_touch::scenes {
+
+// Returns n x n points in the plane of height y, centred about the y axis.
+inline PointCloud flat_grid(int n, double spacing = 0.0015, double y = 0) {
+  PointCloud cloud;
+  cloud.grid_columns = n;
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      cloud.append({(i - 0.5 * (n - 1)) * spacing, y, (j - 0.5 * (n - 1)) * spacing});
+  return cloud;
+}
+
+inline Frame frame(PointCloud cloud, int index = 0, double rate_hz = 30) {
+  const double time = index / rate_hz;
+  return {index, time, time, make_search(std::move(cloud))};
+}
+
+inline const Kernels& kernels() {
+  return kernels_for(best_isa());
+}
+
+}  // namespace remote_touch::scenes
+
 // Runs the contracts of a catalog's entries as tests. Your own test program checks with them that your
 // renderers, scenarios, fixture rules, trajectories and measures keep what every part of this program relies
 // on.
@@ -9,14 +45,6 @@
 //   }
 //
 // runners/evaluation/contract/README.md describes each contract in one line.
-#pragma once
-
-#include <functional>
-#include <span>
-#include <string>
-
-#include "runners/experiment/catalog/catalog.h"
-
 namespace remote_touch {
 
 // Sets the settings that have no usable default, such as the file that `path` names. name: the entry's name.
