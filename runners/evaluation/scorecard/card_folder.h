@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/evaluation/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/kernels/kernels.h"
-#include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/evaluation/scorecard/scorecard.h"
 #include "scenarios/files/text_file.h"
 
