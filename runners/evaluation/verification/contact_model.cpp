@@ -1,4 +1,4 @@
-#include "runners/evaluation/verification/contact_model.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 
 #include <map>
 #include <utility>

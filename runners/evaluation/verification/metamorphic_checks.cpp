@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/verification/metamorphic_relation.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 

@@ -1,4 +1,4 @@
-#include "runners/evaluation/verification/variation.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/points/neighbour_search.h"
-#include "runners/evaluation/verification/contact_model.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 
 namespace remote_touch {
 namespace {
