@@ -11,7 +11,7 @@
 #include "core/parameters/parameter.h"
 #include "core/rendering/renderer.h"
 #include "runners/evaluation/verification/verification_scenes.h"
-#include "runners/experiment/catalog/factory.h"
+#include "runners/experiment/catalog/catalog.h"
 
 namespace remote_touch {
 

@@ -26,6 +26,7 @@
 #include "scenarios/synthetic/shape.h"
 
 namespace remote_touch {
+
 namespace {
 
 std::vector<ScenarioEntry> built_in_scenarios() {
