@@ -9,7 +9,6 @@
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "runners/experiment/catalog/configuration.h"
-#include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/settings/changed_settings.h"
