@@ -12,7 +12,7 @@
 #include "runners/experiment/hand/contact_replay.h"
 #include "runners/experiment/hand/image_press.h"
 #include "runners/experiment/hand/image_scan.h"
-#include "runners/experiment/hand/scripted_motions.h"
+#include "runners/experiment/hand/trajectory.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "runners/experiment/sessions/session_scene.h"

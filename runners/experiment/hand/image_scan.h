@@ -11,7 +11,6 @@
 #include "core/parameters/parameter.h"
 #include "core/points/camera.h"
 #include "runners/experiment/hand/image_surface.h"
-#include "runners/experiment/hand/scripted_motions.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/interface/scenario.h"
 

@@ -1,4 +1,4 @@
-#include "runners/experiment/hand/scripted_motions.h"
+#include "runners/experiment/hand/trajectory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,7 @@
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {
+
 namespace {
 
 // The place of a time among others: the index of the next one, and the fraction of the way to it.
