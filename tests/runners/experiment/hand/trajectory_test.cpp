@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "runners/experiment/hand/image_scan.h"
+#include "runners/experiment/hand/image_motions.h"
 #include "scenarios/camera/beating_heart.h"
 #include "scenarios/camera/depth_camera.h"
 #include "scenarios/synthetic/lifts.h"
