@@ -19,7 +19,6 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/cache_file.h"
-#include "runners/experiment/settings/citation.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"
