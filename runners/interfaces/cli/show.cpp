@@ -20,7 +20,6 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/cache_file.h"
 #include "runners/experiment/settings/provenance.h"
-#include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/progress.h"

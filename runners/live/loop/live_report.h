@@ -6,7 +6,7 @@
 
 #include "analysis/storage/result_file.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/simulation/run_report.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/live/loop/live_log.h"
 
 namespace remote_touch {

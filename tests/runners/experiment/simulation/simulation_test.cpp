@@ -1,11 +1,10 @@
-#include "runners/experiment/simulation/run_report.h"
+#include "runners/experiment/simulation/simulation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "analysis/trace/trace.h"
-#include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/test_files.h"
 
