@@ -9,8 +9,8 @@
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/interfaces/cli/subcommands.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -12,7 +12,6 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/plugins/plugin_library.h"
 #include "runners/sweep/work_pool.h"
 

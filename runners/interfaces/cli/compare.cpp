@@ -23,8 +23,8 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/interfaces/cli/subcommands.h"
 
 namespace remote_touch {
 namespace {

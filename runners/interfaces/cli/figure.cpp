@@ -16,7 +16,7 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
-#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/cli/program.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

@@ -16,7 +16,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_recorder.h"
 #include "runners/experiment/settings/json_parameters.h"
-#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/sweep/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"

@@ -22,7 +22,7 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/interfaces/cli/outputs.h"
-#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/cli/program.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/loop/jitter.h"

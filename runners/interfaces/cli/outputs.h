@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/storage/other_processes.h"
-#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/program.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

@@ -11,8 +11,8 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/progress.h"
-#include "runners/interfaces/cli/subcommands.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {
