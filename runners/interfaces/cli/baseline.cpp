@@ -10,7 +10,6 @@
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/progress.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

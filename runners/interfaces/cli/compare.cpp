@@ -24,7 +24,6 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/progress.h"
 
 namespace remote_touch {
 namespace {

@@ -22,7 +22,7 @@
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/outputs.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {

@@ -22,7 +22,6 @@
 #include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/progress.h"
 #include "runners/sweep/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"

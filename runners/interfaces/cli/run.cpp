@@ -12,7 +12,6 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/progress.h"
 #include "runners/sweep/stored_sweep.h"
 
 namespace remote_touch {

@@ -23,7 +23,6 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/presentation/export/export_formats.h"
 #include "runners/presentation/pages/sweep_page.h"

@@ -20,7 +20,6 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/progress.h"
 #include "runners/interfaces/cli/sweep_summary.h"
 #include "runners/presentation/export/result_tables.h"
 #include "runners/sweep/answer_display.h"
