@@ -11,7 +11,7 @@
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/opencl/opencl_devices.h"
-#include "runners/libraries/lasting_thread.h"
+#include "runners/libraries/shared_library.h"
 
 namespace remote_touch {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <mutex>
 
-#include "runners/libraries/lasting_thread.h"
+#include "runners/libraries/shared_library.h"
 
 namespace remote_touch {
 namespace {

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "runners/libraries/lasting_thread.h"
+#include "runners/libraries/shared_library.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/libraries/lasting_thread.h"
+#include "runners/libraries/shared_library.h"
 
 #include <gtest/gtest.h>
 
