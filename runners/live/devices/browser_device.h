@@ -11,7 +11,6 @@
 #include <memory>
 
 #include "runners/live/devices/clock.h"
-#include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

@@ -9,7 +9,6 @@
 
 #include "runners/experiment/hand/simulated_hand.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "runners/live/devices/device_placement.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

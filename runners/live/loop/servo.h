@@ -12,7 +12,7 @@
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/hand/teleoperation.h"
 #include "runners/live/devices/clock.h"
-#include "runners/live/devices/device_placement.h"
+#include "runners/live/devices/haptic_device.h"
 #include "runners/live/devices/safety_gate.h"
 #include "runners/live/loop/live_controls.h"
 

@@ -18,7 +18,7 @@
 #include "core/points/point_cloud.h"
 #include "core/rendering/frame.h"
 #include "runners/live/devices/browser_device.h"
-#include "runners/live/devices/device_placement.h"
+#include "runners/live/devices/haptic_device.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/loop/servo.h"
