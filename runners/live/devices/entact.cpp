@@ -4,7 +4,6 @@
 #include <atomic>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {
 

@@ -5,7 +5,6 @@
 #include <charconv>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {
 
