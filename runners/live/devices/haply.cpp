@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "runners/live/devices/device_address.h"
-#include "runners/live/devices/haply_messages.h"
 
 namespace remote_touch {
 

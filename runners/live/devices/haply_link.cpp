@@ -11,7 +11,7 @@
 #include <cerrno>
 
 #include "runners/live/devices/deadline_socket.h"
-#include "runners/live/devices/haply_messages.h"
+#include "runners/live/devices/haply.h"
 #endif
 
 namespace remote_touch {

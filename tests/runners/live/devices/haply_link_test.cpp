@@ -15,7 +15,6 @@
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/haply.h"
-#include "runners/live/devices/haply_messages.h"
 #include "tests/doubles/haply_service.h"
 #include "tests/runners/live/devices/haply_ticks.h"
 #include "tests/support/test_files.h"
