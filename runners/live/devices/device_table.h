@@ -6,7 +6,7 @@
 #include <string>
 
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/live/devices/browser_device.h"
+#include "runners/live/devices/built_in_devices.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

@@ -10,7 +10,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/live/devices/browser_device.h"
+#include "runners/live/devices/built_in_devices.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_report.h"
 

@@ -17,7 +17,7 @@
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "core/rendering/frame.h"
-#include "runners/live/devices/browser_device.h"
+#include "runners/live/devices/built_in_devices.h"
 #include "runners/live/devices/haptic_device.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_run.h"

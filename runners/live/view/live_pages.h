@@ -10,7 +10,7 @@
 #include <string_view>
 #include <variant>
 
-#include "runners/live/devices/browser_device.h"
+#include "runners/live/devices/built_in_devices.h"
 #include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/view/live_channel.h"
