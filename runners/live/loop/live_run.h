@@ -11,8 +11,8 @@
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/live/devices/built_in_devices.h"
-#include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_report.h"
+#include "runners/live/loop/servo.h"
 
 namespace remote_touch {
 

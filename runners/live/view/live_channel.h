@@ -19,7 +19,6 @@
 #include "core/rendering/frame.h"
 #include "runners/live/devices/built_in_devices.h"
 #include "runners/live/devices/haptic_device.h"
-#include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/loop/servo.h"
 

@@ -11,8 +11,8 @@
 #include <variant>
 
 #include "runners/live/devices/built_in_devices.h"
-#include "runners/live/loop/live_controls.h"
 #include "runners/live/loop/live_run.h"
+#include "runners/live/loop/servo.h"
 #include "runners/live/view/live_channel.h"
 
 namespace remote_touch {
