@@ -25,7 +25,6 @@
 #include "runners/interfaces/cli/program.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_table.h"
-#include "runners/live/loop/jitter.h"
 #include "runners/live/loop/live_report.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/sensors/sensor_table.h"
