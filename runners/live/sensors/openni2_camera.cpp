@@ -1,4 +1,4 @@
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 
 #include <OpenNI.h>
 #include <dlfcn.h>
@@ -17,7 +17,6 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/libraries/shared_library.h"
-#include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {
 

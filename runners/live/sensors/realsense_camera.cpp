@@ -7,7 +7,6 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/live/devices/device_address.h"
-#include "runners/live/sensors/adapters.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch::rs2 {

@@ -6,7 +6,7 @@
 
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/live/devices/device_address.h"
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 #include "scenarios/files/file_order.h"
 #include "scenarios/recordings/recorded_scene.h"
 
