@@ -3,10 +3,7 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/export/mcap_file.h"
-#include "runners/presentation/export/npz_file.h"
 #include "runners/presentation/export/result_tables.h"
-#include "runners/presentation/export/vtp_files.h"
 
 namespace remote_touch {
 
