@@ -1,4 +1,4 @@
-#include "runners/presentation/pages/true_heights.h"
+#include "runners/presentation/pages/shown_run.h"
 
 #include <gtest/gtest.h>
 
