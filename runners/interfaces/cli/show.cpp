@@ -25,8 +25,7 @@
 #include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/presentation/export/export_formats.h"
-#include "runners/presentation/pages/sweep_page.h"
-#include "runners/presentation/pages/trace_page.h"
+#include "runners/presentation/pages/result_pages.h"
 #include "runners/sweep/stored_sweep.h"
 #include "scenarios/files/text_file.h"
 

@@ -15,9 +15,9 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
+#include "runners/presentation/pages/result_pages.h"
 #include "runners/presentation/pages/shown_frames.h"
 #include "runners/presentation/pages/shown_meshes.h"
-#include "runners/presentation/pages/trace_page.h"
 
 namespace remote_touch {
 
