@@ -1,4 +1,4 @@
-#include "runners/live/devices/haply_link.h"
+#include "runners/live/devices/haply.h"
 
 #ifdef REMOTE_TOUCH_HAPLY
 // The one file of this folder that includes Boost.Beast, which takes ten seconds to compile. The thread
@@ -11,7 +11,6 @@
 #include <cerrno>
 
 #include "runners/live/devices/deadline_socket.h"
-#include "runners/live/devices/haply.h"
 #endif
 
 namespace remote_touch {
