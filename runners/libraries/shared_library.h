@@ -1,7 +1,5 @@
-// A library of a vendor, loaded when a device needs it. The program is built and started without any such
-// library. Its functions initialise pointers, whose types are those of the functions:
-//   SharedLibrary library{...};
-//   int (*close)(char id) = library["dhdClose"];
+// Libraries of vendors that are loaded when a device needs them, and threads for their calls. The program is
+// built and started without any such library.
 #pragma once
 
 #include <chrono>
@@ -16,6 +14,9 @@
 
 namespace remote_touch {
 
+// The functions of a library initialise pointers, whose types are those of the functions:
+//   SharedLibrary library{...};
+//   int (*close)(char id) = library["dhdClose"];
 class SharedLibrary {
  public:
   struct Lookup {

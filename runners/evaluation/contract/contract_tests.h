@@ -1,4 +1,14 @@
-// A flat cloud as a frame, for tests and benchmarks.
+// Runs the contracts of a catalog's entries as tests. Your own test program checks with them that your
+// renderers, scenarios, fixture rules, trajectories and measures keep what every part of this program relies
+// on.
+//
+//   int main(int argc, char** argv) {
+//     testing::InitGoogleTest(&argc, argv);
+//     remote_touch::register_contract_tests(my_entries());  // a Catalog of your own entries alone
+//     return RUN_ALL_TESTS();
+//   }
+//
+// runners/evaluation/contract/README.md describes each contract in one line.
 #pragma once
 
 #include <functional>
@@ -11,6 +21,7 @@
 #include "core/rendering/frame.h"
 #include "runners/experiment/catalog/catalog.h"
 
+// A flat cloud as a frame, for tests and benchmarks.
 namespace remote_touch::scenes {
 
 // Returns n x n points in the plane of height y, centred about the y axis.
@@ -34,17 +45,6 @@ inline const Kernels& kernels() {
 
 }  // namespace remote_touch::scenes
 
-// Runs the contracts of a catalog's entries as tests. Your own test program checks with them that your
-// renderers, scenarios, fixture rules, trajectories and measures keep what every part of this program relies
-// on.
-//
-//   int main(int argc, char** argv) {
-//     testing::InitGoogleTest(&argc, argv);
-//     remote_touch::register_contract_tests(my_entries());  // a Catalog of your own entries alone
-//     return RUN_ALL_TESTS();
-//   }
-//
-// runners/evaluation/contract/README.md describes each contract in one line.
 namespace remote_touch {
 
 // Sets the settings that have no usable default, such as the file that `path` names. name: the entry's name.

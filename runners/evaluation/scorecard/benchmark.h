@@ -1,6 +1,7 @@
-// The parts of a benchmark: methods, which are renderers with settings (data/methods), and scenes, which are
-// experiments without a renderer, with noise levels, measures and a rule of success (data/scenes). A method
-// of teleoperation also has sections of the experiment: what the hand feels, and what keeps the slave away.
+// A benchmark and its runs. Its parts are methods, which are renderers with settings (data/methods), and
+// scenes, which are experiments without a renderer, with noise levels, measures and a rule of success
+// (data/scenes). A method of teleoperation also has sections of the experiment: what the hand feels, and what
+// keeps the slave away.
 #pragma once
 
 #include <atomic>

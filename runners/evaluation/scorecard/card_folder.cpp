@@ -186,72 +186,6 @@ void compare_definitions(const Json& stored, const Json& now, const char* kind, 
   }
 }
 
-}  // namespace
-
-std::string configuration_of(const BenchmarkPlan& plan) {
-  std::vector<BenchmarkScene> scenes;
-  for (const ScenePlan& planned : plan.scenes) scenes.push_back(planned.scene);
-  return configuration(plan.benchmark.methods, scenes, plan.benchmark.replicates);
-}
-
-std::string write_stored_card(const std::filesystem::path& file, const Scorecard& card,
-                              const TextAttributes& provenance) {
-  const CardNumbers numbers = numbers_of(card, KeptMeasures::judged);
-  return write_figure(file,
-                      {kStoredCardFigure,
-                       "Stored scorecard",
-                       "Successes and means with their intervals, for remote-touch scorecard check.",
-                       {overview_table(card), behind_table(card), thresholds_table(card),
-                        counts_table(numbers), means_table(numbers)}},
-                      provenance);
-}
-
-StoredCard read_stored_card(const std::filesystem::path& file) {
-  const Hdf5Reader hdf5 = stored_card_file(file);
-  StoredCard stored{attribute(hdf5.attributes(), "config"), 0, {}, {}, {}};
-  try {
-    const Json all = Json::parse(stored.configuration);
-    stored.replicates = all.at("replicates").get<int>();
-    stored.methods = names_in(all, "methods"), stored.scenes = names_in(all, "scenes");
-    stored.numbers = numbers_in(table_in(hdf5, "success"), table_in(hdf5, "measures"));
-  } catch (const nlohmann::json::exception&) {
-    hdf5.damaged("has no configuration of a scorecard");
-  } catch (const std::out_of_range& missing) {
-    hdf5.damaged(missing.what());
-  }
-  return stored;
-}
-
-std::string stored_summary(const std::filesystem::path& file) {
-  const Hdf5Reader hdf5 = stored_card_file(file);
-  try {
-    const Table overview = table_in(hdf5, "overview"), behind = table_in(hdf5, "behind");
-    std::vector<ThresholdColumns> thresholds;  // cards that earlier versions stored have none
-    if (hdf5.has("/tables/thresholds/measure")) thresholds = threshold_columns(table_in(hdf5, "thresholds"));
-    const std::string own = own_method(values_of<std::vector<std::string>>(overview, "method"));
-    return "Where " + own + " is not the best, by more than chance:\n\n" + behind_text(behind, own, true) +
-           "\nWhere others succeed more often, but not by more than chance, or without noise:\n\n" +
-           behind_text(behind, own, false) + "\nAll methods, means over " +
-           std::to_string(rows_by(overview, "method").at(0).count("scenes")) + " scenes:\n\n" +
-           overview_text(overview, thresholds) + sources_text(thresholds);
-  } catch (const std::out_of_range& missing) {
-    hdf5.damaged(missing.what());
-  }
-}
-
-std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPlan& plan,
-                                     const Scorecard& now) {
-  std::vector<std::string> list;
-  const Json then = Json::parse(stored.configuration), here = Json::parse(configuration_of(plan));
-  compare_definitions(then, here, "methods", "method", list);
-  compare_definitions(then, here, "scenes", "scene", list);
-  const std::vector<std::string> numbers = differences(stored.numbers, numbers_of(now, KeptMeasures::judged));
-  list.insert(list.end(), numbers.begin(), numbers.end());
-  return list;
-}
-
-namespace {
-
 Json proportion_json(const Proportion& share) {
   return {{"successes", share.events},
           {"runs", share.runs},
@@ -444,6 +378,68 @@ Json skipped_json(const ScorecardReport& report) {
 }
 
 }  // namespace
+
+std::string configuration_of(const BenchmarkPlan& plan) {
+  std::vector<BenchmarkScene> scenes;
+  for (const ScenePlan& planned : plan.scenes) scenes.push_back(planned.scene);
+  return configuration(plan.benchmark.methods, scenes, plan.benchmark.replicates);
+}
+
+std::string write_stored_card(const std::filesystem::path& file, const Scorecard& card,
+                              const TextAttributes& provenance) {
+  const CardNumbers numbers = numbers_of(card, KeptMeasures::judged);
+  return write_figure(file,
+                      {kStoredCardFigure,
+                       "Stored scorecard",
+                       "Successes and means with their intervals, for remote-touch scorecard check.",
+                       {overview_table(card), behind_table(card), thresholds_table(card),
+                        counts_table(numbers), means_table(numbers)}},
+                      provenance);
+}
+
+StoredCard read_stored_card(const std::filesystem::path& file) {
+  const Hdf5Reader hdf5 = stored_card_file(file);
+  StoredCard stored{attribute(hdf5.attributes(), "config"), 0, {}, {}, {}};
+  try {
+    const Json all = Json::parse(stored.configuration);
+    stored.replicates = all.at("replicates").get<int>();
+    stored.methods = names_in(all, "methods"), stored.scenes = names_in(all, "scenes");
+    stored.numbers = numbers_in(table_in(hdf5, "success"), table_in(hdf5, "measures"));
+  } catch (const nlohmann::json::exception&) {
+    hdf5.damaged("has no configuration of a scorecard");
+  } catch (const std::out_of_range& missing) {
+    hdf5.damaged(missing.what());
+  }
+  return stored;
+}
+
+std::string stored_summary(const std::filesystem::path& file) {
+  const Hdf5Reader hdf5 = stored_card_file(file);
+  try {
+    const Table overview = table_in(hdf5, "overview"), behind = table_in(hdf5, "behind");
+    std::vector<ThresholdColumns> thresholds;  // cards that earlier versions stored have none
+    if (hdf5.has("/tables/thresholds/measure")) thresholds = threshold_columns(table_in(hdf5, "thresholds"));
+    const std::string own = own_method(values_of<std::vector<std::string>>(overview, "method"));
+    return "Where " + own + " is not the best, by more than chance:\n\n" + behind_text(behind, own, true) +
+           "\nWhere others succeed more often, but not by more than chance, or without noise:\n\n" +
+           behind_text(behind, own, false) + "\nAll methods, means over " +
+           std::to_string(rows_by(overview, "method").at(0).count("scenes")) + " scenes:\n\n" +
+           overview_text(overview, thresholds) + sources_text(thresholds);
+  } catch (const std::out_of_range& missing) {
+    hdf5.damaged(missing.what());
+  }
+}
+
+std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPlan& plan,
+                                     const Scorecard& now) {
+  std::vector<std::string> list;
+  const Json then = Json::parse(stored.configuration), here = Json::parse(configuration_of(plan));
+  compare_definitions(then, here, "methods", "method", list);
+  compare_definitions(then, here, "scenes", "scene", list);
+  const std::vector<std::string> numbers = differences(stored.numbers, numbers_of(now, KeptMeasures::judged));
+  list.insert(list.end(), numbers.begin(), numbers.end());
+  return list;
+}
 
 std::string to_json(const ScorecardReport& report) {
   Json scenes = Json::array();

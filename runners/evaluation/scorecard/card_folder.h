@@ -63,6 +63,7 @@ std::string configuration_of(const BenchmarkPlan& plan);
 
 // scorecard.json: the data from which scripts/plot makes the page of a scorecard. It contains all decisions
 // (which method is marked, which words a verdict has); a page only formats them.
+
 inline constexpr const char* kScorecardSchema = "remote-touch-scorecard/5";
 
 // SI units, null for a number that is missing. The lists "methods" and "laws" have the same order everywhere.

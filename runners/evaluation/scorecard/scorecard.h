@@ -1,4 +1,5 @@
-// Methods ranked by a measure, and whether the first and the last differ significantly from all others.
+// A scorecard: the results of each method in each scene, at each noise level, with intervals, and which
+// methods are significantly best or worst.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,8 @@
 #include "analysis/sweeps/sweep_result.h"
 
 namespace remote_touch {
+
+// Methods ranked by a measure, and whether the first and the last differ significantly from all others.
 
 // One method's values of a measure. values[i][k] belongs to noise level i and replicate k, which has the same
 // noise for every method; NaN if there is none.
@@ -76,8 +79,7 @@ Ranking ranking(const std::vector<PairedValues>& methods, Better better, bool ev
 // that any "better" among them is due to chance is then at most kSignificance. Returns the number of tests.
 std::int64_t correct_together(const std::vector<Ranking*>& rankings);
 
-// A scorecard: the results of each method in each scene, at each noise level, with intervals, and which
-// methods are significantly best or worst.
+// The scenes of a scorecard, scored by rules.
 
 // A bound on a measure of a run; success means that all its bounds hold.
 struct Bound {

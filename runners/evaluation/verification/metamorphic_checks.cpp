@@ -14,7 +14,6 @@
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch {
-
 namespace {
 
 using Outputs = std::vector<RenderOutput>;
@@ -259,6 +258,24 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
   return results;
 }
 
+// The built-in renderers that not all checks apply to.
+constexpr std::pair<const char*, ContactModel> kBuiltIn[] = {
+    {"averaged-proxy", ContactModel::oriented},
+    {"god-object", ContactModel::mesh},
+    {"mls-surface", ContactModel::oriented},
+    {"penalty", ContactModel::nothing},
+    {"sphere-tree", ContactModel::regions},
+    {"surfels", ContactModel::oriented},
+    {"tool-god-object", ContactModel::resting_points},
+    {"tracked-sheet", ContactModel::sheet},
+    {"tracked-tool", ContactModel::sheet}};
+
+// A static of a function: programs may declare models before main() begins.
+std::map<std::string, ContactModel>& declared() {
+  static std::map<std::string, ContactModel> models;
+  return models;
+}
+
 }  // namespace
 
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
@@ -289,28 +306,6 @@ std::vector<CheckName> check_names(DegreesOfFreedom degrees_of_freedom) {
     names.push_back({relation.name, relation.meaning});
   return names;
 }
-
-namespace {
-
-// The built-in renderers that not all checks apply to.
-constexpr std::pair<const char*, ContactModel> kBuiltIn[] = {
-    {"averaged-proxy", ContactModel::oriented},
-    {"god-object", ContactModel::mesh},
-    {"mls-surface", ContactModel::oriented},
-    {"penalty", ContactModel::nothing},
-    {"sphere-tree", ContactModel::regions},
-    {"surfels", ContactModel::oriented},
-    {"tool-god-object", ContactModel::resting_points},
-    {"tracked-sheet", ContactModel::sheet},
-    {"tracked-tool", ContactModel::sheet}};
-
-// A static of a function: programs may declare models before main() begins.
-std::map<std::string, ContactModel>& declared() {
-  static std::map<std::string, ContactModel> models;
-  return models;
-}
-
-}  // namespace
 
 ContactModel contact_model_of(const std::string& renderer) {
   for (const auto& [name, model] : kBuiltIn)

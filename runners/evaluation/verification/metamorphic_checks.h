@@ -1,4 +1,6 @@
-// The contact model of a renderer says what its checks may ask of it.
+// Metamorphic tests of a renderer, which need no reference solution: each scene is played unchanged and
+// transformed, and the two outputs must be related as metamorphic_relation.cpp defines. They use only the
+// interface Renderer, so every new renderer of the catalog is checked without further work.
 #pragma once
 
 #include <atomic>
@@ -61,8 +63,6 @@ ContactModel contact_model_of(const std::string& renderer);
 // no effect on a built-in renderer.
 void declare_contact_model(const std::string& renderer, const ContactModel& model);
 
-// A transformed scene together with the outputs that a renderer must then give.
-
 // The dimensions of a renderer's parameters, from the unit that ends their names, so that a scene and a
 // renderer can be converted together to other units of length, time and force.
 
@@ -88,8 +88,9 @@ void change_units(const Parameters& parameters, const UnitChange& change);
 // Returns the largest magnitude of the parameters that are lengths, m; 0 if no parameter is a length.
 double max_length_m(const Parameters& parameters);
 
-// Starts as the scene and the outputs of its reference run. The functions below change the scene, and the
-// expected outputs if these must change with it.
+// A transformed scene together with the outputs that a renderer must then give. Starts as the scene and the
+// outputs of its reference run. The functions below change the scene, and the expected outputs if these must
+// change with it.
 struct Variation {
   MetamorphicScene scene;
   std::vector<RenderOutput> expected;  // output of each tick
@@ -158,10 +159,6 @@ struct MetamorphicRelation {
 // A renderer of six degrees of freedom, of a tool, has relations and tolerances of its own.
 std::vector<MetamorphicRelation> relations_of(DegreesOfFreedom degrees_of_freedom);
 
-// Metamorphic tests of a renderer, which need no reference solution: each scene is played unchanged and
-// transformed, and the two outputs must be related as metamorphic_relation.cpp defines. They use only the
-// interface Renderer, so every new renderer of the catalog is checked without further work.
-
 // The largest difference of one kind.
 struct Deviation {
   // "position" (proxy, slave, frame correction), "nearest" (nearest distance, and penetration of a tool),
@@ -195,7 +192,7 @@ struct CheckResult {
 // exerts a force in most ticks, or in some ticks if its contact model may lose contact. Without it the other
 // checks would mean little. assignments: "r1_m=0.004"; a renderer of a tool has kVerifiedTool unless they
 // name another. Throws InputError for an assignment that the renderer refuses, and for a parameter whose
-// units cannot be changed (see metamorphic_checks.h). stop: when set, ends between two scenes with
+// units cannot be changed (dimension_of()). stop: when set, ends between two scenes with
 // Interrupted. Without scenes: verification_scenes(), or tool_scenes() for a renderer of six degrees of
 // freedom.
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,

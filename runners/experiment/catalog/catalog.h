@@ -1,4 +1,4 @@
-// Factories of catalog entries: they hold settings and build the object from them.
+// Everything that an experiment can name, as entries with factories.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +22,8 @@
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
+
+// Factories of catalog entries: they hold settings and build the object from them.
 
 struct ToolSettings;
 

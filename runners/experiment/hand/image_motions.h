@@ -1,6 +1,4 @@
-// A device that presses along the ray of one pixel, a set depth behind the surface of the newest frame: it
-// stays in contact while the camera or the scene moves. Its depths, clearance and speed are those along the
-// axis of the camera; along the ray they are larger by 1 / cos of the angle between both.
+// Device motions that are planned on depth images: a press at a pixel, and a scan along a row.
 #pragma once
 
 #include <map>
@@ -16,6 +14,10 @@
 
 namespace remote_touch {
 
+// A device that presses along the ray of one pixel, a set depth behind the surface of the newest frame: it
+// stays in contact while the camera or the scene moves. Its depths, clearance and speed are those along the
+// axis of the camera; along the ray they are larger by 1 / cos of the angle between both.
+//
 // If the newest frame shows no surface without gaps around the pixel, the device lifts off: it waits in front
 // of the surface that was seen last, until a frame shows a surface again. Something else may meanwhile appear
 // in front of this waiting position. If the device would then be farther behind it than a press may be, the
@@ -81,12 +83,6 @@ inline std::string validate(const ImagePress::Settings&) {
   return {};
 }
 
-// A device that scans along an image row of the first frame, at a set depth behind the surface that the
-// camera saw, along the axis of the camera. It is the default path over any recording. The device touches
-// surfaces that the camera saw without gaps. It lifts off over depth edges and holes, because there are no
-// points behind them to hold the proxy. While it is lifted, it is in front of everything that the first frame
-// shows along its way.
-
 // The row of a depth image along which a device scans, and the parts of it that the device touches.
 
 // A part of the row without holes or edges, both ends included.
@@ -125,6 +121,11 @@ struct ScanRow {
 // columns are in the image.
 ScanRow find_scan_row(const DepthImage& image, const CameraIntrinsics& camera, const ScanRowRequest& request);
 
+// A device that scans along an image row of the first frame, at a set depth behind the surface that the
+// camera saw, along the axis of the camera. It is the default path over any recording. The device touches
+// surfaces that the camera saw without gaps. It lifts off over depth edges and holes, because there are no
+// points behind them to hold the proxy. While it is lifted, it is in front of everything that the first frame
+// shows along its way.
 class ImageScan final : public Trajectory {
  public:
   struct Settings : ScanRowRequest {

@@ -1,4 +1,4 @@
-// The interface of every scripted device motion.
+// Scripted device motions: their interface, and motions that need no image.
 #pragma once
 
 #include <array>

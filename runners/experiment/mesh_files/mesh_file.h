@@ -13,8 +13,6 @@
 
 namespace remote_touch {
 
-// Meshes from files: OBJ, PLY and STL.
-
 // True if the file's name ends like that of a mesh file, in upper or lower case.
 bool is_mesh_file(const std::filesystem::path& file);
 
@@ -48,8 +46,7 @@ std::string find_mesh_file(const std::string& parameter, const std::string& name
 // its name. Throws as find_mesh_file() and read_mesh().
 TriangleMesh mesh_named(const std::string& parameter, const std::string& name);
 
-// Mesh files that are text: their words are checked, and OBJ and STL are converted to what the library reads
-// correctly.
+// Only for use in this folder: checks, and conversions to what the library reads correctly.
 
 // Words and numbers of mesh files that are text are checked here, because the library that reads these files
 // accepts a word that only begins with a number ("0x9" as 0, "9D-1" as 9), and reads numbers that are missing

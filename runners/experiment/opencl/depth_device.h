@@ -1,4 +1,5 @@
-// The depth pipeline on an OpenCL device, with one on the CPU that takes over if the device fails.
+// Choice of the device that runs the depth pipeline of an experiment: the CPU, or an OpenCL device with the
+// same bits.
 #pragma once
 
 #include <chrono>
@@ -18,6 +19,7 @@ namespace remote_touch {
 class DeviceFrames;
 struct DeviceFrame;
 
+// The depth pipeline on an OpenCL device, with one on the CPU that takes over if the device fails.
 class DevicePipeline final : public DepthProcessor {
  public:
   static constexpr std::chrono::milliseconds kFrameLimit{2000};
@@ -71,9 +73,6 @@ DepthTrial trial_of(const OpenClDevice& device, const DepthPipelineSettings& set
                     const Kernels& kernels);
 // Forgets the results for a device that has failed since.
 void forget_trials(const OpenClDevice& device);
-
-// Choice of the device that runs the depth pipeline of an experiment: the CPU, or an OpenCL device with the
-// same bits.
 
 // Called once, with one line, when the CPU takes over from a device that failed. Also called with the reason
 // why device = auto uses the CPU, once in a process for each reason.

@@ -32,29 +32,6 @@ constexpr NamedCode kCodes[] = {
     {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},  // the loader returns it if no driver is installed
 };
 
-}  // namespace
-
-OpenClLibrary::OpenClLibrary() : library(kOpenClLibrary) {}
-
-const OpenClLibrary& opencl_library() {
-  // The library is never freed, because drivers leave threads behind, and objects may be released late.
-  static std::mutex mutex;
-  static const OpenClLibrary* one = nullptr;
-  const std::lock_guard lock(mutex);
-  if (one == nullptr) one = new OpenClLibrary;
-  return *one;
-}
-
-void require(cl_int code, const char* function) {
-  if (code == CL_SUCCESS) return;
-  const char* name = "OpenCL error";
-  for (const NamedCode& each : kCodes)
-    if (each.code == code) name = each.name;
-  throw OpenClError(std::string(function) + ": " + name + " (" + std::to_string(code) + ")");
-}
-
-namespace {
-
 constexpr cl_int kNoPlatform = -1001;  // CL_PLATFORM_NOT_FOUND_KHR
 
 template <class Value>
@@ -100,6 +77,25 @@ void read_arithmetic(const OpenClLibrary& library, OpenClDevice& device) {
 }
 
 }  // namespace
+
+OpenClLibrary::OpenClLibrary() : library(kOpenClLibrary) {}
+
+const OpenClLibrary& opencl_library() {
+  // The library is never freed, because drivers leave threads behind, and objects may be released late.
+  static std::mutex mutex;
+  static const OpenClLibrary* one = nullptr;
+  const std::lock_guard lock(mutex);
+  if (one == nullptr) one = new OpenClLibrary;
+  return *one;
+}
+
+void require(cl_int code, const char* function) {
+  if (code == CL_SUCCESS) return;
+  const char* name = "OpenCL error";
+  for (const NamedCode& each : kCodes)
+    if (each.code == code) name = each.name;
+  throw OpenClError(std::string(function) + ": " + name + " (" + std::to_string(code) + ")");
+}
 
 std::vector<OpenClDevice> opencl_devices(const OpenClLibrary& library) {
   cl_uint count = 0;

@@ -16,7 +16,6 @@
 #include "runners/experiment/simulation/run_notes.h"
 
 namespace remote_touch {
-
 namespace {
 
 std::string seconds(double time_s) {
@@ -92,69 +91,6 @@ void add_unknown_forces(const Trace& trace, std::vector<Note>& notes) {
                                            ": it counts as no force there"});
 }
 
-}  // namespace
-
-Note no_contact_note() {
-  return {"no contact", "no point was touched, and no force was felt"};
-}
-
-void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes) {
-  std::set<std::string> missed;
-  for (const Phase& phase : phases)
-    if (phase.begins_s >= end_s && missed.insert(phase.name).second)
-      notes.push_back({"phase not reached", "the run ends at " + seconds(end_s) + ", before " + phase.name +
-                                                " begins at " + seconds(phase.begins_s)});
-}
-
-std::string text_of(const RunReport& report) {
-  std::string text;
-  for (const std::string& line : report.inputs) text += "  read " + printable(line) + "\n";
-  if (!report.hand.empty()) text += "  hand: " + printable(report.hand) + "\n";
-  for (const Note& note : report.notes)
-    text += "  note (" + printable(note.kind) + "): " + printable(note.text) + "\n";
-  return text;
-}
-
-RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, const Trace& trace,
-                    double end_s) {
-  RunReport report;
-  if (std::string input = scenario.input(); !input.empty()) report.inputs.push_back(std::move(input));
-  report.hand = trajectory.aim();
-  report.notes = scenario.input_notes();
-  for (Note& note : trajectory.notes()) report.notes.push_back(std::move(note));
-  const std::vector<Phase> of_scene = scenario.phases(), of_hand = trajectory.phases();
-  add_missed_phases(of_scene, end_s, report.notes);
-  add_missed_phases(of_hand, end_s, report.notes);
-  // The time of a tick is computed from its number, and the end of a motion is a sum of times. Both are
-  // rounded, so times that are nearly equal count as equal.
-  if (trajectory.duration_s() > end_s + kSameTime_s)
-    report.notes.push_back({"phase not reached", "the run ends at " + seconds(end_s) +
-                                                     ", before the trajectory ends at " +
-                                                     seconds(trajectory.duration_s())});
-  add_late_phases(of_scene, of_hand, end_s, report.notes);
-  add_few_frames(of_scene, trace, end_s, report.notes);
-  add_contact(trace, report.notes);
-  add_unknown_forces(trace, report.notes);
-  return report;
-}
-
-void add_report(TextAttributes& attributes, const RunReport& report) {
-  std::string read, notes;
-  for (const std::string& line : report.inputs) read += (read.empty() ? "" : "\n") + line;
-  for (const Note& note : report.notes) notes += (notes.empty() ? "" : "\n") + note.text;
-  if (!read.empty()) attributes.emplace_back("frames_read", read);
-  if (!report.hand.empty()) attributes.emplace_back("hand", report.hand);
-  if (!notes.empty()) attributes.emplace_back("notes", notes);
-}
-
-void refuse_notes(const RunReport& report) {
-  std::string all;
-  for (const Note& note : report.notes) all += (all.empty() ? "" : "; ") + note.kind + ": " + note.text;
-  if (!all.empty()) throw InputError("--strict", all);
-}
-
-namespace {
-
 constexpr std::size_t kMainMeasures = 5;
 
 enum class When { always, fixtures, no_fixtures };
@@ -223,40 +159,6 @@ constexpr UnitName kUnitNames[] = {
     {"1/s", "per second"},
     {"N/m", "newtons per metre"},
 };
-
-}  // namespace
-
-std::vector<MeasuredValue> measured_values(std::span<const Measure> list, const Trace& trace) {
-  std::vector<MeasuredValue> values;
-  for (const Measure& measure : list)
-    if (applies(measure, trace)) values.push_back({&measure, measure.compute(trace)});
-  return values;
-}
-
-std::vector<MeasuredValue> main_measures(const std::vector<MeasuredValue>& all, Fixtures fixtures) {
-  std::vector<MeasuredValue> chosen;
-  const auto find = [&](const std::string& name) {
-    return std::ranges::find_if(all, [&](const MeasuredValue& each) { return each.measure->name == name; });
-  };
-  for (const Priority& priority : kPriorities) {
-    const auto found = find(priority.measure);
-    if (found == all.end() || std::isnan(found->value) || !is_wanted(priority.when, fixtures)) continue;
-    if (find(priority.unless) != all.end()) continue;
-    chosen.push_back(*found);
-    if (chosen.size() == kMainMeasures) break;
-  }
-  for (const MeasuredValue& each : all)
-    if (!is_built_in(each.measure->name)) chosen.push_back(each);
-  return chosen;
-}
-
-std::string unit_in_words(const std::string& unit) {
-  for (const UnitName& name : kUnitNames)
-    if (unit == name.unit) return name.words;
-  return unit;
-}
-
-namespace {
 
 std::size_t tick_count(const Experiment& experiment, const Trajectory& trajectory) {
   const RunSettings& settings = experiment.settings();
@@ -377,6 +279,95 @@ std::vector<Note> contact_notes(const ContactWatch& watch, const Scenario& scena
 }
 
 }  // namespace
+
+Note no_contact_note() {
+  return {"no contact", "no point was touched, and no force was felt"};
+}
+
+void add_missed_phases(const std::vector<Phase>& phases, double end_s, std::vector<Note>& notes) {
+  std::set<std::string> missed;
+  for (const Phase& phase : phases)
+    if (phase.begins_s >= end_s && missed.insert(phase.name).second)
+      notes.push_back({"phase not reached", "the run ends at " + seconds(end_s) + ", before " + phase.name +
+                                                " begins at " + seconds(phase.begins_s)});
+}
+
+std::string text_of(const RunReport& report) {
+  std::string text;
+  for (const std::string& line : report.inputs) text += "  read " + printable(line) + "\n";
+  if (!report.hand.empty()) text += "  hand: " + printable(report.hand) + "\n";
+  for (const Note& note : report.notes)
+    text += "  note (" + printable(note.kind) + "): " + printable(note.text) + "\n";
+  return text;
+}
+
+RunReport report_of(const Scenario& scenario, const Trajectory& trajectory, const Trace& trace,
+                    double end_s) {
+  RunReport report;
+  if (std::string input = scenario.input(); !input.empty()) report.inputs.push_back(std::move(input));
+  report.hand = trajectory.aim();
+  report.notes = scenario.input_notes();
+  for (Note& note : trajectory.notes()) report.notes.push_back(std::move(note));
+  const std::vector<Phase> of_scene = scenario.phases(), of_hand = trajectory.phases();
+  add_missed_phases(of_scene, end_s, report.notes);
+  add_missed_phases(of_hand, end_s, report.notes);
+  // The time of a tick is computed from its number, and the end of a motion is a sum of times. Both are
+  // rounded, so times that are nearly equal count as equal.
+  if (trajectory.duration_s() > end_s + kSameTime_s)
+    report.notes.push_back({"phase not reached", "the run ends at " + seconds(end_s) +
+                                                     ", before the trajectory ends at " +
+                                                     seconds(trajectory.duration_s())});
+  add_late_phases(of_scene, of_hand, end_s, report.notes);
+  add_few_frames(of_scene, trace, end_s, report.notes);
+  add_contact(trace, report.notes);
+  add_unknown_forces(trace, report.notes);
+  return report;
+}
+
+void add_report(TextAttributes& attributes, const RunReport& report) {
+  std::string read, notes;
+  for (const std::string& line : report.inputs) read += (read.empty() ? "" : "\n") + line;
+  for (const Note& note : report.notes) notes += (notes.empty() ? "" : "\n") + note.text;
+  if (!read.empty()) attributes.emplace_back("frames_read", read);
+  if (!report.hand.empty()) attributes.emplace_back("hand", report.hand);
+  if (!notes.empty()) attributes.emplace_back("notes", notes);
+}
+
+void refuse_notes(const RunReport& report) {
+  std::string all;
+  for (const Note& note : report.notes) all += (all.empty() ? "" : "; ") + note.kind + ": " + note.text;
+  if (!all.empty()) throw InputError("--strict", all);
+}
+
+std::vector<MeasuredValue> measured_values(std::span<const Measure> list, const Trace& trace) {
+  std::vector<MeasuredValue> values;
+  for (const Measure& measure : list)
+    if (applies(measure, trace)) values.push_back({&measure, measure.compute(trace)});
+  return values;
+}
+
+std::vector<MeasuredValue> main_measures(const std::vector<MeasuredValue>& all, Fixtures fixtures) {
+  std::vector<MeasuredValue> chosen;
+  const auto find = [&](const std::string& name) {
+    return std::ranges::find_if(all, [&](const MeasuredValue& each) { return each.measure->name == name; });
+  };
+  for (const Priority& priority : kPriorities) {
+    const auto found = find(priority.measure);
+    if (found == all.end() || std::isnan(found->value) || !is_wanted(priority.when, fixtures)) continue;
+    if (find(priority.unless) != all.end()) continue;
+    chosen.push_back(*found);
+    if (chosen.size() == kMainMeasures) break;
+  }
+  for (const MeasuredValue& each : all)
+    if (!is_built_in(each.measure->name)) chosen.push_back(each);
+  return chosen;
+}
+
+std::string unit_in_words(const std::string& unit) {
+  for (const UnitName& name : kUnitNames)
+    if (unit == name.unit) return name.words;
+  return unit;
+}
 
 Trace simulate(const Experiment& experiment, const SimulationOptions& options) {
   const Kernels& kernels = options.kernels ? *options.kernels : kernels_for(best_isa());

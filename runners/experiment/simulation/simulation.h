@@ -1,4 +1,5 @@
-// The report of a run, and the few measures that answer what a user asks first.
+// The simulated haptic loop: frames at the camera's rate, ticks at the haptic rate, recorded in a trace; and
+// the report of a run.
 #pragma once
 
 #include <atomic>
@@ -66,7 +67,6 @@ std::vector<MeasuredValue> main_measures(const std::vector<MeasuredValue>& all, 
 // Returns "metres" for "m". Empty for pure numbers ("1"); an unknown unit is returned as it is.
 std::string unit_in_words(const std::string& unit);
 
-// The simulated haptic loop: frames at the camera's rate, ticks at the haptic rate, recorded in a trace.
 struct SimulationOptions {
   const Kernels* kernels = nullptr;                 // null: the machine's best
   const std::atomic<bool>* stop = nullptr;          // when set, the run ends with Interrupted

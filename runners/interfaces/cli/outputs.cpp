@@ -12,7 +12,6 @@
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {
-
 namespace {
 
 bool is_one_file(const std::string& a, const std::string& b) {
@@ -37,6 +36,15 @@ void require(const CommandLine& line, const std::string& output, const std::vect
 
 IsOurs begins_with(const std::string& opening) {
   return [opening](const std::filesystem::path& file) { return opening_of(file, opening.size()) == opening; };
+}
+
+// left_s: the time left, relative to the time since the program began; missing if nothing was done since.
+template <class Number>
+nlohmann::ordered_json counted_json(const std::string& what, Number done, Number total, Number earlier) {
+  nlohmann::ordered_json json = {{"what", what}, {"done", done}, {"total", total}, {"elapsed_s", 0.0}};
+  if (done > earlier)
+    json["left_s"] = static_cast<double>(total - done) / static_cast<double>(done - earlier);
+  return json;
 }
 
 }  // namespace
@@ -84,19 +92,6 @@ std::vector<std::string> with_parts(const std::string& subject, const std::vecto
   for (const InputPart& part : parts) files.push_back(part.path);
   return files;
 }
-
-namespace {
-
-// left_s: the time left, relative to the time since the program began; missing if nothing was done since.
-template <class Number>
-nlohmann::ordered_json counted_json(const std::string& what, Number done, Number total, Number earlier) {
-  nlohmann::ordered_json json = {{"what", what}, {"done", done}, {"total", total}, {"elapsed_s", 0.0}};
-  if (done > earlier)
-    json["left_s"] = static_cast<double>(total - done) / static_cast<double>(done - earlier);
-  return json;
-}
-
-}  // namespace
 
 std::string progress_text(double fraction, double elapsed_s) {
   const std::string done = formatted("%3.0f %%", 100 * fraction);

@@ -1,4 +1,4 @@
-// Checks which files a command may overwrite.
+// The outputs of a command: which files it may overwrite, and its progress on stderr.
 #pragma once
 
 #include <chrono>

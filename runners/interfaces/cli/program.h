@@ -1,5 +1,12 @@
-// The parts that subcommands share, and those that tests or other commands call. Each command prints results
-// on stdout, reports errors as exceptions, and returns the exit code.
+// A whole program from a catalog: every command, with the entries of the catalog beside those of this
+// project.
+//
+//   void add_entries(remote_touch::Catalog& catalog) {
+//     catalog.add(remote_touch::renderer_entry<Mine>("mine", ...));
+//   }
+//   int main(int argc, char** argv) {
+//     return remote_touch::command_line(add_entries, argc, argv);
+//   }
 #pragma once
 
 #include <atomic>
@@ -12,7 +19,16 @@
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/catalog.h"
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that CLI11 has
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
+
 namespace remote_touch {
+
+// The parts that subcommands share, and those that tests or other commands call. Each command prints results
+// on stdout, reports errors as exceptions, and returns the exit code.
 
 // kChanged is returned only by `compare`: the results differ and nothing got worse.
 enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3, kChanged = 4 };
@@ -63,17 +79,7 @@ struct ViewRequest {
 };
 void write_view(const CommandLine& line, const ViewRequest& request);
 
-}  // namespace remote_touch
-
-// The subcommands of the command line: a line in the list below, and one file with the request, the work and
-// the options of each.
-// NOLINTNEXTLINE(readability-identifier-naming): the name that CLI11 has
-namespace CLI {
-class App;
-class Validator;
-}  // namespace CLI
-
-namespace remote_touch {
+// A subcommand is a line in the list below, and one file with the request, the work and the options.
 
 // The threads of a command that has no option for them: as OpenMP decides, or none.
 inline constexpr int kUsualThreads = 0, kNoThreads = -1;
@@ -136,19 +142,6 @@ void require_own_kind(const std::string& name, const std::string& command);
 #define COMMAND(name) void add_##name(Subcommands& commands);
 REMOTE_TOUCH_COMMANDS(COMMAND)
 #undef COMMAND
-
-}  // namespace remote_touch
-
-// A whole program from a catalog: every command, with the entries of the catalog beside those of this
-// project.
-//
-//   void add_entries(remote_touch::Catalog& catalog) {
-//     catalog.add(remote_touch::renderer_entry<Mine>("mine", ...));
-//   }
-//   int main(int argc, char** argv) {
-//     return remote_touch::command_line(add_entries, argc, argv);
-//   }
-namespace remote_touch {
 
 // Parses the arguments and runs the command. Returns the exit code; throws InputError for arguments that are
 // not understood. choose_kernels is called once, before a command runs.

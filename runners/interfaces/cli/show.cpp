@@ -80,25 +80,6 @@ ViewPage page_of(const ViewRequest& request, const ViewOptions& options) {
   return trace_page({request.results.begin(), request.results.end()}, options);
 }
 
-}  // namespace
-
-void write_view(const CommandLine& line, const ViewRequest& request) {
-  std::vector<std::string> inputs = request.results;
-  inputs.push_back(request.claims);
-  require_report(line, request.output, inputs, kPage);
-  ViewOptions options;
-  options.max_bytes = static_cast<std::size_t>(1e6 * request.max_MB);
-  options.claims = request.claims;
-  options.kernels = line.kernels;
-  options.stop = line.stop;
-  const ViewPage page = page_of(request, options);
-  write_file_atomically(request.output, page.html);
-  std::printf("%s: %.1f MB\n%s", printable(request.output).c_str(),
-              1e-6 * static_cast<double>(page.html.size()), page.shown.c_str());
-}
-
-namespace {
-
 int command_view(const CommandLine& line, const ViewRequest& request) {
   write_view(line, request);
   return kDone;
@@ -212,6 +193,21 @@ int command_cache(const CommandLine& line, const CacheRequest& request) {
 }
 
 }  // namespace
+
+void write_view(const CommandLine& line, const ViewRequest& request) {
+  std::vector<std::string> inputs = request.results;
+  inputs.push_back(request.claims);
+  require_report(line, request.output, inputs, kPage);
+  ViewOptions options;
+  options.max_bytes = static_cast<std::size_t>(1e6 * request.max_MB);
+  options.claims = request.claims;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  const ViewPage page = page_of(request, options);
+  write_file_atomically(request.output, page.html);
+  std::printf("%s: %.1f MB\n%s", printable(request.output).c_str(),
+              1e-6 * static_cast<double>(page.html.size()), page.shown.c_str());
+}
 
 void add_list(Subcommands& commands) {
   auto [list, listed] = commands.add(

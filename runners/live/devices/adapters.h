@@ -62,8 +62,7 @@ std::unique_ptr<HapticDevice> open_spacenav(const std::string& address, Clock& c
 // Reports whether the daemon accepts a connection. The daemon does not report which mouse it has, if any.
 Availability spacenav_availability(const std::string& address, const Clock& clock);
 
-// The adapters of vendors' libraries share these parts: availability, axes, rotations and the texts of
-// faults.
+// Parts that the adapters of vendors' libraries share.
 
 // The availability of devices whose library does not report them before one is opened.
 template <class Functions>

@@ -1,5 +1,4 @@
-// A device without hardware: a script moves it, or a simulated operator who follows the script and feels its
-// force.
+// Devices without hardware: a simulated hand, and a hand that someone moves in a page.
 #pragma once
 
 #include <atomic>
@@ -15,8 +14,9 @@
 
 namespace remote_touch {
 
-// Follows its clock: the hand also moves during ticks that were missed, in steps of its own rate. Its time
-// starts at start_at(), or else with run().
+// A device that a script moves, or a simulated operator who follows the script and feels its force. Follows
+// its clock: the hand also moves during ticks that were missed, in steps of its own rate. Its time starts at
+// start_at(), or else with run().
 class SimulatedDevice final : public HapticDevice {
  public:
   // placement: that of the loop. It is used here in the inverse direction.

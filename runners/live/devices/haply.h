@@ -1,5 +1,22 @@
-// The WebSocket connection to Haply's Inverse service. Compiled in if Boost's headers are installed (build
-// option REMOTE_TOUCH_HAPLY).
+// Haply Inverse3, through the WebSocket of its Inverse service. Tested against a simulated service only.
+//
+// The address is ws://HOST:PORT, by default ws://127.0.0.1:10001, and settings:
+//   force=vector|values  key of the force in a command: `vector` for version 3.5, `values` for 3.1 to 3.4
+//   rate=HZ              rate of the loop, 100 to 8000, by default 1000
+//   device=ID handle=ID  the ones to use if there are several; by default the first of the inventory
+//   check=on|off         on, the default: read() returns a fault if the force that the service reports does
+//                        not follow the commands for 50 ms
+//
+// The service sends one state for each command and measures it when the command arrives. So the state that a
+// tick reads is one period old; a higher rate makes it newer.
+//
+// The device senses three axes, or six with a handle (VerseGrip). The buttons of the handle are the lowest
+// bits. The service reports no angular velocity; it stays 0. The axes of the handle are converted like those
+// of the service: its orientation (w, x, y, z) = (1, 0, 0, 0) is the identity here too.
+//
+// read() ends within 7 ms and write() within 2.5 ms, whatever the service does. They allocate nothing and
+// take no lock; the socket is read and written in the tick. A late service causes faults until it answers;
+// after any other fault of the connection the device must be opened again.
 #pragma once
 
 #include <array>
@@ -16,6 +33,8 @@
 
 namespace remote_touch {
 
+// The WebSocket connection to Haply's Inverse service. Compiled in if Boost's headers are installed (build
+// option REMOTE_TOUCH_HAPLY).
 class HaplyLink {
  public:
   virtual ~HaplyLink() = default;
@@ -99,26 +118,6 @@ class HaplyForceCommand {
   std::array<char, 512> text_{};
   std::size_t head_ = 0, size_ = 0;  // length of the part before the numbers, and total length
 };
-
-// Haply Inverse3, through the WebSocket of its Inverse service. Tested against a simulated service only.
-//
-// The address is ws://HOST:PORT, by default ws://127.0.0.1:10001, and settings:
-//   force=vector|values  key of the force in a command: `vector` for version 3.5, `values` for 3.1 to 3.4
-//   rate=HZ              rate of the loop, 100 to 8000, by default 1000
-//   device=ID handle=ID  the ones to use if there are several; by default the first of the inventory
-//   check=on|off         on, the default: read() returns a fault if the force that the service reports does
-//                        not follow the commands for 50 ms
-//
-// The service sends one state for each command and measures it when the command arrives. So the state that a
-// tick reads is one period old; a higher rate makes it newer.
-//
-// The device senses three axes, or six with a handle (VerseGrip). The buttons of the handle are the lowest
-// bits. The service reports no angular velocity; it stays 0. The axes of the handle are converted like those
-// of the service: its orientation (w, x, y, z) = (1, 0, 0, 0) is the identity here too.
-//
-// read() ends within 7 ms and write() within 2.5 ms, whatever the service does. They allocate nothing and
-// take no lock; the socket is read and written in the tick. A late service causes faults until it answers;
-// after any other fault of the connection the device must be opened again.
 
 using HaplyLinkOpener =
     std::function<std::unique_ptr<HaplyLink>(const DeviceAddress&, const Clock&, double deadline_s)>;

@@ -63,40 +63,6 @@ void add_unused_frames(const CameraCounts& camera, std::vector<Note>& notes) {
                                           " frames were not used: " + reasons});
 }
 
-}  // namespace
-
-std::vector<Phase> simulated_phases(const Experiment& experiment, const std::string& device,
-                                    const std::string& depth, const Kernels& kernels) {
-  const auto is_simulated = [](const std::string& address) { return address.starts_with("sim:"); };
-  std::vector<Phase> phases = experiment.phases();
-  const auto add = [&](std::vector<Phase> more) {
-    for (Phase& phase : more) phases.push_back(std::move(phase));
-  };
-  if (!is_simulated(device) && !is_simulated(depth)) return phases;
-  const auto scenario = experiment.build_scenario(kernels);
-  if (is_simulated(depth)) add(scenario->phases());
-  if (is_simulated(device)) {
-    add(experiment.build_trajectory(*scenario)->phases());
-    add(experiment.operator_phases());
-  }
-  return phases;
-}
-
-RunReport report_of(const LiveFacts& facts) {
-  RunReport report;
-  report.inputs.push_back(frames_line(facts));
-  if (facts.log.latency_s.size() == 0)
-    report.notes.push_back({"no frame", "no frame arrived before the session ended"});
-  else if (facts.log.contact_ticks == 0)
-    report.notes.push_back(no_contact_note());
-  add_unused_frames(facts.camera, report.notes);
-  add_missed_phases(facts.phases, static_cast<double>(facts.log.end_tick()) / facts.haptic_rate_hz,
-                    report.notes);
-  return report;
-}
-
-namespace {
-
 LiveReport::Times times_of(const char* name, const char* key, const Samples& samples) {
   LiveReport::Times times{name, key, samples.kept(), samples.size(), samples.least(), samples.greatest()};
   std::sort(times.sorted.begin(), times.sorted.end());
@@ -185,7 +151,46 @@ Table counts_table(const LiveReport& report) {
   return table;
 }
 
+class NoDevice final : public HapticDevice {
+ public:
+  NoDevice(double rate_hz, Clock& clock)
+      : HapticDevice(clock, {.name = "no device", .tick_rate_hz = rate_hz}) {}
+  DeviceFault read(DeviceReading&) noexcept override { return {}; }
+  DeviceFault write(const Wrench&) noexcept override { return {}; }
+  void release() noexcept override {}
+};
+
 }  // namespace
+
+std::vector<Phase> simulated_phases(const Experiment& experiment, const std::string& device,
+                                    const std::string& depth, const Kernels& kernels) {
+  const auto is_simulated = [](const std::string& address) { return address.starts_with("sim:"); };
+  std::vector<Phase> phases = experiment.phases();
+  const auto add = [&](std::vector<Phase> more) {
+    for (Phase& phase : more) phases.push_back(std::move(phase));
+  };
+  if (!is_simulated(device) && !is_simulated(depth)) return phases;
+  const auto scenario = experiment.build_scenario(kernels);
+  if (is_simulated(depth)) add(scenario->phases());
+  if (is_simulated(device)) {
+    add(experiment.build_trajectory(*scenario)->phases());
+    add(experiment.operator_phases());
+  }
+  return phases;
+}
+
+RunReport report_of(const LiveFacts& facts) {
+  RunReport report;
+  report.inputs.push_back(frames_line(facts));
+  if (facts.log.latency_s.size() == 0)
+    report.notes.push_back({"no frame", "no frame arrived before the session ended"});
+  else if (facts.log.contact_ticks == 0)
+    report.notes.push_back(no_contact_note());
+  add_unused_frames(facts.camera, report.notes);
+  add_missed_phases(facts.phases, static_cast<double>(facts.log.end_tick()) / facts.haptic_rate_hz,
+                    report.notes);
+  return report;
+}
 
 double quantile(const std::vector<double>& sorted, double fraction) {
   if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -264,19 +269,6 @@ Figure live_figure(const LiveReport& report) {
   figure.panels = {std::move(fractions), std::move(when)};
   return figure;
 }
-
-namespace {
-
-class NoDevice final : public HapticDevice {
- public:
-  NoDevice(double rate_hz, Clock& clock)
-      : HapticDevice(clock, {.name = "no device", .tick_rate_hz = rate_hz}) {}
-  DeviceFault read(DeviceReading&) noexcept override { return {}; }
-  DeviceFault write(const Wrench&) noexcept override { return {}; }
-  void release() noexcept override {}
-};
-
-}  // namespace
 
 // Lateness is measured against the grid of the loop: it starts when the loop does, and its period is a whole
 // number of nanoseconds, see HapticDevice::run(). On another grid a punctual tick could get the number of the

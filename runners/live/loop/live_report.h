@@ -1,4 +1,5 @@
-// The report of a live run: its inputs, its timing as a table and a figure, and notes.
+// The report of a live run: its inputs, its timing as a table and a figure, and notes; and the lateness of
+// ticks on this machine.
 #pragma once
 
 #include <atomic>

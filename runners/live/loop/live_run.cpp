@@ -23,7 +23,6 @@
 #include "runners/live/sensors/sensor_table.h"
 
 namespace remote_touch {
-
 namespace {
 
 constexpr double kPatience_s = 0.05;         // the camera's thread notices an end within this time
@@ -135,6 +134,40 @@ LiveResult run_parts(LiveParts& parts, const LiveOptions& options, Clock& clock)
   return result;
 }
 
+// Returns true if the true surface is known at a point that the camera sees in its first frame, or if it sees
+// none there. Tries about a hundred points.
+bool knows_surface(const Scenario& scenario) {
+  const PointCloud cloud = scenario.cloud(0);
+  const std::size_t every = std::max<std::size_t>(1, cloud.size() / 100);
+  bool sees_a_point = false;
+  for (std::size_t i = 0; i < cloud.size(); i += every) {
+    if (!cloud.is_measured(i)) continue;
+    sees_a_point = true;
+    if (!std::isnan(scenario.signed_distance(cloud.point(i), scenario.captured_s(0)))) return true;
+  }
+  return !sees_a_point;
+}
+
+constexpr const char* kLoopEnded = "the device's loop ended by itself";
+constexpr std::int64_t kHang_ns = 200'000'000;  // shorter hangs are only counted
+constexpr std::size_t kRows = 1 << 14;          // 16 s at 1 kHz until rows are lost
+
+std::size_t padded(int side_px) {
+  return (static_cast<std::size_t>(side_px) + 15) / 16 * 16;
+}
+
+std::int64_t end_ns(std::int64_t start_ns, double duration_s) {
+  return duration_s > 0 ? start_ns + std::llround(1e9 * duration_s)
+                        : std::numeric_limits<std::int64_t>::max();
+}
+
+// Adds the refusal if `ended` does not contain it: a run that reached its duration may have read a changed
+// file.
+std::string with_refusal(const std::string& ended, const std::string& refused) {
+  if (refused.empty() || ended.find(refused) != std::string::npos) return ended;
+  return ended + (ended.empty() ? "" : "; ") + refused;
+}
+
 }  // namespace
 
 LiveResult run_live(const Experiment& experiment, const LiveOptions& options) {
@@ -187,24 +220,6 @@ std::vector<Note> LiveContact::notes(const Kernels& kernels) const {
   return ball_radius_m_ > 0 ? watch_.spacing_notes(ball_radius_m_, kernels) : std::vector<Note>();
 }
 
-namespace {
-
-// Returns true if the true surface is known at a point that the camera sees in its first frame, or if it sees
-// none there. Tries about a hundred points.
-bool knows_surface(const Scenario& scenario) {
-  const PointCloud cloud = scenario.cloud(0);
-  const std::size_t every = std::max<std::size_t>(1, cloud.size() / 100);
-  bool sees_a_point = false;
-  for (std::size_t i = 0; i < cloud.size(); i += every) {
-    if (!cloud.is_measured(i)) continue;
-    sees_a_point = true;
-    if (!std::isnan(scenario.signed_distance(cloud.point(i), scenario.captured_s(0)))) return true;
-  }
-  return !sees_a_point;
-}
-
-}  // namespace
-
 LiveSlave::LiveSlave(const Experiment& experiment, const std::string& depth, const Kernels& kernels)
     : touched_(depth == kSimulatedDepth ? experiment.build_simulated_scene(kernels) : nullptr),
       remote_(experiment.build_teleoperation(touched_.get(), Experiment::Hand::real)),
@@ -226,30 +241,6 @@ bool LiveSlave::sends(const Frame& frame) {
   if (count >= kMostPlaces) sender_.lose_slave();
   return sender_.sends(frame);
 }
-
-namespace {
-
-constexpr const char* kLoopEnded = "the device's loop ended by itself";
-constexpr std::int64_t kHang_ns = 200'000'000;  // shorter hangs are only counted
-constexpr std::size_t kRows = 1 << 14;          // 16 s at 1 kHz until rows are lost
-
-std::size_t padded(int side_px) {
-  return (static_cast<std::size_t>(side_px) + 15) / 16 * 16;
-}
-
-std::int64_t end_ns(std::int64_t start_ns, double duration_s) {
-  return duration_s > 0 ? start_ns + std::llround(1e9 * duration_s)
-                        : std::numeric_limits<std::int64_t>::max();
-}
-
-// Adds the refusal if `ended` does not contain it: a run that reached its duration may have read a changed
-// file.
-std::string with_refusal(const std::string& ended, const std::string& refused) {
-  if (refused.empty() || ended.find(refused) != std::string::npos) return ended;
-  return ended + (ended.empty() ? "" : "; ") + refused;
-}
-
-}  // namespace
 
 std::size_t expected_points(const SensorView& view) {
   return view.cloud ? 2 * view.cloud->expected_points + 256

@@ -1,5 +1,5 @@
-// Parameters that the user changes during a live run. A change is checked outside the haptic loop, and made
-// by the loop between two ticks.
+// One live tick: reads the device, makes the changes of the user, takes the newest frame, renders, applies
+// the safety gate, writes to the device.
 #pragma once
 
 #include <array>
@@ -69,6 +69,8 @@ struct ParameterChanges {
   std::span<const ParameterChange> all() const { return {list.data(), count}; }
 };
 
+// Parameters that the user changes during a live run. A change is checked outside the haptic loop, and made
+// by the loop between two ticks.
 class LiveControls {
  public:
   enum class Camera { simulated, other };
@@ -108,9 +110,6 @@ class LiveControls {
   Ring<ParameterChanges> requested_{64};
   std::atomic<bool> has_stiffness_limit_ = false;
 };
-
-// One live tick: reads the device, takes the newest frame, renders, applies the safety gate, writes to the
-// device.
 
 // A frame on its way to the servo.
 struct LiveFrame {

@@ -1,4 +1,4 @@
-// The interface of every depth camera.
+// Depth cameras: their interface, what they share, and the functions that open them.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,4 @@
-// Connects a live run with one page that shows it: queues the messages for the page, and handles the messages
-// from the page. The run never waits for the page. A slow page receives only the newest frame, and all
-// waiting ticks are dropped when there are too many. LivePages has the channels of all pages of a run.
+// The pages that show a live run: their messages, the channel of each, and all of them together.
 #pragma once
 
 #include <array>
@@ -118,6 +116,9 @@ std::string frame_message(const PointCloud& cloud, std::int32_t index, const Poi
 std::vector<Column> live_columns(const std::vector<LiveTick>& ticks, double haptic_rate_hz,
                                  const DevicePlacement& placement);
 
+// Connects a live run with one page that shows it: queues the messages for the page, and handles the messages
+// from the page. The run never waits for the page. A slow page receives only the newest frame, and all
+// waiting ticks are dropped when there are too many.
 class LiveChannel {
  public:
   static constexpr std::size_t kMaxRows = 5000;      // ticks that may wait; with more, all are dropped

@@ -26,21 +26,6 @@ std::string write_redirect(const std::filesystem::path& folder, const std::strin
   return {};
 }
 
-}  // namespace
-
-RedirectPage::RedirectPage(const std::string& address, const std::vector<std::filesystem::path>& folders) {
-  const std::string text =
-      "<!DOCTYPE html><meta http-equiv=\"refresh\" content=\"0; url=" + address + "\">\n";
-  for (const std::filesystem::path& folder : folders)
-    if (file_.empty()) file_ = write_redirect(folder, text);
-}
-
-RedirectPage::~RedirectPage() {
-  if (!file_.empty()) unlink(file_.c_str());
-}
-
-namespace {
-
 constexpr const char* kPageSchema = "remote-touch-live/1";
 // The points near the hand: within kNearRadii contact radii of HIP and proxy; with a tool, within kNearTool_m
 // of the ball around it; without either, within kNearHand_m.
@@ -110,6 +95,17 @@ LivePageFile page_of(const Experiment& experiment, const LiveViewSource& source,
 }
 
 }  // namespace
+
+RedirectPage::RedirectPage(const std::string& address, const std::vector<std::filesystem::path>& folders) {
+  const std::string text =
+      "<!DOCTYPE html><meta http-equiv=\"refresh\" content=\"0; url=" + address + "\">\n";
+  for (const std::filesystem::path& folder : folders)
+    if (file_.empty()) file_ = write_redirect(folder, text);
+}
+
+RedirectPage::~RedirectPage() {
+  if (!file_.empty()) unlink(file_.c_str());
+}
 
 LiveView::LiveView(const Experiment& experiment, const LiveViewSource& source, const Kernels& kernels,
                    int port)

@@ -18,7 +18,6 @@
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {
-
 namespace {
 
 constexpr std::size_t kMaxSpells = 50;
@@ -138,30 +137,6 @@ void find_task_steps(const ColumnSource& trace, const std::vector<std::string>& 
   }
 }
 
-}  // namespace
-
-std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps,
-                                     double held_depth_m) {
-  std::vector<TraceEvent> events;
-  find_pop_throughs(trace, held_depth_m, events);
-  find_first<std::int32_t>(trace, "contact_count", "first contact",
-                           "The first contact with the measured points.", events);
-  find_first<double>(trace, "slave_peak_force", "slave contact",
-                     "The slave touches the true surface for the first time.", events);
-  find_hardest_hit(trace, events);
-  find_largest_forces(trace, events);
-  if (trace.has("budget_exhausted"))
-    find_spells(trace, "budget_exhausted", 1, events);
-  else
-    find_spells(trace, "converged", 0, events);
-  find_task_steps(trace, steps, events);
-  std::stable_sort(events.begin(), events.end(),
-                   [](const TraceEvent& a, const TraceEvent& b) { return a.tick < b.tick; });
-  return events;
-}
-
-namespace {
-
 constexpr const char* kColumns[] = {"claim", "paper", "measured", "unit", "criterion", "verdict"};
 
 std::string figure_of(const TextAttributes& run) {
@@ -185,45 +160,6 @@ Json shown(const Json& claim, const std::filesystem::path& file) {
   }
   return row;
 }
-
-}  // namespace
-
-Json shown_claims(const std::filesystem::path& claims, const TextAttributes& run) {
-  Json list = Json::array();
-  if (claims.empty()) return list;
-  const Json all =
-      parse_json(read_text_file(claims, "expected the claims.json of remote-touch figure"), claims.string());
-  if (!all.is_array()) refuse(claims);
-  const std::string figure = figure_of(run);
-  for (const Json& claim : all) {
-    if (!claim.is_object() || !claim.contains("figure")) refuse(claims);
-    if (claim["figure"] == figure) list.push_back(shown(claim, claims));
-  }
-  return list;
-}
-
-ViewPage trace_page(const std::vector<std::filesystem::path>& traces, const ViewOptions& options) {
-  std::vector<std::unique_ptr<ShownRun>> runs;
-  BoundingBox box_W;
-  bool has_claims = false;
-  for (const auto& file : traces) {
-    const auto trace = std::make_shared<StoredTrace>(file);
-    RunSource source{file.string(), trace, trace->attributes()};
-    const Json claims = shown_claims(options.claims, source.attributes);
-    has_claims |= !claims.empty();
-    source.claims = claims.dump();
-    runs.push_back(std::make_unique<ShownRun>(std::move(source), *options.kernels, options.stop));
-    box_W.extend(runs.back()->box_W());
-  }
-  for (const auto& run : runs) run->set_box(box_W);
-  if (runs.size() == 2) runs.front()->mark_divergence_from(*runs.back());
-  ViewPage page = view_page(runs.front()->title(), runs, Json::object(), {}, options);
-  if (!options.claims.empty() && !has_claims)
-    page.shown += options.claims.string() + " has no claim of a figure that runs this experiment\n";
-  return page;
-}
-
-namespace {
 
 class FailedCells {
  public:
@@ -427,6 +363,61 @@ Json map_json(const std::string& file, const std::string& title, const SweepResu
 }
 
 }  // namespace
+
+std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps,
+                                     double held_depth_m) {
+  std::vector<TraceEvent> events;
+  find_pop_throughs(trace, held_depth_m, events);
+  find_first<std::int32_t>(trace, "contact_count", "first contact",
+                           "The first contact with the measured points.", events);
+  find_first<double>(trace, "slave_peak_force", "slave contact",
+                     "The slave touches the true surface for the first time.", events);
+  find_hardest_hit(trace, events);
+  find_largest_forces(trace, events);
+  if (trace.has("budget_exhausted"))
+    find_spells(trace, "budget_exhausted", 1, events);
+  else
+    find_spells(trace, "converged", 0, events);
+  find_task_steps(trace, steps, events);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const TraceEvent& a, const TraceEvent& b) { return a.tick < b.tick; });
+  return events;
+}
+
+Json shown_claims(const std::filesystem::path& claims, const TextAttributes& run) {
+  Json list = Json::array();
+  if (claims.empty()) return list;
+  const Json all =
+      parse_json(read_text_file(claims, "expected the claims.json of remote-touch figure"), claims.string());
+  if (!all.is_array()) refuse(claims);
+  const std::string figure = figure_of(run);
+  for (const Json& claim : all) {
+    if (!claim.is_object() || !claim.contains("figure")) refuse(claims);
+    if (claim["figure"] == figure) list.push_back(shown(claim, claims));
+  }
+  return list;
+}
+
+ViewPage trace_page(const std::vector<std::filesystem::path>& traces, const ViewOptions& options) {
+  std::vector<std::unique_ptr<ShownRun>> runs;
+  BoundingBox box_W;
+  bool has_claims = false;
+  for (const auto& file : traces) {
+    const auto trace = std::make_shared<StoredTrace>(file);
+    RunSource source{file.string(), trace, trace->attributes()};
+    const Json claims = shown_claims(options.claims, source.attributes);
+    has_claims |= !claims.empty();
+    source.claims = claims.dump();
+    runs.push_back(std::make_unique<ShownRun>(std::move(source), *options.kernels, options.stop));
+    box_W.extend(runs.back()->box_W());
+  }
+  for (const auto& run : runs) run->set_box(box_W);
+  if (runs.size() == 2) runs.front()->mark_divergence_from(*runs.back());
+  ViewPage page = view_page(runs.front()->title(), runs, Json::object(), {}, options);
+  if (!options.claims.empty() && !has_claims)
+    page.shown += options.claims.string() + " has no claim of a figure that runs this experiment\n";
+  return page;
+}
 
 std::vector<std::size_t> default_runs(const SweepResult& result, const std::vector<double>& measure,
                                       double threshold, std::size_t max) {

@@ -1,4 +1,4 @@
-// The events of a run that are worth looking at, and the page that shows traces.
+// Pages that show results: one or two traces, or a sweep.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,7 @@
 
 namespace remote_touch {
 
+// An event of a run that is worth looking at.
 struct TraceEvent {
   std::size_t tick;
   const char* kind;  // one of the kinds below, or "divergence", see ShownRun

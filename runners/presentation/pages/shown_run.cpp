@@ -20,7 +20,6 @@
 #include "runners/presentation/pages/shown_meshes.h"
 
 namespace remote_touch {
-
 namespace {
 
 constexpr std::size_t kMaxTimes = 200, kMaxMoreTimes = 600, kMaxChanges = 2000;
@@ -148,33 +147,6 @@ std::vector<HeightsAtTime> all_changes(const Scenario& scenario, const BoundingB
   return list;
 }
 
-}  // namespace
-
-TrueHeights true_heights(const Scenario& scenario, const BoundingBox& box_W, std::span<const double> time_s) {
-  TrueHeights all;
-  all.stays =
-      std::any_of(time_s.begin(), time_s.end(), [&](double t) { return scenario.truth_time_s(t) != t; });
-  std::vector<HeightsAtTime> list =
-      all.stays ? all_changes(scenario, box_W, changes(scenario, time_s))
-                : refined(scenario, box_W, even_times(time_s.front(), time_s.back()), all.error_m);
-  const auto is_known = [](const HeightsAtTime& at) {
-    return std::ranges::any_of(at.height_m, [](float h) { return std::isfinite(h); });
-  };
-  if (std::ranges::none_of(list, is_known)) return {};
-  const auto is_first = [&](const HeightsAtTime& at) { return same(at.height_m, list.front().height_m); };
-  if (std::ranges::all_of(list, is_first)) list.resize(1);
-  for (const std::size_t i : {std::size_t{0}, list.size() / 2, list.size() - 1})
-    all.error_m =
-        std::max(all.error_m, error_between_nodes_m(scenario, box_W, list[i].height_m, list[i].time_s));
-  for (const HeightsAtTime& at : list) {
-    all.time_s.push_back(at.time_s);
-    all.height_m.insert(all.height_m.end(), at.height_m.begin(), at.height_m.end());
-  }
-  return all;
-}
-
-namespace {
-
 constexpr double kRoom_m = 0.03, kStatedError_m = 5e-4;
 constexpr const char* kSheetIsOff =
     "The sheet of the true surface is drawn from heights at some places and times. Between them it is off by at least ";
@@ -249,6 +221,29 @@ std::string text_of(const std::vector<ShownFrame>& frames) {
 }
 
 }  // namespace
+
+TrueHeights true_heights(const Scenario& scenario, const BoundingBox& box_W, std::span<const double> time_s) {
+  TrueHeights all;
+  all.stays =
+      std::any_of(time_s.begin(), time_s.end(), [&](double t) { return scenario.truth_time_s(t) != t; });
+  std::vector<HeightsAtTime> list =
+      all.stays ? all_changes(scenario, box_W, changes(scenario, time_s))
+                : refined(scenario, box_W, even_times(time_s.front(), time_s.back()), all.error_m);
+  const auto is_known = [](const HeightsAtTime& at) {
+    return std::ranges::any_of(at.height_m, [](float h) { return std::isfinite(h); });
+  };
+  if (std::ranges::none_of(list, is_known)) return {};
+  const auto is_first = [&](const HeightsAtTime& at) { return same(at.height_m, list.front().height_m); };
+  if (std::ranges::all_of(list, is_first)) list.resize(1);
+  for (const std::size_t i : {std::size_t{0}, list.size() / 2, list.size() - 1})
+    all.error_m =
+        std::max(all.error_m, error_between_nodes_m(scenario, box_W, list[i].height_m, list[i].time_s));
+  for (const HeightsAtTime& at : list) {
+    all.time_s.push_back(at.time_s);
+    all.height_m.insert(all.height_m.end(), at.height_m.begin(), at.height_m.end());
+  }
+  return all;
+}
 
 struct ShownRun::State {
   State(RunSource run, const Kernels& best, const std::atomic<bool>* when)

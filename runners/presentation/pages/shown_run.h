@@ -1,5 +1,4 @@
-// The true surface around the action, where the scene is a height field: its height over a grid at some
-// times. It is the surface from which the column signed_distance measures.
+// The data of one run that a page shows, as JSON that names arrays of numbers.
 #pragma once
 
 #include <atomic>
@@ -18,6 +17,8 @@
 
 namespace remote_touch {
 
+// The true surface around the action, where the scene is a height field: its height over a grid at some
+// times. It is the surface from which the column signed_distance measures.
 struct TrueHeights {
   static constexpr int kColumns = 41;  // along x and along z
   // true: the truth is the surface at the last capture, which stays until the next of these times. false: the
@@ -36,8 +37,6 @@ struct TrueHeights {
 // surface that moves evenly has at most 200 times, and up to 600 if the sheet would be off by more than 0.2
 // mm half-way between them. One that stays has all times at which it changes, but at most 2000.
 TrueHeights true_heights(const Scenario& scenario, const BoundingBox& box_W, std::span<const double> time_s);
-
-// The data of one run that a page shows, as JSON that names arrays of numbers.
 
 // A trace, stored or in memory, and what is known of it.
 struct RunSource {
