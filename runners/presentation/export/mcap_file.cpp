@@ -9,7 +9,6 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "core/points/camera.h"
-#include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {
 namespace {

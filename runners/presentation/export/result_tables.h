@@ -6,7 +6,7 @@
 
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/trace/column.h"
-#include "runners/presentation/export/exported_run.h"
+#include "runners/presentation/export/export_formats.h"
 
 namespace remote_touch {
 

@@ -1,11 +1,10 @@
-#include "runners/presentation/export/exported_run.h"
+#include "runners/presentation/export/export_formats.h"
 
 #include <gtest/gtest.h>
 
 #include "analysis/storage/result_file.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/export/export_formats.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
