@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "core/parameters/parameter.h"
-#include "runners/presentation/export/result_tables.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/points/camera.h"
-#include "runners/presentation/export/result_tables.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {
