@@ -7,8 +7,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/pages/shown_frames.h"
-#include "runners/presentation/pages/shown_meshes.h"
+#include "runners/presentation/pages/shown_run.h"
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {

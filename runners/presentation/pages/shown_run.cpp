@@ -16,8 +16,6 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/presentation/pages/result_pages.h"
-#include "runners/presentation/pages/shown_frames.h"
-#include "runners/presentation/pages/shown_meshes.h"
 
 namespace remote_touch {
 namespace {
