@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "runners/experiment/settings/provenance.h"
+#include "runners/presentation/pages/result_pages.h"
 #include "runners/presentation/pages/shown_run.h"
-#include "runners/presentation/pages/view_page.h"
 #include "scenarios/files/text_file.h"
 #include "scenarios/interface/scenario.h"
 

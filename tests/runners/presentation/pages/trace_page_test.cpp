@@ -10,7 +10,6 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/pages/view_page.h"
 #include "tests/runners/presentation/pages/read_page.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
