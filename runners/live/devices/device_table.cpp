@@ -6,7 +6,7 @@
 #include "runners/live/devices/adapters.h"
 #include "runners/live/devices/built_in_devices.h"
 #include "runners/live/devices/clock.h"
-#include "runners/live/devices/device_address.h"
+#include "runners/live/devices/device_connection.h"
 #include "runners/live/devices/haply.h"
 
 namespace remote_touch {

@@ -10,7 +10,7 @@
 #include <boost/beast/websocket/stream.hpp>
 #include <cerrno>
 
-#include "runners/live/devices/deadline_socket.h"
+#include "runners/live/devices/device_connection.h"
 #endif
 
 namespace remote_touch {

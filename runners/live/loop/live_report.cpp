@@ -10,7 +10,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "core/parameters/parameter.h"
-#include "runners/live/devices/device_address.h"
+#include "runners/live/devices/device_connection.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/devices/haptic_device.h"
 #include "runners/live/sensors/sensor_table.h"

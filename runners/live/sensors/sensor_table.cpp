@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "runners/experiment/sessions/session_scene.h"
-#include "runners/live/devices/device_address.h"
+#include "runners/live/devices/device_connection.h"
 #include "runners/live/sensors/depth_source.h"
 #include "scenarios/files/file_order.h"
 #include "scenarios/recordings/recorded_scene.h"
