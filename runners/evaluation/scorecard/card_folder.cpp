@@ -11,7 +11,6 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/column.h"
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"

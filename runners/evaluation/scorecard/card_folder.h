@@ -7,7 +7,6 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "runners/evaluation/scorecard/benchmark.h"
-#include "runners/evaluation/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 
 namespace remote_touch {

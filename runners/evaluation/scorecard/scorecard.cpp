@@ -8,7 +8,7 @@
 
 #include "analysis/measures/interval_estimates.h"
 #include "analysis/measures/paired_test.h"
-#include "runners/evaluation/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 
 namespace remote_touch {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/points/noise.h"
-#include "runners/evaluation/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 #include "tests/runners/evaluation/scorecard/example_cards.h"
 
 namespace remote_touch::ranking_test {
