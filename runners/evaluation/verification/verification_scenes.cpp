@@ -1,4 +1,4 @@
-#include "runners/evaluation/verification/verification_scenes.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 
 #include <algorithm>
 #include <cmath>
