@@ -9,7 +9,6 @@
 #include "core/rivals/proxy_variants.h"
 #include "core/rivals/rival_renderer.h"
 #include "core/rivals/surfel_renderer.h"
-#include "runners/experiment/hand/contact_replay.h"
 #include "runners/experiment/hand/image_motions.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
