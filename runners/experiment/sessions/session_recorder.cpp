@@ -1,4 +1,4 @@
-#include "runners/experiment/sessions/session_recorder.h"
+#include "runners/experiment/sessions/session_file.h"
 
 #include <algorithm>
 #include <cmath>

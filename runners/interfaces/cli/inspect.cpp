@@ -14,7 +14,7 @@
 #include "analysis/sweeps/tally_file.h"
 #include "analysis/trace/column.h"
 #include "core/parameters/parameter.h"
-#include "runners/experiment/sessions/session_recorder.h"
+#include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/sweep_summary.h"

@@ -17,7 +17,7 @@
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/stored_result.h"
 #include "runners/evaluation/scorecard/scorecard.h"
-#include "runners/experiment/sessions/session_recorder.h"
+#include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
