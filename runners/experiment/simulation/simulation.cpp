@@ -12,7 +12,6 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/hand/teleoperation.h"
-#include "runners/experiment/simulation/contact_watch.h"
 #include "runners/experiment/simulation/run_notes.h"
 
 namespace remote_touch {

@@ -17,7 +17,7 @@
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/teleoperation.h"
-#include "runners/experiment/simulation/contact_watch.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/live/devices/built_in_devices.h"
 #include "runners/live/loop/camera_feed.h"
 #include "runners/live/loop/live_log.h"
