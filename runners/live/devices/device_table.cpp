@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "runners/experiment/sessions/session_scene.h"
-#include "runners/live/devices/adapters.h"
 #include "runners/live/devices/built_in_devices.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_connection.h"

@@ -1,4 +1,4 @@
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 
 #include <algorithm>
 #include <array>
