@@ -1,5 +1,4 @@
-// Summaries of a scorecard: its stored numbers, an overview of its methods, and how they compare with
-// thresholds of perception.
+// The report of a scorecard: its evaluation from finished runs, and its summaries.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,5 @@
-// Scripted device motions: their interface, and motions that need no image.
+// Device motions that need no image, and the interface of all motions: scripts, and contacts that are
+// replayed.
 #pragma once
 
 #include <array>
@@ -215,30 +216,6 @@ class RandomMotion final : public Trajectory {
 Parameters parameters(RandomMotion::Settings& s);
 std::string validate(const RandomMotion::Settings& s);
 
-// A device that replays a contact whose force is known, so that the force of a renderer can be compared with
-// it. After E. Ruffaldi, D. Morris, T. Edmunds, F. Barbagli and D. K. Pai, "Standardized evaluation of haptic
-// rendering systems", Haptics Symposium 2006: the position p of a contact and its force F are known, and the
-// HIP is where a spring of stiffness k would exert this force,
-//
-//   HIP = p + r n - F / k.
-//
-// F is the force on the hand, n the outward unit normal of the true surface at p, and r the distance of the
-// HIP from the surface at which the force of the renderer under test begins. The paper has r = 0: its
-// renderers hold a point on the surface. So do god-object and surfels here. r is 0 for the proxy of chapter 4
-// too: its ball is held r_c above the surface, but its spring (4.16) has the rest length r_c. r is
-// contact_radius_m for the penalty force, and the height of the surface over the points for implicit-surface.
-//
-// The expected force is exact for a renderer without friction whose force is k (r - d) n, d being the
-// distance of the HIP from the true surface and n the normal there, if F acts along n and the surface is
-// smooth: F / k is then less than the radius of curvature of its convex parts. At an edge the expected force
-// turns from one row to the next. In free motion F = 0, and the HIP is r farther from the surface than p.
-//
-// The contact comes from a file (read_force_trace()), or it is generated: a path over the true surface of the
-// scenario with a stated force. In both cases it is stored as rows of time, HIP and force; between two rows
-// HIP and force are linear in time. Before the first row and after the last one the device rests. A file
-// should begin in free motion, with the HIP farther from the surface than the contact radius of the renderer:
-// a proxy that starts in contact may be on the wrong side.
-
 // Files of measured contacts: time, position of the contact and force, sample by sample.
 //
 // .csv: the first line names the columns, separated by commas. .traj: columns separated by blanks or tabs and
@@ -267,6 +244,29 @@ struct ForceTrace {
 // (are these millimetres?).
 ForceTrace read_force_trace(const std::filesystem::path& file, const std::string& traj_columns);
 
+// A device that replays a contact whose force is known, so that the force of a renderer can be compared with
+// it. After E. Ruffaldi, D. Morris, T. Edmunds, F. Barbagli and D. K. Pai, "Standardized evaluation of haptic
+// rendering systems", Haptics Symposium 2006: the position p of a contact and its force F are known, and the
+// HIP is where a spring of stiffness k would exert this force,
+//
+//   HIP = p + r n - F / k.
+//
+// F is the force on the hand, n the outward unit normal of the true surface at p, and r the distance of the
+// HIP from the surface at which the force of the renderer under test begins. The paper has r = 0: its
+// renderers hold a point on the surface. So do god-object and surfels here. r is 0 for the proxy of chapter 4
+// too: its ball is held r_c above the surface, but its spring (4.16) has the rest length r_c. r is
+// contact_radius_m for the penalty force, and the height of the surface over the points for implicit-surface.
+//
+// The expected force is exact for a renderer without friction whose force is k (r - d) n, d being the
+// distance of the HIP from the true surface and n the normal there, if F acts along n and the surface is
+// smooth: F / k is then less than the radius of curvature of its convex parts. At an edge the expected force
+// turns from one row to the next. In free motion F = 0, and the HIP is r farther from the surface than p.
+//
+// The contact comes from a file (read_force_trace()), or it is generated: a path over the true surface of the
+// scenario with a stated force. In both cases it is stored as rows of time, HIP and force; between two rows
+// HIP and force are linear in time. Before the first row and after the last one the device rests. A file
+// should begin in free motion, with the HIP farther from the surface than the contact radius of the renderer:
+// a proxy that starts in contact may be on the wrong side.
 class ContactReplay final : public Trajectory {
  public:
   struct Settings {

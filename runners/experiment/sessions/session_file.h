@@ -1,4 +1,5 @@
-// A live session on disk, and its settings: the poses of device and camera, the limits of the safety gate.
+// A live session on disk: its file, its recording, and its settings, which are the poses of device and
+// camera, the limits of the safety gate.
 #pragma once
 
 #include <cstdint>

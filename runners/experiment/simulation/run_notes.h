@@ -1,4 +1,5 @@
-// Notes on a run: their kinds, and those on the hand and the surface, on fixture rules and on the slave.
+// Notes on a run: their kinds, and those on the hand and the surface, on contacts, on fixture rules and on
+// the slave.
 #pragma once
 
 #include <cstddef>
@@ -122,11 +123,6 @@ std::vector<Note> slave_setting_notes(const Experiment& experiment, Experiment::
 // the true surface. Empty if there is no slave, or if the surface was not known where it was.
 std::string slave_summary(const Trace& trace);
 
-// Watches where a renderer first touches the points, where the hand starts, and where the proxy passes to the
-// wrong side. Writes notes on runs in which the points or the frames could not hold the proxy.
-class NeighbourSearch;
-struct Trace;
-
 // Gaps between the points of a surface through which a ball passes, 4.2.1.
 
 struct PointGap {
@@ -148,6 +144,8 @@ struct PointGap {
 PointGap widest_gap(const std::vector<Vec3>& points, const Vec3& position, double ball_radius_m,
                     double known_m);
 
+// Watches where a renderer first touches the points, where the hand starts, and where the proxy passes to the
+// wrong side. Writes notes on runs in which the points or the frames could not hold the proxy.
 class ContactWatch {
  public:
   using Points = std::shared_ptr<const NeighbourSearch>;

@@ -1,3 +1,4 @@
+// The commands that run an experiment: `run`, and `baseline`, which compares it with a stored result.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,6 @@
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {
-
 namespace {
 
 struct RunRequest {
@@ -100,24 +100,6 @@ int command_run(const CommandLine& line, const RunRequest& request) {
   print_sequence(experiment.sequence(), sequence_log(trace));
   return kDone;
 }
-
-}  // namespace
-
-void add_run(Subcommands& commands) {
-  auto [command, run] = commands.add("run", "run one experiment and store its trace", command_run);
-  command
-      ->add_option("experiment", run->experiment,
-                   "a name from `remote-touch list`, a JSON file, or a recorded live session")
-      ->required();
-  add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
-  command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
-  command->add_flag("--timing", run->timing, "also store the duration of each tick");
-  command->add_flag("--all", run->all, "print all measures, not only those that matter most for this run");
-  command->add_flag("--strict", run->strict,
-                    "a note on the run is an error: exit code 2, and nothing is written");
-}
-
-namespace {
 
 struct BaselineCheckRequest {
   std::vector<std::string> names;  // empty: all, and none may be missing
@@ -258,6 +240,20 @@ int command_baseline_bless(const CommandLine& line, const BaselineBlessRequest& 
 }
 
 }  // namespace
+
+void add_run(Subcommands& commands) {
+  auto [command, run] = commands.add("run", "run one experiment and store its trace", command_run);
+  command
+      ->add_option("experiment", run->experiment,
+                   "a name from `remote-touch list`, a JSON file, or a recorded live session")
+      ->required();
+  add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
+  command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
+  command->add_flag("--timing", run->timing, "also store the duration of each tick");
+  command->add_flag("--all", run->all, "print all measures, not only those that matter most for this run");
+  command->add_flag("--strict", run->strict,
+                    "a note on the run is an error: exit code 2, and nothing is written");
+}
 
 void add_baseline(Subcommands& commands) {
   CLI::App* parent = commands.app.add_subcommand(

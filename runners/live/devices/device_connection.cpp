@@ -34,6 +34,11 @@ std::string short_text(double value) {
   return text.str();
 }
 
+// Returns EAGAIN for every error that means that the call should be tried again later.
+int normalised_error(int error) {
+  return error == EWOULDBLOCK || error == EINTR ? EAGAIN : error;
+}
+
 }  // namespace
 
 std::string list_of(const std::vector<std::string>& words) {
@@ -92,15 +97,6 @@ double DeviceAddress::number(const std::string& key, double otherwise, double mi
                   short_text(max));
   return value;
 }
-
-namespace {
-
-// Returns EAGAIN for every error that means that the call should be tried again later.
-int normalised_error(int error) {
-  return error == EWOULDBLOCK || error == EINTR ? EAGAIN : error;
-}
-
-}  // namespace
 
 DeadlineSocket::~DeadlineSocket() {
   close();

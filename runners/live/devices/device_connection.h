@@ -1,5 +1,4 @@
-// The address of a device as the user writes it, "haply:ws://127.0.0.1:10001?force=values&rate=2000": a
-// scheme, a place and settings. choice() and number() throw InputError for a value that is not allowed.
+// The connection to a device: its address, and a socket with deadlines.
 #pragma once
 
 #include <cstddef>
@@ -36,6 +35,8 @@ const Entry& find_scheme(std::span<const Entry> entries, const std::string& flag
 // Returns the words, separated by commas, for messages.
 std::string list_of(const std::vector<std::string>& words);
 
+// The address of a device as the user writes it, "haply:ws://127.0.0.1:10001?force=values&rate=2000": a
+// scheme, a place and settings. choice() and number() throw InputError for a value that is not allowed.
 class DeviceAddress {
  public:
   // address: without the scheme. Throws InputError if a setting is unknown, has no value or is given twice.

@@ -1,6 +1,4 @@
-// The adapters of devices except Haply's, one source each. open_...() opens a device; it throws InputError,
-// which says what is missing. ..._availability() says whether there is one. The adapters of vendors'
-// libraries are written from their documentation and tested with test doubles, never with a device.
+// Every haptic device that --device can name: the functions that open them, and a table with one line each.
 #pragma once
 
 #include <memory>
@@ -14,6 +12,10 @@
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {
+
+// The adapters of devices except Haply's, one source each. open_...() opens a device; it throws InputError,
+// which says what is missing. ..._availability() says whether there is one. The adapters of vendors'
+// libraries are written from their documentation and tested with test doubles, never with a device.
 
 // Force Dimension's omega, sigma, delta and lambda and Novint's Falcon, through the vendor's DHD library.
 // address: the number of the device among those connected; "" is 0.
@@ -116,7 +118,7 @@ inline DeviceFault fault_of(std::span<const KnownFault> known, int code, const c
 
 inline constexpr DeviceFault kNoRotation{"the device reports an orientation that is not a rotation", 0};
 
-// Every haptic device that --device can name: one line each.
+// The table.
 
 // The objects that a device may need. All but poses must outlive it.
 struct DeviceContext {

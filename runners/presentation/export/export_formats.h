@@ -1,4 +1,4 @@
-// A stored trace with its frames, which are made again, as other programs show it.
+// Results in the formats of other programs. A further format is one source here and one line in the table.
 #pragma once
 
 #include <array>
@@ -25,6 +25,8 @@
 #include "runners/experiment/catalog/experiment.h"
 
 namespace remote_touch {
+
+// A stored trace with its frames, which are made again, as other programs show it.
 
 // The input of every format of an export: the result, the output and the files to write.
 struct ExportJob {
@@ -81,8 +83,6 @@ struct ExportedFrame {
 void for_each_frame(const ExportJob& job, const ExportedRun& run,
                     const std::function<void(const ExportedFrame&)>& use);
 
-// Results in the formats of other programs. A further format is one pair of files here and one line in the
-// table.
 struct ExportFormat {
   const char* ending;  // ending of the output's name, ".csv"
   const char* meaning;

@@ -1,4 +1,4 @@
-// A page of the viewer below a size limit: one self-contained HTML file, which reads nothing else.
+// Pages that show results: one or two traces, or a sweep.
 #pragma once
 
 #include <atomic>
@@ -16,6 +16,8 @@
 #include "scenarios/files/text_file.h"
 
 namespace remote_touch {
+
+// A page of the viewer below a size limit: one self-contained HTML file, which reads nothing else.
 
 // The viewer's script and style, which the build made from runners/presentation/pages/page and embedded in
 // the program. Both empty in a program that was built without Node.
@@ -46,8 +48,6 @@ struct ViewPage {
 // without the viewer (see viewer_script()).
 ViewPage view_page(const std::string& title, const std::vector<std::unique_ptr<ShownRun>>& runs,
                    const Json& page, const PackedArrays& numbers, const ViewOptions& options);
-
-// Pages that show results: one or two traces, or a sweep.
 
 // An event of a run that is worth looking at.
 struct TraceEvent {

@@ -1,4 +1,4 @@
-// The frames of a run, made again from its configuration, as a page shows them.
+// The data of one run that a page shows, as JSON that names arrays of numbers.
 #pragma once
 
 #include <array>
@@ -26,6 +26,8 @@
 #include "scenarios/interface/scenario.h"
 
 namespace remote_touch {
+
+// The frames of a run, made again from its configuration, as a page shows them.
 
 // Returns the experiment of a stored trace. Throws InputError, about the name, in three cases: the trace is
 // of a live run, whose frames came from a sensor at times that only its recording contains; the configuration
@@ -191,8 +193,6 @@ std::vector<ShownMesh> shown_meshes_of_live(const Scenario& scenario, double hap
 Json json_of(const ShownMesh& mesh, PackedArrays& numbers);
 // A remark on the meshes that are drawn more coarsely than by 0.2 mm; empty: none is.
 std::string note_on(const std::vector<ShownMesh>& meshes);
-
-// The data of one run that a page shows, as JSON that names arrays of numbers.
 
 // The true surface around the action, where the scene is a height field: its height over a grid at some
 // times. It is the surface from which the column signed_distance measures.
