@@ -73,7 +73,7 @@ double lost_contact_fraction(const Trace& trace);
 
 // Energy that the device gives to the hand: force . displacement of the HIP until the next tick, and with a
 // tool also torque . rotation. This is the exact work of a force that is held for a tick. A simulated
-// operator gains or dissipates all of it (runners/experiment/hand/held_motion.h). If the run simulates an
+// operator gains or dissipates all of it (runners/experiment/hand/simulated_hand.h). If the run simulates an
 // operator or a device, the force and torque are those that the device exerts with the motors that it has.
 // Otherwise they are those that the renderer commands.
 

@@ -1,14 +1,22 @@
-// A library of a vendor, loaded when a device needs it. The program is built and started without any such
-// library. Its functions initialise pointers, whose types are those of the functions:
-//   SharedLibrary library{...};
-//   int (*close)(char id) = library["dhdClose"];
+// Libraries of vendors that are loaded when a device needs them, and threads for their calls. The program is
+// built and started without any such library.
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace remote_touch {
 
+// The functions of a library initialise pointers, whose types are those of the functions:
+//   SharedLibrary library{...};
+//   int (*close)(char id) = library["dhdClose"];
 class SharedLibrary {
  public:
   struct Lookup {
@@ -42,5 +50,40 @@ class SharedLibrary {
   std::string file_;
   const char* variable_;
 };
+
+// Threads for calls of others' libraries, which may hang, or crash if a thread that has called them has
+// ended.
+
+// Runs one task after another, in a thread of its own.
+class LastingThread {
+ public:
+  LastingThread();
+  // Does not wait for work that has missed its deadline.
+  ~LastingThread();
+  LastingThread(const LastingThread&) = delete;
+  LastingThread& operator=(const LastingThread&) = delete;
+
+  // Returns true when the work is done, and throws what the work throws. Returns false at the limit, if there
+  // is one. Late work continues in its thread, so it must own all that it uses, and run() must not be called
+  // again. Only one thread may call it at a time.
+  bool run(std::function<void()> work, std::optional<std::chrono::milliseconds> limit = {});
+
+ private:
+  struct Shared {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::function<void()> work;
+    std::exception_ptr thrown;
+    bool is_over = false;
+  };
+  static void serve(const std::shared_ptr<Shared>& shared);
+
+  const std::shared_ptr<Shared> shared_;
+};
+
+// Returns a thread for one user alone, which ends with the process. When that user has released it, the next
+// user gets it, so there are only as many threads as were ever in use at the same time. Throws
+// std::system_error if no thread can be started.
+std::shared_ptr<LastingThread> lasting_thread();
 
 }  // namespace remote_touch

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/parameters/parameter.h"
-#include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/catalog/configuration.h"
 
 namespace remote_touch {
 namespace {

@@ -8,7 +8,7 @@ set(public_headers
   core/points/vector.h core/kernels/isa.h core/points/noise.h
   core/parameters/parameter.h core/rendering/frame.h core/rendering/renderer.h
   core/points/neighbour_search.h
-  runners/evaluation/verification/contact_model.h runners/experiment/catalog/catalog.h
+  runners/evaluation/verification/metamorphic_checks.h runners/experiment/catalog/catalog.h
   runners/experiment/catalog/experiment.h runners/experiment/hand/trajectory.h
   runners/experiment/simulation/simulation.h runners/interfaces/cli/program.h
   runners/interfaces/plugins/plugin_library.h runners/interfaces/plugins/remote_touch_plugin.h

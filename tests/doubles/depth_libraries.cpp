@@ -1,6 +1,6 @@
 #include "tests/doubles/depth_libraries.h"
 
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {
 

@@ -1,6 +1,6 @@
 #include "tests/doubles/vendor_devices.h"
 
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 
 namespace remote_touch {
 

@@ -1,7 +1,7 @@
 // Addresses of devices and sensors, SCHEME:PLACE?KEY=VALUE&..., and the address of a Haply service.
-#include "runners/live/devices/device_address.h"
+#include "runners/live/devices/device_connection.h"
 
-#include "runners/live/devices/haply_messages.h"
+#include "runners/live/devices/haply.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::device_address {

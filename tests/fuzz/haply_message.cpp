@@ -1,5 +1,5 @@
 // Messages of Haply's service, as text.
-#include "runners/live/devices/haply_messages.h"
+#include "runners/live/devices/haply.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
 namespace remote_touch::fuzz::haply_message {

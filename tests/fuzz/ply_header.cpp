@@ -1,5 +1,5 @@
 // Headers of PLY files, which are checked before a library reads the file.
-#include "runners/experiment/mesh_files/ply_file.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"

@@ -1,5 +1,5 @@
 // Unfinished recordings: the bytes as they are, and with corrected numbers and checksums of the blocks.
-#include "runners/experiment/sessions/session_recorder.h"
+#include "runners/experiment/sessions/session_file.h"
 
 #include <unistd.h>
 #include <zlib.h>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "runners/evaluation/contract/flat_scene.h"
+#include "runners/evaluation/contract/contract_tests.h"
 
 namespace remote_touch::scenes {
 

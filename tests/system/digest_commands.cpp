@@ -3,7 +3,6 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/subcommands.h"
 
 namespace remote_touch {
 

@@ -1,7 +1,6 @@
 #include "runners/evaluation/contract/contract_tests.h"
 
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,7 +11,6 @@
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
-#include "runners/evaluation/contract/flat_scene.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
@@ -56,35 +54,6 @@ Catalog with_built_in(const Catalog& catalog) {
   add_all(all, own.renderers()), add_all(all, own.measures());
   return all;
 }
-
-}  // namespace
-
-void check_settings(Configurable& factory) {
-  std::set<std::string> names = {"name"};  // of the entry itself, in every configuration
-  for (const Parameter& p : factory.settings()) {
-    EXPECT_TRUE(names.insert(p.name).second) << "a setting called " << p.name << ": expected another name";
-    EXPECT_FALSE(p.help.empty()) << p.name << ": expected a line of help";
-    Json value = Json::object();
-    write_parameters({p}, value);
-    try {
-      read_parameters(value, {p}, "");
-    } catch (const InputError& error) {
-      ADD_FAILURE() << error.what();
-    }
-  }
-  EXPECT_EQ(factory.validate(), "");
-}
-
-void register_contract_tests(const Catalog& catalog, const FillSettings& fill) {
-  use_catalog(with_built_in(catalog));
-  register_checks("ScenarioContract", catalog.scenarios(), scenario_checks(), fill);
-  register_checks("FixtureContract", catalog.fixtures(), fixture_checks(), fill);
-  register_checks("TrajectoryContract", catalog.trajectories(), trajectory_checks(), fill);
-  register_checks("RendererContract", catalog.renderers(), renderer_checks(), fill);
-  register_checks("MeasureContract", catalog.measures(), measure_checks(), fill);
-}
-
-namespace {
 
 // The contract of every fixture rule.
 
@@ -184,14 +153,6 @@ constexpr ContractCheck<FixtureEntry> kFixtureChecks[] = {
     {"SettingsSurviveARoundTripThroughAnExperiment", settings_survive_a_round_trip_through_an_experiment},
 };
 
-}  // namespace
-
-std::span<const ContractCheck<FixtureEntry>> fixture_checks() {
-  return kFixtureChecks;
-}
-
-namespace {
-
 // The contract of every measure.
 
 // Returns four traces: a press, a press of a tool, a run with guidance, and a copy of the first press whose
@@ -241,14 +202,6 @@ constexpr ContractCheck<Measure> kMeasureChecks[] = {
     {"TheSameTraceHasTheSameValue", the_same_trace_has_the_same_value},
     {"ATraceWithoutTicksDoesNoHarm", a_trace_without_ticks_does_no_harm},
 };
-
-}  // namespace
-
-std::span<const ContractCheck<Measure>> measure_checks() {
-  return kMeasureChecks;
-}
-
-namespace {
 
 // The contract of every scenario.
 
@@ -328,14 +281,6 @@ constexpr ContractCheck<ScenarioEntry> kScenarioChecks[] = {
     {"NormalsAreOneAPointAndOfUnitLength", normals_are_one_a_point_and_of_unit_length},
 };
 
-}  // namespace
-
-std::span<const ContractCheck<ScenarioEntry>> scenario_checks() {
-  return kScenarioChecks;
-}
-
-namespace {
-
 // The contract of every scripted hand.
 
 // The camera's scene has a surface height and an image: enough for every trajectory.
@@ -374,6 +319,43 @@ constexpr ContractCheck<TrajectoryEntry> kTrajectoryChecks[] = {
 };
 
 }  // namespace
+
+void check_settings(Configurable& factory) {
+  std::set<std::string> names = {"name"};  // of the entry itself, in every configuration
+  for (const Parameter& p : factory.settings()) {
+    EXPECT_TRUE(names.insert(p.name).second) << "a setting called " << p.name << ": expected another name";
+    EXPECT_FALSE(p.help.empty()) << p.name << ": expected a line of help";
+    Json value = Json::object();
+    write_parameters({p}, value);
+    try {
+      read_parameters(value, {p}, "");
+    } catch (const InputError& error) {
+      ADD_FAILURE() << error.what();
+    }
+  }
+  EXPECT_EQ(factory.validate(), "");
+}
+
+void register_contract_tests(const Catalog& catalog, const FillSettings& fill) {
+  use_catalog(with_built_in(catalog));
+  register_checks("ScenarioContract", catalog.scenarios(), scenario_checks(), fill);
+  register_checks("FixtureContract", catalog.fixtures(), fixture_checks(), fill);
+  register_checks("TrajectoryContract", catalog.trajectories(), trajectory_checks(), fill);
+  register_checks("RendererContract", catalog.renderers(), renderer_checks(), fill);
+  register_checks("MeasureContract", catalog.measures(), measure_checks(), fill);
+}
+
+std::span<const ContractCheck<FixtureEntry>> fixture_checks() {
+  return kFixtureChecks;
+}
+
+std::span<const ContractCheck<Measure>> measure_checks() {
+  return kMeasureChecks;
+}
+
+std::span<const ContractCheck<ScenarioEntry>> scenario_checks() {
+  return kScenarioChecks;
+}
 
 std::span<const ContractCheck<TrajectoryEntry>> trajectory_checks() {
   return kTrajectoryChecks;

@@ -8,8 +8,7 @@
 #include "core/dissertation/virtual_fixtures/guided_renderer.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/evaluation/contract/contract_tests.h"
-#include "runners/evaluation/contract/flat_scene.h"
-#include "runners/evaluation/verification/contact_model.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 #include "runners/experiment/catalog/configuration.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/benchmark.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "runners/evaluation/scorecard/benchmark_run.h"
-#include "runners/evaluation/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 
 namespace remote_touch {
@@ -60,5 +59,13 @@ std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPl
 // Returns the configuration() of the parts that a plan runs: without scenes whose recording is not on this
 // machine.
 std::string configuration_of(const BenchmarkPlan& plan);
+
+// scorecard.json: the data from which scripts/plot makes the page of a scorecard. It contains all decisions
+// (which method is marked, which words a verdict has); a page only formats them.
+
+inline constexpr const char* kScorecardSchema = "remote-touch-scorecard/5";
+
+// SI units, null for a number that is missing. The lists "methods" and "laws" have the same order everywhere.
+std::string to_json(const ScorecardReport& report);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-#include "runners/evaluation/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,16 +4,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <variant>
 
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/verification/metamorphic_relation.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch {
-
 namespace {
 
 using Outputs = std::vector<RenderOutput>;
@@ -258,6 +258,24 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
   return results;
 }
 
+// The built-in renderers that not all checks apply to.
+constexpr std::pair<const char*, ContactModel> kBuiltIn[] = {
+    {"averaged-proxy", ContactModel::oriented},
+    {"god-object", ContactModel::mesh},
+    {"mls-surface", ContactModel::oriented},
+    {"penalty", ContactModel::nothing},
+    {"sphere-tree", ContactModel::regions},
+    {"surfels", ContactModel::oriented},
+    {"tool-god-object", ContactModel::resting_points},
+    {"tracked-sheet", ContactModel::sheet},
+    {"tracked-tool", ContactModel::sheet}};
+
+// A static of a function: programs may declare models before main() begins.
+std::map<std::string, ContactModel>& declared() {
+  static std::map<std::string, ContactModel> models;
+  return models;
+}
+
 }  // namespace
 
 std::vector<CheckResult> verify_renderer(const RendererEntry& entry,
@@ -287,6 +305,17 @@ std::vector<CheckName> check_names(DegreesOfFreedom degrees_of_freedom) {
   for (const MetamorphicRelation& relation : relations_of(degrees_of_freedom))
     names.push_back({relation.name, relation.meaning});
   return names;
+}
+
+ContactModel contact_model_of(const std::string& renderer) {
+  for (const auto& [name, model] : kBuiltIn)
+    if (renderer == name) return model;
+  const auto found = declared().find(renderer);
+  return found == declared().end() ? ContactModel() : found->second;
+}
+
+void declare_contact_model(const std::string& renderer, const ContactModel& model) {
+  declared().insert_or_assign(renderer, model);
 }
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-#include "runners/evaluation/verification/metamorphic_relation.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "runners/evaluation/verification/variation.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,35 +60,6 @@ struct Changer {
   void operator()(const Choice&) const {}
 };
 
-}  // namespace
-
-double UnitChange::factor(const Dimension& dimension) const {
-  return power(length, dimension.length) * power(time, dimension.time) * power(force, dimension.force);
-}
-
-Dimension dimension_of(const std::string& name) {
-  if (const auto dimension = known_dimension(name)) return *dimension;
-  std::string endings;
-  for (const Unit& unit : known_units()) endings += std::string(" ") + unit.ending;
-  throw InputError(name,
-                   "ends in no known unit: expected" + endings + ", or no underscore for a pure number");
-}
-
-void change_units(const Parameters& parameters, const UnitChange& change) {
-  for (const Parameter& p : parameters) std::visit(Changer{p, change}, p.value);
-}
-
-double max_length_m(const Parameters& parameters) {
-  double max = 0;
-  for (const Parameter& p : parameters)
-    if (double* const* value = std::get_if<double*>(&p.value);
-        value && dimension_of(p.name) == Dimension{1, 0, 0})
-      max = std::max(max, std::abs(**value));
-  return max;
-}
-
-namespace {
-
 template <class Change>
 void change_points(PointCloud& cloud, Change change) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -137,7 +108,46 @@ std::vector<Value> picked(const std::vector<Value>& column, const std::vector<in
   return out;
 }
 
+// Rotation vectors and torques are axial vectors. A mirror keeps their component along its axis and reverses
+// the others.
+Vec3 mirrored_axial(Vec3 v, int axis) {
+  v = -v;
+  v[axis] = -v[axis];
+  return v;
+}
+
+Eigen::Quaterniond mirrored(const Eigen::Quaterniond& q, int axis) {
+  Eigen::Quaterniond other = q;
+  other.vec() = mirrored_axial(q.vec(), axis);
+  return other;
+}
+
 }  // namespace
+
+double UnitChange::factor(const Dimension& dimension) const {
+  return power(length, dimension.length) * power(time, dimension.time) * power(force, dimension.force);
+}
+
+Dimension dimension_of(const std::string& name) {
+  if (const auto dimension = known_dimension(name)) return *dimension;
+  std::string endings;
+  for (const Unit& unit : known_units()) endings += std::string(" ") + unit.ending;
+  throw InputError(name,
+                   "ends in no known unit: expected" + endings + ", or no underscore for a pure number");
+}
+
+void change_units(const Parameters& parameters, const UnitChange& change) {
+  for (const Parameter& p : parameters) std::visit(Changer{p, change}, p.value);
+}
+
+double max_length_m(const Parameters& parameters) {
+  double max = 0;
+  for (const Parameter& p : parameters)
+    if (double* const* value = std::get_if<double*>(&p.value);
+        value && dimension_of(p.name) == Dimension{1, 0, 0})
+      max = std::max(max, std::abs(**value));
+  return max;
+}
 
 void change_units(Variation& variation, const UnitChange& change) {
   MetamorphicScene& scene = variation.scene;
@@ -164,24 +174,6 @@ void move_rigidly(Variation& variation, const RigidTransform& motion) {
     if (out.tool) turn(out.tool->torque_Nm), out.tool->orientation_W = rotation * out.tool->orientation_W;
   }
 }
-
-namespace {
-
-// Rotation vectors and torques are axial vectors. A mirror keeps their component along its axis and reverses
-// the others.
-Vec3 mirrored_axial(Vec3 v, int axis) {
-  v = -v;
-  v[axis] = -v[axis];
-  return v;
-}
-
-Eigen::Quaterniond mirrored(const Eigen::Quaterniond& q, int axis) {
-  Eigen::Quaterniond other = q;
-  other.vec() = mirrored_axial(q.vec(), axis);
-  return other;
-}
-
-}  // namespace
 
 void mirror(Variation& variation, int axis) {
   const auto flip = [axis](Vec3& v) { v[axis] = -v[axis]; };

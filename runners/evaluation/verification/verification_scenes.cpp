@@ -1,4 +1,4 @@
-#include "runners/evaluation/verification/verification_scenes.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,24 +19,6 @@ std::shared_ptr<const NeighbourSearch> search_of(const PointCloud& cloud, double
   if (cell_m > 0) return std::make_shared<UniformGridSearch>(cloud, cell_m);
   return std::make_shared<BruteForceSearch>(cloud);
 }
-
-}  // namespace
-
-std::vector<RenderOutput> play(const MetamorphicScene& scene, Renderer& renderer) {
-  std::vector<RenderOutput> outputs;
-  outputs.reserve(scene.hip_W.size());
-  auto view = scene.views.begin();
-  for (std::size_t tick = 0; tick < scene.hip_W.size(); ++tick) {
-    const double time_s = scene.time_s(tick);
-    for (; view != scene.views.end() && view->arrives_s <= time_s; ++view)
-      renderer.on_frame(
-          {view->index, view->captured_s, view->arrives_s, search_of(view->cloud, scene.cell_m)});
-    outputs.push_back(renderer.step({scene.hip_W[tick], scene.device_WH[tick]}, time_s));
-  }
-  return outputs;
-}
-
-namespace {
 
 // Parts from which the scenes of the metamorphic tests are made.
 
@@ -276,15 +258,6 @@ MetamorphicScene tool_held(const Kernels& kernels) {
                     balls_on(dome, 0.004, kernels), {kSteepTilt, {-0.02, 0.04, 0.01}});
 }
 
-}  // namespace
-
-std::vector<MetamorphicScene> tool_scenes(const Kernels& kernels) {
-  return {tool_plane(kernels), tool_dense(),          tool_groove(kernels), tool_touch_and_go(kernels),
-          tool_rise(kernels),  tool_regions(kernels), tool_held(kernels)};
-}
-
-namespace {
-
 Vec3 roof(double u, double v) {
   return {u, -1.5 * std::abs(u), v};
 }
@@ -412,6 +385,25 @@ MetamorphicScene camera(const Kernels& kernels) {
 }
 
 }  // namespace
+
+std::vector<RenderOutput> play(const MetamorphicScene& scene, Renderer& renderer) {
+  std::vector<RenderOutput> outputs;
+  outputs.reserve(scene.hip_W.size());
+  auto view = scene.views.begin();
+  for (std::size_t tick = 0; tick < scene.hip_W.size(); ++tick) {
+    const double time_s = scene.time_s(tick);
+    for (; view != scene.views.end() && view->arrives_s <= time_s; ++view)
+      renderer.on_frame(
+          {view->index, view->captured_s, view->arrives_s, search_of(view->cloud, scene.cell_m)});
+    outputs.push_back(renderer.step({scene.hip_W[tick], scene.device_WH[tick]}, time_s));
+  }
+  return outputs;
+}
+
+std::vector<MetamorphicScene> tool_scenes(const Kernels& kernels) {
+  return {tool_plane(kernels), tool_dense(),          tool_groove(kernels), tool_touch_and_go(kernels),
+          tool_rise(kernels),  tool_regions(kernels), tool_held(kernels)};
+}
 
 std::vector<MetamorphicScene> verification_scenes(const Kernels& kernels) {
   return {bumpy_slide(kernels), rise(kernels),   touch_and_go(kernels),   ridge(kernels), corner(kernels),

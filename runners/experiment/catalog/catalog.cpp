@@ -8,10 +8,8 @@
 #include "core/rivals/mls_surface_renderer.h"
 #include "core/rivals/proxy_variants.h"
 #include "core/rivals/rival_renderer.h"
-#include "runners/experiment/hand/contact_replay.h"
-#include "runners/experiment/hand/image_press.h"
-#include "runners/experiment/hand/image_scan.h"
-#include "runners/experiment/hand/scripted_motions.h"
+#include "runners/experiment/hand/image_motions.h"
+#include "runners/experiment/hand/trajectory.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "runners/experiment/sessions/session_scene.h"
@@ -23,6 +21,7 @@
 #include "scenarios/simulated/shape.h"
 
 namespace remote_touch {
+
 namespace {
 
 std::vector<ScenarioEntry> built_in_scenarios() {

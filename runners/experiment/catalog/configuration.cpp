@@ -81,21 +81,6 @@ FixtureValues values_of(const Part<FixtureEntry>& rule) {
   return values;
 }
 
-}  // namespace
-
-std::vector<FixtureValues> ExperimentConfiguration::fixture_values() const {
-  std::vector<FixtureValues> values;
-  for (const auto& rule : fixtures) values.push_back(values_of(rule));
-  return values;
-}
-
-bool ExperimentConfiguration::has_guidance() const {
-  const std::vector<FixtureValues> values = fixture_values();
-  return std::ranges::any_of(values, [](const FixtureValues& v) { return v.role == FixtureRole::guidance; });
-}
-
-namespace {
-
 // Returns true if the button of the step can be pressed, or if the step needs none. A simulated device has
 // only those buttons that the operator's settings press.
 bool can_be_pressed(const ExperimentConfiguration& configuration, const SequenceStep& step) {
@@ -184,47 +169,6 @@ double stiffness_of(const auto& factory, const std::string& renderer) {
                    "expected a finite number, 0 or more");
 }
 
-}  // namespace
-
-void check_changes(ExperimentConfiguration& configuration) {
-  after_changes(configuration, [](const auto& factory, const std::string& where) {
-    const std::string problem = factory.validate();
-    if (!problem.empty()) throw InputError(where, "after this change renderer." + problem);
-  });
-  max_renderer_stiffness(configuration);
-}
-
-double max_renderer_stiffness(const ExperimentConfiguration& configuration) {
-  const std::string& name = configuration.renderer.name;
-  double max = stiffness_of(*configuration.renderer.factory, name);
-  after_changes(configuration, [&](const auto& factory, const std::string&) {
-    max = std::max(max, stiffness_of(factory, name));
-  });
-  return max;
-}
-
-void check_fixtures(ExperimentConfiguration& configuration) {
-  const std::string problem = validate(configuration.fixture_values(), configuration.sequence);
-  if (!problem.empty()) throw InputError(problem);
-}
-
-void complete_guidance(ExperimentConfiguration& configuration) {
-  const bool needed = configuration.has_guidance();
-  if (configuration.guidance && !needed)
-    throw InputError("guidance", "expected only when a fixture has role = guidance");
-  if (needed && !configuration.guidance) configuration.guidance.emplace();
-}
-
-void check_sequence(ExperimentConfiguration& configuration) {
-  for (std::size_t i = 0; i < configuration.sequence.size(); ++i)
-    if (!can_be_pressed(configuration, configuration.sequence[i]))
-      throw InputError(
-          "sequence." + std::to_string(i) + ".button = " + std::to_string(configuration.sequence[i].button),
-          "expected a button of operator.presses (any button in experiments with a section live)");
-}
-
-namespace {
-
 // The word of feedback.force.
 std::string name_of(FeedbackSettings feedback) {
   for (const Parameter& p : parameters(feedback))
@@ -293,6 +237,54 @@ void check_links(const ExperimentConfiguration& configuration) {
 }
 
 }  // namespace
+
+std::vector<FixtureValues> ExperimentConfiguration::fixture_values() const {
+  std::vector<FixtureValues> values;
+  for (const auto& rule : fixtures) values.push_back(values_of(rule));
+  return values;
+}
+
+bool ExperimentConfiguration::has_guidance() const {
+  const std::vector<FixtureValues> values = fixture_values();
+  return std::ranges::any_of(values, [](const FixtureValues& v) { return v.role == FixtureRole::guidance; });
+}
+
+void check_changes(ExperimentConfiguration& configuration) {
+  after_changes(configuration, [](const auto& factory, const std::string& where) {
+    const std::string problem = factory.validate();
+    if (!problem.empty()) throw InputError(where, "after this change renderer." + problem);
+  });
+  max_renderer_stiffness(configuration);
+}
+
+double max_renderer_stiffness(const ExperimentConfiguration& configuration) {
+  const std::string& name = configuration.renderer.name;
+  double max = stiffness_of(*configuration.renderer.factory, name);
+  after_changes(configuration, [&](const auto& factory, const std::string&) {
+    max = std::max(max, stiffness_of(factory, name));
+  });
+  return max;
+}
+
+void check_fixtures(ExperimentConfiguration& configuration) {
+  const std::string problem = validate(configuration.fixture_values(), configuration.sequence);
+  if (!problem.empty()) throw InputError(problem);
+}
+
+void complete_guidance(ExperimentConfiguration& configuration) {
+  const bool needed = configuration.has_guidance();
+  if (configuration.guidance && !needed)
+    throw InputError("guidance", "expected only when a fixture has role = guidance");
+  if (needed && !configuration.guidance) configuration.guidance.emplace();
+}
+
+void check_sequence(ExperimentConfiguration& configuration) {
+  for (std::size_t i = 0; i < configuration.sequence.size(); ++i)
+    if (!can_be_pressed(configuration, configuration.sequence[i]))
+      throw InputError(
+          "sequence." + std::to_string(i) + ".button = " + std::to_string(configuration.sequence[i].button),
+          "expected a button of operator.presses (any button in experiments with a section live)");
+}
 
 bool renders_tool(const ExperimentConfiguration& configuration) {
   return find_entry(renderers(), configuration.renderer.name, "renderer.name").degrees_of_freedom ==

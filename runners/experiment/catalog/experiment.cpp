@@ -9,7 +9,6 @@
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "runners/experiment/catalog/configuration.h"
-#include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "runners/experiment/settings/changed_settings.h"
@@ -25,6 +24,93 @@ namespace {
 void add_schedule(const std::string& name, const std::vector<double>& rows, std::vector<Phase>& phases) {
   for (std::size_t i = 2; i < rows.size(); i += 2)
     if (rows[i + 1] != rows[i - 1]) phases.push_back({"the change of " + name, rows[i - 2], rows[i]});
+}
+
+constexpr const char* kRecordedSession = "live-session";
+
+// Returns the tool of the renderer for the slave, nothing if the renderer has none. Throws InputError if the
+// steps of the slave are too long for it. See load_tool() for the tool itself.
+std::optional<SlaveTool> slave_tool(const ExperimentConfiguration& configuration) {
+  if (!renders_tool(configuration)) return {};
+  const auto tool = load_tool(*configuration.renderer.factory->tool());
+  SlaveTool made = make_slave_tool(tool->mesh, tool->inertia_m2);
+  const std::string problem = validate(*configuration.slave, made, 1 / configuration.run.haptic_rate_hz);
+  if (!problem.empty()) throw InputError("slave." + problem);
+  return made;
+}
+
+// Throws InputError if a file that was named as an experiment is a sweep.
+void refuse_sweep(const Json& configuration, const std::string& label) {
+  if (configuration.contains("experiment") && configuration.contains("axes"))
+    throw InputError(label, std::string("is a sweep: expected `remote-touch sweep ") + label + " -o FILE`");
+}
+
+// The override that removes the slave also removes the sections that need one.
+void remove_with_slave(Json& configuration, const std::vector<std::string>& overrides) {
+  if (std::ranges::find(overrides, "slave=null") == overrides.end()) return;
+  for (const char* section : {"command_link", "force_link", "frame_link", "feedback", "registration"})
+    configuration.erase(section);
+}
+
+// Returns k_s of a renderer for points without a stiffness, as the configuration gives it.
+double own_stiffness_N_per_m(const Part<RendererEntry>& renderer) {
+  for (const Parameter& p : renderer.factory->settings())
+    if (double* const* value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
+      return **value;
+  return renderer.factory->stiffness_N_per_m();
+}
+
+// The default DepthReport: prints one line when an OpenCL device has failed or cannot be used. The CPU then
+// computes the same results.
+void print_line(const std::string& line) {
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+using Names = std::vector<std::string>;
+
+// The deviations, jitters and probabilities, by section; the first is the level of the sections.
+const Names kOfRun = {"frame_jitter_s", "frame_drop_probability"};
+const Names kOfScene = {"noise_sigma_m", "noise_per_m", "colour_noise", "dropout_probability",
+                        "turbidity_per_m"};
+const Names kOfSensor = {"name", "sensor", "noise_px", "disparity_step_px", "lateral_noise_px"};
+const Names kOfFaults = random_faults();
+const Names kOfLink = {"jitter_s", "loss_probability"};
+const Names kOfRegistration = {"offset_m", "rotation_deg"};
+
+bool has(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_any_above_0(const Json& section, const Names& parameters) {
+  for (const std::string& name : parameters)
+    if (const auto found = section.find(name);
+        found != section.end() && found->is_number() && found->get<double>() > 0)
+      return true;
+  return false;
+}
+
+// True if a triangulating sensor may draw. The rounding of active stereo may be all of its noise; structured
+// light has more where it meets a surface at an angle.
+bool triangulation_draws(const Json& scene) {
+  const bool is_structured = scene["sensor"] == "structured-light";
+  DepthSensorSettings settings;
+  settings.sensor = is_structured ? DepthSensorKind::structured_light : DepthSensorKind::active_stereo;
+  settings.noise_px = scene.value("noise_px", -1.0);
+  settings.disparity_step_px = scene.value("disparity_step_px", -1.0);
+  settings.lateral_noise_px = scene.value("lateral_noise_px", -1.0);
+  const Triangulation t = triangulation(settings);
+  const double rounding = is_structured ? 0 : t.step_px * t.step_px / 12;
+  return t.lateral_noise_px > 0 || t.noise_px * t.noise_px > rounding;
+}
+
+bool scene_draws(const Json& scene) {
+  static const Names known = {"flat-grid",    "moving-lift", "moving-shape",  "plates",       "triangle-wave",
+                              "camera-scene", "points",      "beating-heart", "valve-tank",   "box",
+                              "slot",         "wedge",       "panel",         "moving-plane", "recording",
+                              "mesh-scene",   "live-session"};
+  if (!has(known, scene.value("name", ""))) return true;
+  if (scene.contains("sensor") && scene["sensor"] != "simple") return triangulation_draws(scene);
+  return is_any_above_0(scene, kOfScene);
 }
 
 }  // namespace
@@ -54,36 +140,6 @@ std::vector<Phase> operator_phases(const ExperimentConfiguration& configuration)
   add_schedule("operator.grip", hand.grip, phases);
   return phases;
 }
-
-namespace {
-
-constexpr const char* kRecordedSession = "live-session";
-
-// Returns the tool of the renderer for the slave, nothing if the renderer has none. Throws InputError if the
-// steps of the slave are too long for it. See load_tool() for the tool itself.
-std::optional<SlaveTool> slave_tool(const ExperimentConfiguration& configuration) {
-  if (!renders_tool(configuration)) return {};
-  const auto tool = load_tool(*configuration.renderer.factory->tool());
-  SlaveTool made = make_slave_tool(tool->mesh, tool->inertia_m2);
-  const std::string problem = validate(*configuration.slave, made, 1 / configuration.run.haptic_rate_hz);
-  if (!problem.empty()) throw InputError("slave." + problem);
-  return made;
-}
-
-// Throws InputError if a file that was named as an experiment is a sweep.
-void refuse_sweep(const Json& configuration, const std::string& label) {
-  if (configuration.contains("experiment") && configuration.contains("axes"))
-    throw InputError(label, std::string("is a sweep: expected `remote-touch sweep ") + label + " -o FILE`");
-}
-
-// The override that removes the slave also removes the sections that need one.
-void remove_with_slave(Json& configuration, const std::vector<std::string>& overrides) {
-  if (std::ranges::find(overrides, "slave=null") == overrides.end()) return;
-  for (const char* section : {"command_link", "force_link", "frame_link", "feedback", "registration"})
-    configuration.erase(section);
-}
-
-}  // namespace
 
 Experiment Experiment::from_json(const std::string& text, const std::string& label,
                                  const std::vector<std::string>& overrides) {
@@ -167,18 +223,6 @@ std::unique_ptr<Renderer> Experiment::build_renderer(const Kernels& kernels,
       configuration_.fixture_values(), configuration_.sequence, std::move(switches));
 }
 
-namespace {
-
-// Returns k_s of a renderer for points without a stiffness, as the configuration gives it.
-double own_stiffness_N_per_m(const Part<RendererEntry>& renderer) {
-  for (const Parameter& p : renderer.factory->settings())
-    if (double* const* value = std::get_if<double*>(&p.value); value && p.name == "stiffness_N_per_m")
-      return **value;
-  return renderer.factory->stiffness_N_per_m();
-}
-
-}  // namespace
-
 FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitches> switches) const {
   std::vector<std::unique_ptr<const FixtureRule>> rules;
   for (const auto& rule : configuration_.fixtures) rules.push_back(rule.factory->build());
@@ -187,16 +231,6 @@ FixtureAssignment Experiment::build_fixtures(std::shared_ptr<const FixtureSwitch
   return FixtureAssignment(std::move(rules), configuration_.sequence.empty() ? nullptr : std::move(switches),
                            own_stiffness_N_per_m(configuration_.renderer));
 }
-
-namespace {
-
-// The default DepthReport: prints one line when an OpenCL device has failed or cannot be used. The CPU then
-// computes the same results.
-void print_line(const std::string& line) {
-  std::fprintf(stderr, "%s\n", line.c_str());
-}
-
-}  // namespace
 
 FrameProcessing Experiment::build_processing(const Kernels& kernels,
                                              std::shared_ptr<const FixtureSwitches> switches,
@@ -311,57 +345,6 @@ double Experiment::max_stiffness_N_per_m() const {
   }
   return holds + pulls;
 }
-
-namespace {
-
-using Names = std::vector<std::string>;
-
-// The deviations, jitters and probabilities, by section; the first is the level of the sections.
-const Names kOfRun = {"frame_jitter_s", "frame_drop_probability"};
-const Names kOfScene = {"noise_sigma_m", "noise_per_m", "colour_noise", "dropout_probability",
-                        "turbidity_per_m"};
-const Names kOfSensor = {"name", "sensor", "noise_px", "disparity_step_px", "lateral_noise_px"};
-const Names kOfFaults = random_faults();
-const Names kOfLink = {"jitter_s", "loss_probability"};
-const Names kOfRegistration = {"offset_m", "rotation_deg"};
-
-bool has(const Names& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-bool is_any_above_0(const Json& section, const Names& parameters) {
-  for (const std::string& name : parameters)
-    if (const auto found = section.find(name);
-        found != section.end() && found->is_number() && found->get<double>() > 0)
-      return true;
-  return false;
-}
-
-// True if a triangulating sensor may draw. The rounding of active stereo may be all of its noise; structured
-// light has more where it meets a surface at an angle.
-bool triangulation_draws(const Json& scene) {
-  const bool is_structured = scene["sensor"] == "structured-light";
-  DepthSensorSettings settings;
-  settings.sensor = is_structured ? DepthSensorKind::structured_light : DepthSensorKind::active_stereo;
-  settings.noise_px = scene.value("noise_px", -1.0);
-  settings.disparity_step_px = scene.value("disparity_step_px", -1.0);
-  settings.lateral_noise_px = scene.value("lateral_noise_px", -1.0);
-  const Triangulation t = triangulation(settings);
-  const double rounding = is_structured ? 0 : t.step_px * t.step_px / 12;
-  return t.lateral_noise_px > 0 || t.noise_px * t.noise_px > rounding;
-}
-
-bool scene_draws(const Json& scene) {
-  static const Names known = {"flat-grid",    "moving-lift", "moving-shape",  "plates",       "triangle-wave",
-                              "camera-scene", "points",      "beating-heart", "valve-tank",   "box",
-                              "slot",         "wedge",       "panel",         "moving-plane", "recording",
-                              "mesh-scene",   "live-session"};
-  if (!has(known, scene.value("name", ""))) return true;
-  if (scene.contains("sensor") && scene["sensor"] != "simple") return triangulation_draws(scene);
-  return is_any_above_0(scene, kOfScene);
-}
-
-}  // namespace
 
 RandomStreams random_streams(const Experiment& experiment) {
   const Json json = parse_json(experiment.to_json(), "an experiment");

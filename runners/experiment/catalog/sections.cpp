@@ -1,10 +1,9 @@
-#include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/catalog/configuration.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/settings/json_parameters.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/experiment/hand/contact_replay.h"
+#include "runners/experiment/hand/trajectory.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,6 @@
 #include "core/points/vector.h"
 
 namespace remote_touch {
-
 namespace {
 
 Vec3 with_motors(const Vec3& v, bool x, bool y, bool z) {
@@ -22,6 +21,18 @@ Vec3 cut(const Vec3& v, double max_length) {
 Vec3 rounded(const Vec3& v, double step) {
   if (!(step > 0)) return v;
   return v.unaryExpr([step](double x) { return std::round(x / step) * step; });
+}
+
+constexpr double kMaxTick_s = 0.01;  // longest tick at the haptic rates that an experiment may have
+// The maximum of stiffness / mass * kMaxTick_s^2. HeldForceStep keeps its error bound up to this value. A
+// hand at the limit already oscillates five times in a tick.
+constexpr double kMaxNormalisedStiffness = 1000;
+
+std::string validate_spring(const char* name, double stiffness, double mass, const char* mass_name) {
+  const double max = kMaxNormalisedStiffness * mass / (kMaxTick_s * kMaxTick_s);
+  if (stiffness <= max) return {};
+  return name + (" = " + std::to_string(stiffness)) + ": expected at most " + std::to_string(max) +
+         " for this " + mass_name;
 }
 
 }  // namespace
@@ -112,22 +123,6 @@ Wrench DeviceModel::exerted_for(const Wrench& command) {
   // The entry after the newest one is the oldest. Before the ring is full it is a zero wrench.
   return exerted(s_.motors, handle_W_, commands_[command_count_ % commands_.size()]);
 }
-
-namespace {
-
-constexpr double kMaxTick_s = 0.01;  // longest tick at the haptic rates that an experiment may have
-// The maximum of stiffness / mass * kMaxTick_s^2. HeldForceStep keeps its error bound up to this value. A
-// hand at the limit already oscillates five times in a tick.
-constexpr double kMaxNormalisedStiffness = 1000;
-
-std::string validate_spring(const char* name, double stiffness, double mass, const char* mass_name) {
-  const double max = kMaxNormalisedStiffness * mass / (kMaxTick_s * kMaxTick_s);
-  if (stiffness <= max) return {};
-  return name + (" = " + std::to_string(stiffness)) + ": expected at most " + std::to_string(max) +
-         " for this " + mass_name;
-}
-
-}  // namespace
 
 Parameters parameters(OperatorSettings& s) {
   return {

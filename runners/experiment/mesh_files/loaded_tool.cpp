@@ -116,6 +116,54 @@ KeyedTool built_or_cached(const ToolSettings& s) {
   return {key, std::move(stored)};
 }
 
+using Tool = std::shared_ptr<const VoxelTool>;
+
+std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
+  return std::make_unique<ToolRenderer>(motion, tool, kernels);
+}
+std::unique_ptr<Renderer> renderer_of(const TrackedToolParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
+  return std::make_unique<TrackedToolRenderer>(motion, tool, kernels);
+}
+
+// The rules for comparison have settings of their own, none of which is live.
+class ToolToCompare final : public ToolRenderer {
+ public:
+  using ToolRenderer::ToolRenderer;
+  Parameters live_parameters() override { return {}; }
+};
+std::unique_ptr<Renderer> renderer_of(const ToolPenaltyParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
+  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
+                                         make_penalty_motion(motion, *tool));
+}
+std::unique_ptr<Renderer> renderer_of(const ToolGodObjectParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
+  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
+                                         std::make_unique<GodObjectMotion>(motion, *tool));
+}
+std::unique_ptr<Renderer> renderer_of(const InnerSphereParameters& motion, const Tool& tool,
+                                      const Kernels& kernels) {
+  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
+                                         std::make_unique<InnerSphereMotion>(motion, *tool));
+}
+
+template <class MotionSettings>
+ToolSettings tool_for(ToolSettings tool, const MotionSettings& motion) {
+  if constexpr (std::is_same_v<MotionSettings, TrackedToolParameters>) return tool_for(tool, motion.tool);
+  if constexpr (std::is_same_v<MotionSettings, ToolParameters>)
+    tool.outer_field = motion.contact_rule == ContactRule::continuous;
+  if constexpr (std::is_same_v<MotionSettings, ToolGodObjectParameters>) tool.outer_field = true;
+  return tool;
+}
+
+std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion, const ToolOfSpheres& loaded,
+                                      const Kernels& kernels) {
+  const std::shared_ptr<const SphereTree> spheres(loaded.spheres, &loaded.spheres->spheres);
+  return std::make_unique<SphereTreeRenderer>(motion, loaded.tool, spheres, kernels);
+}
+
 }  // namespace
 
 std::string sha256_of_mesh(const TriangleMesh& mesh) {
@@ -207,58 +255,6 @@ ToolOfSpheres load_tool_of_spheres(const ToolSettings& s, int max_leaves, std::s
   if (report != nullptr) *report = made.stored.report + "\n" + text(*spheres);
   return {tool, std::make_shared<const ToolSpheres>(*std::move(spheres))};
 }
-
-namespace {
-
-using Tool = std::shared_ptr<const VoxelTool>;
-
-std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion, const Tool& tool,
-                                      const Kernels& kernels) {
-  return std::make_unique<ToolRenderer>(motion, tool, kernels);
-}
-std::unique_ptr<Renderer> renderer_of(const TrackedToolParameters& motion, const Tool& tool,
-                                      const Kernels& kernels) {
-  return std::make_unique<TrackedToolRenderer>(motion, tool, kernels);
-}
-
-// The rules for comparison have settings of their own, none of which is live.
-class ToolToCompare final : public ToolRenderer {
- public:
-  using ToolRenderer::ToolRenderer;
-  Parameters live_parameters() override { return {}; }
-};
-std::unique_ptr<Renderer> renderer_of(const ToolPenaltyParameters& motion, const Tool& tool,
-                                      const Kernels& kernels) {
-  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
-                                         make_penalty_motion(motion, *tool));
-}
-std::unique_ptr<Renderer> renderer_of(const ToolGodObjectParameters& motion, const Tool& tool,
-                                      const Kernels& kernels) {
-  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
-                                         std::make_unique<GodObjectMotion>(motion, *tool));
-}
-std::unique_ptr<Renderer> renderer_of(const InnerSphereParameters& motion, const Tool& tool,
-                                      const Kernels& kernels) {
-  return std::make_unique<ToolToCompare>(tool_parameters(motion), tool, kernels,
-                                         std::make_unique<InnerSphereMotion>(motion, *tool));
-}
-
-template <class MotionSettings>
-ToolSettings tool_for(ToolSettings tool, const MotionSettings& motion) {
-  if constexpr (std::is_same_v<MotionSettings, TrackedToolParameters>) return tool_for(tool, motion.tool);
-  if constexpr (std::is_same_v<MotionSettings, ToolParameters>)
-    tool.outer_field = motion.contact_rule == ContactRule::continuous;
-  if constexpr (std::is_same_v<MotionSettings, ToolGodObjectParameters>) tool.outer_field = true;
-  return tool;
-}
-
-std::unique_ptr<Renderer> renderer_of(const ToolParameters& motion, const ToolOfSpheres& loaded,
-                                      const Kernels& kernels) {
-  const std::shared_ptr<const SphereTree> spheres(loaded.spheres, &loaded.spheres->spheres);
-  return std::make_unique<SphereTreeRenderer>(motion, loaded.tool, spheres, kernels);
-}
-
-}  // namespace
 
 template <class MotionSettings>
 ToolFromMesh<MotionSettings>::ToolFromMesh(const Settings& settings, double, const Kernels& kernels)

@@ -20,8 +20,6 @@
 #include "core/dissertation/tool_shape/generated_tools.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "runners/experiment/mesh_files/mesh_text.h"
-#include "runners/experiment/mesh_files/ply_file.h"
 
 namespace remote_touch {
 namespace {

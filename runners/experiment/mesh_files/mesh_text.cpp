@@ -1,4 +1,4 @@
-#include "runners/experiment/mesh_files/mesh_text.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 
 #include <algorithm>
 #include <bit>

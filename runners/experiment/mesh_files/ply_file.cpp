@@ -1,4 +1,4 @@
-#include "runners/experiment/mesh_files/ply_file.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "runners/experiment/mesh_files/mesh_text.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {

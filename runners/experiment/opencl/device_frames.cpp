@@ -39,6 +39,18 @@ Cache& cache() {
   return one;
 }
 
+constexpr std::size_t kBorder = 7, kGroup = 64;  // BORDER of the kernels; pixels of a row in a work group
+std::vector<double> rays(std::size_t count, double centre, double focal) {
+  std::vector<double> all(count + 2 * kBorder);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = (static_cast<int>(i) - static_cast<int>(kBorder) - centre) / focal;
+  return all;
+}
+
+std::vector<float> narrow(const std::vector<double>& wide) {
+  return {wide.begin(), wide.end()};
+}
+
 }  // namespace
 
 BuiltKernels::BuiltKernels(const OpenClLibrary& library, const OpenClDevice& device,
@@ -90,22 +102,6 @@ std::vector<std::shared_ptr<const BuiltKernels>> forget_kernels(cl_device_id dev
   std::erase_if(cache().built, [&](const auto& entry) { return entry.first.first == device; });
   return forgotten;
 }
-
-namespace {
-
-constexpr std::size_t kBorder = 7, kGroup = 64;  // BORDER of the kernels; pixels of a row in a work group
-std::vector<double> rays(std::size_t count, double centre, double focal) {
-  std::vector<double> all(count + 2 * kBorder);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    all[i] = (static_cast<int>(i) - static_cast<int>(kBorder) - centre) / focal;
-  return all;
-}
-
-std::vector<float> narrow(const std::vector<double>& wide) {
-  return {wide.begin(), wide.end()};
-}
-
-}  // namespace
 
 DeviceFrames::DeviceFrames(std::shared_ptr<const BuiltKernels> kernels, const DepthPipelineSettings& settings)
     : kernels_(std::move(kernels)), cl_(kernels_->library()), settings_(settings) {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <mutex>
 
-#include "runners/libraries/lasting_thread.h"
+#include "runners/libraries/shared_library.h"
 
 namespace remote_touch {
 namespace {
@@ -31,29 +31,6 @@ constexpr NamedCode kCodes[] = {
     {CL_INVALID_COMMAND_QUEUE, "CL_INVALID_COMMAND_QUEUE"},
     {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},  // the loader returns it if no driver is installed
 };
-
-}  // namespace
-
-OpenClLibrary::OpenClLibrary() : library(kOpenClLibrary) {}
-
-const OpenClLibrary& opencl_library() {
-  // The library is never freed, because drivers leave threads behind, and objects may be released late.
-  static std::mutex mutex;
-  static const OpenClLibrary* one = nullptr;
-  const std::lock_guard lock(mutex);
-  if (one == nullptr) one = new OpenClLibrary;
-  return *one;
-}
-
-void require(cl_int code, const char* function) {
-  if (code == CL_SUCCESS) return;
-  const char* name = "OpenCL error";
-  for (const NamedCode& each : kCodes)
-    if (each.code == code) name = each.name;
-  throw OpenClError(std::string(function) + ": " + name + " (" + std::to_string(code) + ")");
-}
-
-namespace {
 
 constexpr cl_int kNoPlatform = -1001;  // CL_PLATFORM_NOT_FOUND_KHR
 
@@ -100,6 +77,25 @@ void read_arithmetic(const OpenClLibrary& library, OpenClDevice& device) {
 }
 
 }  // namespace
+
+OpenClLibrary::OpenClLibrary() : library(kOpenClLibrary) {}
+
+const OpenClLibrary& opencl_library() {
+  // The library is never freed, because drivers leave threads behind, and objects may be released late.
+  static std::mutex mutex;
+  static const OpenClLibrary* one = nullptr;
+  const std::lock_guard lock(mutex);
+  if (one == nullptr) one = new OpenClLibrary;
+  return *one;
+}
+
+void require(cl_int code, const char* function) {
+  if (code == CL_SUCCESS) return;
+  const char* name = "OpenCL error";
+  for (const NamedCode& each : kCodes)
+    if (each.code == code) name = each.name;
+  throw OpenClError(std::string(function) + ": " + name + " (" + std::to_string(code) + ")");
+}
 
 std::vector<OpenClDevice> opencl_devices(const OpenClLibrary& library) {
   cl_uint count = 0;

@@ -42,6 +42,29 @@ std::string too_slow(const char* slew, const char* max, double value, double min
          " / 0.01 s = " + std::to_string(min) + " or more, so that the maximum can fall to 0 in that time";
 }
 
+constexpr std::size_t kTicksAtOnce = 1000;
+// Largest number of a tick: 24 days at 1 kHz. A run needs memory for every tick, including missed ticks.
+constexpr std::uint64_t kMaxTick = std::numeric_limits<std::int32_t>::max();
+constexpr double kMaxSide_px = 65535;
+
+std::string view_text(const SensorView& view, const RigidTransform& X_WC) {
+  const CameraIntrinsics& c = view.camera;
+  nlohmann::json json = {{"width", c.width},
+                         {"height", c.height},
+                         {"fx", c.fx},
+                         {"fy", c.fy},
+                         {"cx", c.cx},
+                         {"cy", c.cy},
+                         {"metres_per_unit", view.metres_per_unit},
+                         {"frame_rate_hz", view.frame_rate_hz},
+                         {"has_colour", view.has_colour}};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) json["X_WC"].push_back(X_WC(row, column));
+  if (view.cloud)
+    json["cloud"] = {{"has_normals", view.cloud->has_normals}, {"grid_columns", view.cloud->grid_columns}};
+  return json.dump();
+}
+
 }  // namespace
 
 Parameters parameters(SafetyLimits& s) {
@@ -73,33 +96,6 @@ std::string validate(const SafetyLimits& s) {
   return too_slow("torque_slew_Nm_per_s", "max_torque_Nm", s.torque_slew_Nm_per_s,
                   s.max_torque_Nm / kMaxRampDown_s);
 }
-
-namespace {
-
-constexpr std::size_t kTicksAtOnce = 1000;
-// Largest number of a tick: 24 days at 1 kHz. A run needs memory for every tick, including missed ticks.
-constexpr std::uint64_t kMaxTick = std::numeric_limits<std::int32_t>::max();
-constexpr double kMaxSide_px = 65535;
-
-std::string view_text(const SensorView& view, const RigidTransform& X_WC) {
-  const CameraIntrinsics& c = view.camera;
-  nlohmann::json json = {{"width", c.width},
-                         {"height", c.height},
-                         {"fx", c.fx},
-                         {"fy", c.fy},
-                         {"cx", c.cx},
-                         {"cy", c.cy},
-                         {"metres_per_unit", view.metres_per_unit},
-                         {"frame_rate_hz", view.frame_rate_hz},
-                         {"has_colour", view.has_colour}};
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 4; ++column) json["X_WC"].push_back(X_WC(row, column));
-  if (view.cloud)
-    json["cloud"] = {{"has_normals", view.cloud->has_normals}, {"grid_columns", view.cloud->grid_columns}};
-  return json.dump();
-}
-
-}  // namespace
 
 SessionLayout layout_of(const SensorView& view) {
   SessionLayout layout;

@@ -72,6 +72,39 @@ bool removed(const CachedFile& file) {
   return fs::remove(file.path, refused);
 }
 
+constexpr std::size_t kHash = 64;
+
+std::string first_line(const CacheKind& kind) {
+  return "remote-touch-" + kind.name + "/" + std::to_string(kind.version) + "\n";
+}
+
+// The bytes of a file, mapped rather than read: large tools are in memory once only.
+class MappedFile {
+ public:
+  explicit MappedFile(const fs::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return;
+    struct stat about {};
+    if (::fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0) {
+      size_ = static_cast<std::size_t>(about.st_size);
+      data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file, 0);
+      if (data_ == MAP_FAILED) data_ = nullptr, size_ = 0;
+    }
+    ::close(file);
+  }
+  ~MappedFile() {
+    if (data_ != nullptr) ::munmap(data_, size_);
+  }
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
+
+ private:
+  void* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
 }  // namespace
 
 std::uintmax_t max_cache_bytes() {
@@ -107,43 +140,6 @@ CacheSize shrink_cache(const fs::path& folder, std::uintmax_t max_bytes) {
   }
   return left;
 }
-
-namespace {
-
-constexpr std::size_t kHash = 64;
-
-std::string first_line(const CacheKind& kind) {
-  return "remote-touch-" + kind.name + "/" + std::to_string(kind.version) + "\n";
-}
-
-// The bytes of a file, mapped rather than read: large tools are in memory once only.
-class MappedFile {
- public:
-  explicit MappedFile(const fs::path& path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) return;
-    struct stat about {};
-    if (::fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_size > 0) {
-      size_ = static_cast<std::size_t>(about.st_size);
-      data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file, 0);
-      if (data_ == MAP_FAILED) data_ = nullptr, size_ = 0;
-    }
-    ::close(file);
-  }
-  ~MappedFile() {
-    if (data_ != nullptr) ::munmap(data_, size_);
-  }
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-
-  std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
-
- private:
-  void* data_ = nullptr;
-  std::size_t size_ = 0;
-};
-
-}  // namespace
 
 void CacheWriter::bytes(const void* data, std::size_t size) {
   hash_.add(data, size);

@@ -29,23 +29,6 @@ nlohmann::json table_named(const std::string& name) {
   throw InputError(name, "no table of this name: expected one of data/second_implementation");
 }
 
-}  // namespace
-
-double second_number(const std::string& table, const std::string& place) {
-  return table_named(table).at(nlohmann::json::json_pointer(place)).get<double>();
-}
-
-std::vector<double> second_column(const std::string& table, const std::string& list,
-                                  const std::string& column) {
-  const nlohmann::json all = table_named(table);  // outlives the loop over its rows
-  std::vector<double> values;
-  for (const auto& row : all.at(nlohmann::json::json_pointer(list)))
-    values.push_back(row.at(column).get<double>());
-  return values;
-}
-
-namespace {
-
 using Keys = std::vector<std::string>;
 
 struct Assignment {
@@ -95,7 +78,58 @@ std::string short_text(const Json& value) {
                            : first_part(text, kMaxLength);
 }
 
+constexpr std::size_t kMaxLength = 60;  // maximum number of bytes that text_from() returns from `first` on
+
+// Returns the text from the byte `first` on, shortened. The first byte of a value, such as [, and "..." stand
+// for what is before it. No UTF-8 character is cut.
+std::string text_from(const std::string& text, std::size_t first) {
+  while (first > 0 && first < text.size() && (static_cast<unsigned char>(text[first]) & 0xC0) == 0x80)
+    --first;
+  const std::string rest = text.substr(std::min(first, text.size()));
+  return (first > 0 ? text.substr(0, 1) + "..." : "") +
+         (rest.size() <= kMaxLength ? rest : first_part(rest, kMaxLength - 3));
+}
+
+// Returns "3 against 4". Long values are shortened such that the first place at which they differ is shown.
+std::string both_texts(const Json* a, const Json* b) {
+  constexpr std::size_t kBefore = 20;  // number of bytes that are shown before that place
+  const std::string first = a ? a->dump() : "absent", second = b ? b->dump() : "absent";
+  const auto equal = static_cast<std::size_t>(
+      std::mismatch(first.begin(), first.end(), second.begin(), second.end()).first - first.begin());
+  const std::size_t begin = equal < kMaxLength - kBefore ? 0 : equal - kBefore;
+  return text_from(first, begin) + " against " + text_from(second, begin);
+}
+
+void differences(const std::string& path, const Json* a, const Json* b, std::vector<std::string>& found) {
+  if (a && b && *a == *b) return;
+  if (!a || !b || !a->is_object() || !b->is_object()) {
+    if (path != "title" && path != "experiment.title") found.push_back(path + " " + both_texts(a, b));
+    return;
+  }
+  const auto member = [](const Json& object, const std::string& key) {
+    const auto place = object.find(key);
+    return place == object.end() ? nullptr : &*place;
+  };
+  const std::string prefix = path.empty() ? "" : path + ".";
+  for (const auto& [key, value] : a->items()) differences(prefix + key, &value, member(*b, key), found);
+  for (const auto& [key, value] : b->items())
+    if (!a->contains(key)) differences(prefix + key, nullptr, &value, found);
+}
+
 }  // namespace
+
+double second_number(const std::string& table, const std::string& place) {
+  return table_named(table).at(nlohmann::json::json_pointer(place)).get<double>();
+}
+
+std::vector<double> second_column(const std::string& table, const std::string& list,
+                                  const std::string& column) {
+  const nlohmann::json all = table_named(table);  // outlives the loop over its rows
+  std::vector<double> values;
+  for (const auto& row : all.at(nlohmann::json::json_pointer(list)))
+    values.push_back(row.at(column).get<double>());
+  return values;
+}
 
 std::string first_part(const std::string& text, std::size_t max) {
   if (text.size() <= max) return text;
@@ -174,48 +208,6 @@ void apply_overrides(Json& configuration, const std::vector<std::string>& assign
   if (const auto title = configuration.find("title"); title != configuration.end() && title->is_string())
     *title = changed_title(title->get<std::string>(), changes);
 }
-
-namespace {
-
-constexpr std::size_t kMaxLength = 60;  // maximum number of bytes that text_from() returns from `first` on
-
-// Returns the text from the byte `first` on, shortened. The first byte of a value, such as [, and "..." stand
-// for what is before it. No UTF-8 character is cut.
-std::string text_from(const std::string& text, std::size_t first) {
-  while (first > 0 && first < text.size() && (static_cast<unsigned char>(text[first]) & 0xC0) == 0x80)
-    --first;
-  const std::string rest = text.substr(std::min(first, text.size()));
-  return (first > 0 ? text.substr(0, 1) + "..." : "") +
-         (rest.size() <= kMaxLength ? rest : first_part(rest, kMaxLength - 3));
-}
-
-// Returns "3 against 4". Long values are shortened such that the first place at which they differ is shown.
-std::string both_texts(const Json* a, const Json* b) {
-  constexpr std::size_t kBefore = 20;  // number of bytes that are shown before that place
-  const std::string first = a ? a->dump() : "absent", second = b ? b->dump() : "absent";
-  const auto equal = static_cast<std::size_t>(
-      std::mismatch(first.begin(), first.end(), second.begin(), second.end()).first - first.begin());
-  const std::size_t begin = equal < kMaxLength - kBefore ? 0 : equal - kBefore;
-  return text_from(first, begin) + " against " + text_from(second, begin);
-}
-
-void differences(const std::string& path, const Json* a, const Json* b, std::vector<std::string>& found) {
-  if (a && b && *a == *b) return;
-  if (!a || !b || !a->is_object() || !b->is_object()) {
-    if (path != "title" && path != "experiment.title") found.push_back(path + " " + both_texts(a, b));
-    return;
-  }
-  const auto member = [](const Json& object, const std::string& key) {
-    const auto place = object.find(key);
-    return place == object.end() ? nullptr : &*place;
-  };
-  const std::string prefix = path.empty() ? "" : path + ".";
-  for (const auto& [key, value] : a->items()) differences(prefix + key, &value, member(*b, key), found);
-  for (const auto& [key, value] : b->items())
-    if (!a->contains(key)) differences(prefix + key, nullptr, &value, found);
-}
-
-}  // namespace
 
 std::vector<std::string> configuration_differences(const std::string& first, const std::string& second) {
   const Json a = parse_json(first, "configuration"), b = parse_json(second, "configuration");

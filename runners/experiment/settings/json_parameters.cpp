@@ -183,6 +183,23 @@ std::string expected_text(const Parameter& p, const Json& value) {
   return (lacks_number ? "expected a number from " : "expected ") + allowed(p);
 }
 
+// JSON does not accept .3 and 3. as numbers, but users type them.
+Json number_or_text(const std::string& text) {
+  if (!text.starts_with('.') && !text.starts_with("-.") && !text.ends_with('.')) return Json(text);
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
+  return error == std::errc() && last == end ? Json(number) : Json(text);
+}
+
+// Returns the index in the list that a key states; nothing if it is not an index of the list.
+std::optional<std::size_t> index_in(const Json& list, const std::string& key) {
+  std::size_t i = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);
+  if (error != std::errc() || end != key.data() + key.size() || i >= list.size()) return std::nullopt;
+  return i;
+}
+
 }  // namespace
 
 void refuse_key(const std::string& key, const std::vector<std::string>& known, const std::string& prefix) {
@@ -216,19 +233,6 @@ void write_parameters(const Parameters& parameters, Json& object) {
   for (const Parameter& p : parameters) object[p.name] = std::visit(Writer{}, p.value);
 }
 
-namespace {
-
-// JSON does not accept .3 and 3. as numbers, but users type them.
-Json number_or_text(const std::string& text) {
-  if (!text.starts_with('.') && !text.starts_with("-.") && !text.ends_with('.')) return Json(text);
-  double number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
-  return error == std::errc() && last == end ? Json(number) : Json(text);
-}
-
-}  // namespace
-
 std::pair<std::string, Json> read_assignment(const std::string& assignment) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
@@ -258,18 +262,6 @@ std::vector<std::string> path_keys(const std::string& path) {
   }
   return keys;
 }
-
-namespace {
-
-// Returns the index in the list that a key states; nothing if it is not an index of the list.
-std::optional<std::size_t> index_in(const Json& list, const std::string& key) {
-  std::size_t i = 0;
-  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);
-  if (error != std::errc() || end != key.data() + key.size() || i >= list.size()) return std::nullopt;
-  return i;
-}
-
-}  // namespace
 
 const Json* find_value(const Json& json, std::span<const std::string> keys) {
   const Json* value = &json;

@@ -1,14 +1,19 @@
 #include "runners/experiment/settings/provenance.h"
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "analysis/storage/digest.h"
 #include "build_info.h"  // written by the build: version, commit, compiler, flags
 #include "core/kernels/isa.h"
+#include "core/parameters/parameter.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {
@@ -26,6 +31,162 @@ std::string quoted(const std::string& word) {
   return safe + "'";
 }
 
+ProgramIdentity& this_program() {
+  static ProgramIdentity program;
+  return program;
+}
+
+using Words = std::vector<std::string>;
+
+void add_options(Words& words, const char* option, const Words& values) {
+  for (const std::string& value : values) words.insert(words.end(), {option, value});
+}
+
+std::string cell_text(const Recipe& recipe) {
+  std::string text;
+  for (const std::size_t place : recipe.cell)
+    text.append(text.empty() ? "" : ",").append(std::to_string(place));
+  return text;
+}
+
+// Accepts integers only. The library would convert any number.
+void take_integer(const Json& json, const char* name, int& value) {
+  const auto found = json.find(name);
+  if (found == json.end()) return;
+  const auto number = found->is_number_integer() ? found->get<std::int64_t>() : -1;
+  if (number < 0 || number > std::numeric_limits<int>::max())
+    throw InputError(std::string(kRecipe) + "." + name, "expected an integer");
+  value = static_cast<int>(number);
+}
+
+void take_cell(const Json& json, std::vector<std::size_t>& cell) {
+  const auto found = json.find("cell");
+  if (found == json.end()) return;
+  for (const Json& place : found->get_ref<const Json::array_t&>()) {
+    if (!place.is_number_unsigned()) throw InputError(std::string(kRecipe) + ".cell", "expected integers");
+    cell.push_back(place.get<std::size_t>());
+  }
+}
+
+Recipe recipe_in(const Json& json) {
+  Recipe recipe{json.at("action").get<std::string>(), json.at("subject").get<std::string>()};
+  recipe.overrides = json.value("set", Words()), recipe.tolerances = json.value("tolerances", Words());
+  recipe.candidate = json.value("candidate", std::string());
+  take_cell(json, recipe.cell);
+  take_integer(json, "replicate", recipe.replicate), take_integer(json, "coarse", recipe.coarse);
+  return recipe;
+}
+
+bool is_known(const std::string& action) {
+  constexpr const char* kActions[] = {"run", "sweep", "replay", "figure", "compare"};
+  return std::find(std::begin(kActions), std::end(kActions), action) != std::end(kActions);
+}
+
+bool is_loaded(const std::string& sha256) {
+  const std::vector<ProgramIdentity::Plugin>& loaded = program_identity().plugins;
+  return std::any_of(loaded.begin(), loaded.end(),
+                     [&](const ProgramIdentity::Plugin& plugin) { return plugin.sha256 == sha256; });
+}
+
+// plugins: a line "FILE: sha256 HASH" for each.
+bool are_loaded(const std::string& plugins) {
+  std::istringstream lines(plugins);
+  for (std::string line; std::getline(lines, line);)
+    if (!is_loaded(line.substr(line.rfind(' ') + 1))) return false;
+  return true;
+}
+
+// Returns a map from the path in each line to the rest of the line.
+std::map<std::string, std::string> by_path(const std::string& text) {
+  std::map<std::string, std::string> lines;
+  std::istringstream stream(text);
+  stream.exceptions(std::ios::badbit);  // throws if memory runs out, which would look like the end
+  for (std::string line; std::getline(stream, line);) {
+    const std::size_t end = std::min(line.rfind(": "), line.size());
+    lines[line.substr(0, end)] = line.substr(std::min(end + 2, line.size()));
+  }
+  return lines;
+}
+
+constexpr const char* kAuthor = "{{The Remote Touch authors}}";
+constexpr const char* kTitle =
+    "{{Remote Touch}: simulation and evaluation of haptic rendering of streaming point clouds}";
+// The year of this version. README.md and CITATION.cff have the same.
+constexpr const char* kYear = "{2026}";
+
+// BibTeX counts braces even behind a backslash, so a brace is written as a command.
+std::string escaped(char c) {
+  static const std::map<char, const char*> commands = {
+      {'\\', "backslash"},   {'{', "braceleft"}, {'}', "braceright"}, {'^', "asciicircum"},
+      {'~', "asciitilde"},   {'<', "less"},      {'>', "greater"},    {'|', "bar"},
+      {'\'', "quotesingle"}, {'`', "asciigrave"}};
+  if (const auto found = commands.find(c); found != commands.end())
+    return std::string("{\\text") + found->second + "}";
+  return std::string("#$%&_").find(c) != std::string::npos ? std::string{'\\', c} : std::string{c};
+}
+
+std::string braced(const std::string& text) {
+  return "{" + bibtex_text(text) + "}";
+}
+
+std::string typewriter(const std::string& text) {
+  return "\\texttt" + braced(text);
+}
+
+// Names and values of fields; each value includes its braces.
+using Fields = std::vector<std::pair<std::string, std::string>>;
+
+std::string bibtex_entry(const std::string& kind, const std::string& key, const Fields& fields) {
+  std::size_t width = 0;
+  for (const auto& field : fields) width = std::max(width, field.first.size());
+  std::string text = "@" + kind + "{" + key;
+  for (const auto& [name, value] : fields)
+    text += ",\n  " + name + std::string(width - name.size(), ' ') + " = " + value;
+  return text + "\n}\n";
+}
+
+// Returns a key that BibTeX accepts.
+std::string key_of(const std::string& name) {
+  std::string key;
+  for (const char c : name) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '_';
+    key += is_plain ? c : '-';
+  }
+  return key.empty() ? "result" : key;
+}
+
+// "version 0.3.0, commit HASH with local changes, sources with SHA-256 HASH"
+std::string build_text(const TextAttributes& attributes) {
+  const std::string text = "version " + attribute(attributes, "version") + ", " + commit_text(attributes);
+  const std::string sources = attribute(attributes, "source_digest");
+  if (attribute(attributes, "git_dirty") == "no" || sources.empty()) return text;
+  return text + ", sources with SHA-256 " + sources;
+}
+
+// Returns the names of the user's program or plug-ins that add renderers and the like to the catalog; empty
+// if there are none.
+std::string own_programs(const TextAttributes& attributes) {
+  std::string text;
+  if (const std::string program = attribute(attributes, "program"); !program.empty())
+    text = "; in the program " + program + ", SHA-256 " + attribute(attributes, "program_sha256");
+  if (const std::string plugins = attribute(attributes, "plugins"); !plugins.empty())
+    text += "; with the plug-ins " + plugins;
+  return text;
+}
+
+// Returns the text as TeX.
+std::string how_to_repeat(const CitedResult& result) {
+  std::string commands;
+  for (const std::string& command : result.commands) commands += (commands.empty() ? "" : "; ") + command;
+  std::string text;
+  if (commands != printable(commands))
+    text = "; " + typewriter(shell_command({"remote-touch", "repro", result.file})) +
+           " prints the commands that make it again";
+  else if (!commands.empty())
+    text = "; made again by " + typewriter(commands);
+  return result.remark.empty() ? text : text + "; " + bibtex_text(result.remark);
+}
+
 }  // namespace
 
 std::string shell_command(const std::vector<std::string>& words) {
@@ -33,15 +194,6 @@ std::string shell_command(const std::vector<std::string>& words) {
   for (const std::string& word : words) command.append(command.empty() ? "" : " ").append(quoted(word));
   return command;
 }
-
-namespace {
-
-ProgramIdentity& this_program() {
-  static ProgramIdentity program;
-  return program;
-}
-
-}  // namespace
 
 void identify_program(ProgramIdentity identity) {
   this_program() = std::move(identity);
@@ -124,56 +276,6 @@ TextAttributes provenance(const std::string& config, const Recipe& recipe, const
   return list;
 }
 
-namespace {
-
-using Words = std::vector<std::string>;
-
-void add_options(Words& words, const char* option, const Words& values) {
-  for (const std::string& value : values) words.insert(words.end(), {option, value});
-}
-
-std::string cell_text(const Recipe& recipe) {
-  std::string text;
-  for (const std::size_t place : recipe.cell)
-    text.append(text.empty() ? "" : ",").append(std::to_string(place));
-  return text;
-}
-
-// Accepts integers only. The library would convert any number.
-void take_integer(const Json& json, const char* name, int& value) {
-  const auto found = json.find(name);
-  if (found == json.end()) return;
-  const auto number = found->is_number_integer() ? found->get<std::int64_t>() : -1;
-  if (number < 0 || number > std::numeric_limits<int>::max())
-    throw InputError(std::string(kRecipe) + "." + name, "expected an integer");
-  value = static_cast<int>(number);
-}
-
-void take_cell(const Json& json, std::vector<std::size_t>& cell) {
-  const auto found = json.find("cell");
-  if (found == json.end()) return;
-  for (const Json& place : found->get_ref<const Json::array_t&>()) {
-    if (!place.is_number_unsigned()) throw InputError(std::string(kRecipe) + ".cell", "expected integers");
-    cell.push_back(place.get<std::size_t>());
-  }
-}
-
-Recipe recipe_in(const Json& json) {
-  Recipe recipe{json.at("action").get<std::string>(), json.at("subject").get<std::string>()};
-  recipe.overrides = json.value("set", Words()), recipe.tolerances = json.value("tolerances", Words());
-  recipe.candidate = json.value("candidate", std::string());
-  take_cell(json, recipe.cell);
-  take_integer(json, "replicate", recipe.replicate), take_integer(json, "coarse", recipe.coarse);
-  return recipe;
-}
-
-bool is_known(const std::string& action) {
-  constexpr const char* kActions[] = {"run", "sweep", "replay", "figure", "compare"};
-  return std::find(std::begin(kActions), std::end(kActions), action) != std::end(kActions);
-}
-
-}  // namespace
-
 std::vector<Words> commands(const Recipe& recipe) {
   const bool is_replay = recipe.action == "replay";
   Words words = program_words();
@@ -216,24 +318,6 @@ std::optional<Recipe> recipe_of(const TextAttributes& attributes) {
   }
   return {};
 }
-
-namespace {
-
-bool is_loaded(const std::string& sha256) {
-  const std::vector<ProgramIdentity::Plugin>& loaded = program_identity().plugins;
-  return std::any_of(loaded.begin(), loaded.end(),
-                     [&](const ProgramIdentity::Plugin& plugin) { return plugin.sha256 == sha256; });
-}
-
-// plugins: a line "FILE: sha256 HASH" for each.
-bool are_loaded(const std::string& plugins) {
-  std::istringstream lines(plugins);
-  for (std::string line; std::getline(lines, line);)
-    if (!is_loaded(line.substr(line.rfind(' ') + 1))) return false;
-  return true;
-}
-
-}  // namespace
 
 std::string other_maker(const TextAttributes& result) {
   const std::string program = attribute(result, "program"), plugins = attribute(result, "plugins");
@@ -304,22 +388,6 @@ std::string in_one_line(const std::string& name) {
   return line;
 }
 
-namespace {
-
-// Returns a map from the path in each line to the rest of the line.
-std::map<std::string, std::string> by_path(const std::string& text) {
-  std::map<std::string, std::string> lines;
-  std::istringstream stream(text);
-  stream.exceptions(std::ios::badbit);  // throws if memory runs out, which would look like the end
-  for (std::string line; std::getline(stream, line);) {
-    const std::size_t end = std::min(line.rfind(": "), line.size());
-    lines[line.substr(0, end)] = line.substr(std::min(end + 2, line.size()));
-  }
-  return lines;
-}
-
-}  // namespace
-
 std::vector<ChangedInput> changed_inputs(const std::string& before, const std::string& now) {
   const auto then = by_path(before), later = by_path(now);
   std::vector<ChangedInput> changed;
@@ -343,6 +411,52 @@ void require_unchanged(const std::vector<InputPart>& parts, const std::string& b
   const ChangedInput& first = changed.front();
   throw InputError(first.path, "changed while it was read (" + first.before + "; now " + first.now +
                                    "): expected files that no program writes during the run");
+}
+
+std::string bibtex_text(const std::string& text) {
+  std::string value;
+  char last = ' ';
+  for (const char c : printable(text)) {
+    if (c == '-' && last == '-') value += "{}";
+    value += escaped(c);
+    last = c;
+  }
+  return value;
+}
+
+std::string dissertation_entry() {
+  return bibtex_entry(
+      "phdthesis", "ryden_2013",
+      {{"author", "{Ryd{\\'e}n, F.}"},
+       {"title", "{Real-Time Haptic Interaction with Remote Environments using Non-contact Sensors}"},
+       {"school", "{University of Washington}"},
+       {"year", "{2013}"}});
+}
+
+std::string program_entry(const TextAttributes& attributes) {
+  const std::string stored_version = attribute(attributes, "version");
+  const std::string commit = attribute(attributes, "git_commit");
+  const std::string build = commit.empty() || commit == "unknown" ? stored_version : commit.substr(0, 12);
+  Fields fields = {{"author", kAuthor}, {"title", kTitle}, {"version", braced(stored_version)}};
+  if (stored_version == version()) fields.emplace_back("year", kYear);
+  fields.emplace_back("note", braced(build_text(attributes)));
+  return bibtex_entry("software", "remote_touch_" + key_of(build), fields);
+}
+
+std::string result_entry(const CitedResult& result, const TextAttributes& attributes) {
+  const std::filesystem::path file(result.file);
+  const std::string name = file.filename().string();
+  const std::string origin =
+      bibtex_text(result.kind + " ") + typewriter(name) +
+      bibtex_text(" of Remote Touch, " + build_text(attributes) + own_programs(attributes));
+  std::string note = bibtex_text(result.digest) + how_to_repeat(result);
+  if (const std::string inputs = attribute(attributes, "input_digests"); !inputs.empty())
+    note += bibtex_text("; it read " + inputs);
+  return bibtex_entry("misc", key_of(file.stem().string()),
+                      {{"key", braced(name)},
+                       {"title", braced(result.title.empty() ? name : result.title)},
+                       {"howpublished", "{" + origin + "}"},
+                       {"note", "{" + note + "}"}});
 }
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-#include "runners/experiment/simulation/contact_watch.h"
+#include "runners/experiment/simulation/run_notes.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -102,39 +102,6 @@ std::optional<Disk> held_disk(const std::vector<Vec2>& points, Vec2 centre) {
   return {};
 }
 
-}  // namespace
-
-// A gap at the position is wider than the ball. It contains a disk of radius ball_radius_m that contains the
-// position, so the centre of that disk is at most ball_radius_m from the position. The search starts from the
-// cells of a lattice over these centres. A cell is skipped if one point is within the ball's radius of all of
-// the cell: no such disk can have its centre there.
-PointGap widest_gap(const std::vector<Vec3>& points, const Vec3& position, double ball_radius_m,
-                    double known_m) {
-  assert(ball_radius_m > 0);
-  const std::vector<Vec2> flat = in_their_plane(points, position);
-  if (flat.empty()) return {};
-  PointGap gap{0, true};
-  constexpr int kCells = 6;  // number of cells from the position to the border of the lattice
-  const double pitch_m = 0.25 * ball_radius_m;
-  for (int row = -kCells; row <= kCells; ++row)
-    for (int column = -kCells; column <= kCells; ++column) {
-      const Vec2 cell(column * pitch_m, row * pitch_m);
-      if (cell.norm() > kCells * pitch_m) continue;
-      if (has_point_within(flat, cell, ball_radius_m - std::numbers::sqrt2 / 2 * pitch_m)) continue;
-      const std::optional<Disk> disk = held_disk(flat, cell);
-      if (!disk || disk->centre.norm() + disk->radius_m > known_m) {
-        gap.is_decided = false;
-        continue;
-      }
-      const bool passes = disk->radius_m > ball_radius_m * (1 + kRounding);
-      const bool is_here = disk->centre.norm() <= disk->radius_m * (1 + kRounding);
-      if (passes && is_here) gap.radius_m = std::max(gap.radius_m, disk->radius_m);  // no NaN
-    }
-  return gap;
-}
-
-namespace {
-
 // Returns the points of a frame within a ball.
 std::vector<Vec3> points_in(const NeighbourSearch& frame, const Ball& ball, const Kernels& kernels) {
   GatheredPoints found;
@@ -176,6 +143,35 @@ std::pair<std::string, std::string> distinct_texts(double a, double b) {
 }
 
 }  // namespace
+
+// A gap at the position is wider than the ball. It contains a disk of radius ball_radius_m that contains the
+// position, so the centre of that disk is at most ball_radius_m from the position. The search starts from the
+// cells of a lattice over these centres. A cell is skipped if one point is within the ball's radius of all of
+// the cell: no such disk can have its centre there.
+PointGap widest_gap(const std::vector<Vec3>& points, const Vec3& position, double ball_radius_m,
+                    double known_m) {
+  assert(ball_radius_m > 0);
+  const std::vector<Vec2> flat = in_their_plane(points, position);
+  if (flat.empty()) return {};
+  PointGap gap{0, true};
+  constexpr int kCells = 6;  // number of cells from the position to the border of the lattice
+  const double pitch_m = 0.25 * ball_radius_m;
+  for (int row = -kCells; row <= kCells; ++row)
+    for (int column = -kCells; column <= kCells; ++column) {
+      const Vec2 cell(column * pitch_m, row * pitch_m);
+      if (cell.norm() > kCells * pitch_m) continue;
+      if (has_point_within(flat, cell, ball_radius_m - std::numbers::sqrt2 / 2 * pitch_m)) continue;
+      const std::optional<Disk> disk = held_disk(flat, cell);
+      if (!disk || disk->centre.norm() + disk->radius_m > known_m) {
+        gap.is_decided = false;
+        continue;
+      }
+      const bool passes = disk->radius_m > ball_radius_m * (1 + kRounding);
+      const bool is_here = disk->centre.norm() <= disk->radius_m * (1 + kRounding);
+      if (passes && is_here) gap.radius_m = std::max(gap.radius_m, disk->radius_m);  // no NaN
+    }
+  return gap;
+}
 
 void ContactWatch::add(double time_s, const Vec3& hand_W, const RenderOutput& out, const Points& points,
                        double proxy_distance_m) {

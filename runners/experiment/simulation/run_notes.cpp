@@ -24,6 +24,55 @@ std::size_t number_of_kind(const std::string& name) {
   return 0;
 }
 
+// A hand of 0.5 kg has this energy at 4.5 m/s. Rendered surfaces give a hand at most 1.6 J in the scenes of
+// the scorecard.
+constexpr double kMuchEnergy_J = 5;
+
+bool is_started(const Trace& trace) {
+  return std::any_of(trace.received_command_m.begin(), trace.received_command_m.end(),
+                     [](const Vec3& command) { return command.allFinite(); });
+}
+
+// Returns true if every command that the slave had is the first one that it was meant to have, and later ones
+// were meant for it. Ticks before the first command have NaN. A command that is sent in the last tick cannot
+// move the slave any more.
+bool kept_first_command(const Trace& trace) {
+  const auto first = std::find_if(trace.received_command_m.begin(), trace.received_command_m.end(),
+                                  [](const Vec3& command) { return command.allFinite(); });
+  const auto is_first = [&](const Vec3& command) { return command == *first; };
+  const auto is_other = [&](const Vec3& command) { return command.allFinite() && command != *first; };
+  return std::all_of(first, trace.received_command_m.end(), is_first) &&
+         std::any_of(trace.slave_command_m.begin(), trace.slave_command_m.end() - 1, is_other);
+}
+
+// Only a slave that the hand is to feel sends forces.
+bool sends_forces(const Trace& trace) {
+  return trace.force_packets.back() > 0;
+}
+
+bool feels_nothing(const Trace& trace) {
+  const auto is_zero = [](const Vec3& force) { return force.isZero(0); };
+  return !std::isnan(first_slave_contact_time_s(trace)) &&
+         std::all_of(trace.device_force_N.begin(), trace.device_force_N.end(), is_zero);
+}
+
+// The slave is put at its first command in one tick, and pushed out from the next one on.
+void add_start(const Trace& trace, std::vector<Note>& notes) {
+  constexpr double kRounding_m = 1e-9;
+  const auto is_known = [](const Vec3& position) { return position.allFinite(); };
+  const auto first = std::ranges::find_if(trace.slave_position_m, is_known);
+  const auto tick = static_cast<std::size_t>(first - trace.slave_position_m.begin());
+  const double depth_m = -trace.slave_clearance_m[tick];
+  if (!(depth_m > kRounding_m)) return;
+  const double force_N = tick + 1 < trace.length() ? trace.slave_peak_force_N[tick + 1] : 0;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the slave starts %.3g mm behind the true surface, with a force of %.3g N on it: largest "
+                "forces of the run may be those of its start",
+                1e3 * depth_m, force_N);
+  notes.push_back({"slave starts in contact", text});
+}
+
 }  // namespace
 
 const std::vector<NoteKind>& note_kinds() {
@@ -224,59 +273,6 @@ std::vector<Note> fixture_notes(const FixtureAssignment& fixtures,
                                              " selects no point of the first frame and none of the last"});
   return notes;
 }
-
-namespace {
-
-// A hand of 0.5 kg has this energy at 4.5 m/s. Rendered surfaces give a hand at most 1.6 J in the scenes of
-// the scorecard.
-constexpr double kMuchEnergy_J = 5;
-
-bool is_started(const Trace& trace) {
-  return std::any_of(trace.received_command_m.begin(), trace.received_command_m.end(),
-                     [](const Vec3& command) { return command.allFinite(); });
-}
-
-// Returns true if every command that the slave had is the first one that it was meant to have, and later ones
-// were meant for it. Ticks before the first command have NaN. A command that is sent in the last tick cannot
-// move the slave any more.
-bool kept_first_command(const Trace& trace) {
-  const auto first = std::find_if(trace.received_command_m.begin(), trace.received_command_m.end(),
-                                  [](const Vec3& command) { return command.allFinite(); });
-  const auto is_first = [&](const Vec3& command) { return command == *first; };
-  const auto is_other = [&](const Vec3& command) { return command.allFinite() && command != *first; };
-  return std::all_of(first, trace.received_command_m.end(), is_first) &&
-         std::any_of(trace.slave_command_m.begin(), trace.slave_command_m.end() - 1, is_other);
-}
-
-// Only a slave that the hand is to feel sends forces.
-bool sends_forces(const Trace& trace) {
-  return trace.force_packets.back() > 0;
-}
-
-bool feels_nothing(const Trace& trace) {
-  const auto is_zero = [](const Vec3& force) { return force.isZero(0); };
-  return !std::isnan(first_slave_contact_time_s(trace)) &&
-         std::all_of(trace.device_force_N.begin(), trace.device_force_N.end(), is_zero);
-}
-
-// The slave is put at its first command in one tick, and pushed out from the next one on.
-void add_start(const Trace& trace, std::vector<Note>& notes) {
-  constexpr double kRounding_m = 1e-9;
-  const auto is_known = [](const Vec3& position) { return position.allFinite(); };
-  const auto first = std::ranges::find_if(trace.slave_position_m, is_known);
-  const auto tick = static_cast<std::size_t>(first - trace.slave_position_m.begin());
-  const double depth_m = -trace.slave_clearance_m[tick];
-  if (!(depth_m > kRounding_m)) return;
-  const double force_N = tick + 1 < trace.length() ? trace.slave_peak_force_N[tick + 1] : 0;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the slave starts %.3g mm behind the true surface, with a force of %.3g N on it: largest "
-                "forces of the run may be those of its start",
-                1e3 * depth_m, force_N);
-  notes.push_back({"slave starts in contact", text});
-}
-
-}  // namespace
 
 std::vector<Note> slave_notes(const Trace& trace) {
   std::vector<Note> notes;

@@ -10,9 +10,8 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"
+#include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/progress.h"
-#include "runners/interfaces/cli/subcommands.h"
 #include "runners/interfaces/plugins/plugin_library.h"
 #include "runners/sweep/work_pool.h"
 

@@ -23,8 +23,7 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
-#include "runners/interfaces/cli/progress.h"
-#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/cli/program.h"
 
 namespace remote_touch {
 namespace {
@@ -112,21 +111,6 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   return static_cast<int>(comparison.outcome);
 }
 
-}  // namespace
-
-int command_hashes(const CommandLine& line, const HashesRequest& request) {
-  if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "expected 1 or more");
-  const FileLock lock = lock_output(line, request.output, {request.trace});
-  const StoredTrace trace(request.trace);
-  const TickHashes hashes = hashes_of_trace(trace, request.every);
-  write_hashes(request.output, hashes, provenance_of(trace.attributes()));
-  const std::string last = hashes.tick.empty() ? "" : formatted(", the last of tick %d", hashes.tick.back());
-  std::printf("%s: %zu hashes%s\n", printable(request.output).c_str(), hashes.tick.size(), last.c_str());
-  return kDone;
-}
-
-namespace {
-
 std::string text(const CheckResult& result) {
   std::string all = result.scene + ", tick " + std::to_string(result.comparison.first_violation) + ":";
   for (const Deviation& d : result.comparison.deviations)
@@ -202,6 +186,17 @@ constexpr const char* kExitCodesOfCompare = R"(Exit code:
      a direction, such as figures and hashes)";
 
 }  // namespace
+
+int command_hashes(const CommandLine& line, const HashesRequest& request) {
+  if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "expected 1 or more");
+  const FileLock lock = lock_output(line, request.output, {request.trace});
+  const StoredTrace trace(request.trace);
+  const TickHashes hashes = hashes_of_trace(trace, request.every);
+  write_hashes(request.output, hashes, provenance_of(trace.attributes()));
+  const std::string last = hashes.tick.empty() ? "" : formatted(", the last of tick %d", hashes.tick.back());
+  std::printf("%s: %zu hashes%s\n", printable(request.output).c_str(), hashes.tick.size(), last.c_str());
+  return kDone;
+}
 
 void add_compare(Subcommands& commands) {
   auto [command, compare] = commands.add("compare", "compare two results", command_compare);

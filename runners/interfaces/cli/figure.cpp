@@ -16,7 +16,7 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
-#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/cli/program.h"
 #include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
@@ -28,6 +28,108 @@ std::vector<double> expected_s(const std::vector<FigureRun>& runs) {
   std::vector<double> list;
   for (const FigureRun& run : runs) list.push_back(run.expected_s());
   return list;
+}
+
+namespace fs = std::filesystem;
+
+// No buffer of fixed size is used for the line, because a claim may have any length.
+std::string line_of(const Claim& claim) {
+  const std::string verdict = claim.verdict == Verdict::fail ? "FAIL" : verdict_name(claim.verdict);
+  const std::string paper = claim.verdict == Verdict::differs ? ", " + claim.source + ": " + claim.paper : "";
+  const std::string measured = formatted("%.6g", claim.measured);
+  return "  " + verdict + std::string(verdict.size() < 7 ? 7 - verdict.size() : 0, ' ') + " " +
+         (claim.set_up ? "set-up: " : "") + claim.claim + ": " + measured + " " + claim.unit + " (" +
+         claim.criterion + paper + ")\n";
+}
+
+// Leaves claims about whole maps open, because a share of a coarse map is not that of the whole map.
+void leave_unjudged(Figure& figure, const FigureContext& context, int coarse) {
+  figure.caption += " Made from " + std::to_string(context.made_runs_of_maps()) + " of the " +
+                    std::to_string(context.runs_of_maps()) + " runs of its maps: one in " +
+                    std::to_string(coarse) + " values of each axis. Claims about a whole map stay open.";
+  for (Claim& claim : figure.claims) {
+    if (!claim.of_map) continue;
+    claim.verdict = Verdict::open;
+    claim.criterion += ", not judged on a coarse map";
+  }
+}
+
+bool was_made(const Figure& figure) {
+  return std::none_of(figure.claims.begin(), figure.claims.end(),
+                      [](const Claim& claim) { return claim.verdict == Verdict::not_run; });
+}
+
+fs::path made(const fs::path& folder) {
+  make_folder(folder);
+  return folder;
+}
+
+std::vector<std::string> names_of_figures() {
+  std::vector<std::string> list;
+  for (const FigureEntry& entry : figures()) list.emplace_back(entry.name);
+  return list;
+}
+
+struct FigureRequest {
+  std::vector<std::string> names;
+  std::string folder;
+  int coarse = 1;      // uses every coarse-th value of a map's axes
+  bool quick = false;  // uses coarse maps where a map takes minutes
+  std::vector<std::string> overrides;
+};
+
+// Returns each requested figure once, the quickest first.
+std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
+  for (const std::string& name : request.names) {
+    const auto is_named = [&](const FigureEntry& entry) { return name == "all" || name == entry.name; };
+    if (std::none_of(figures().begin(), figures().end(), is_named))
+      throw InputError("figure " + name, "unknown: expected a name from `remote-touch list`");
+  }
+  std::vector<FigureRun> chosen;
+  for (const FigureEntry& entry : figures()) {
+    const auto names_it = [&](const std::string& name) { return name == "all" || name == entry.name; };
+    const int coarse = request.quick ? std::max(request.coarse, entry.quick_coarse) : request.coarse;
+    if (std::none_of(request.names.begin(), request.names.end(), names_it)) continue;
+    if (!request.overrides.empty() && !entry.takes_recording)
+      throw InputError("figure " + std::string(entry.name) + " --set " + request.overrides.front(),
+                       "this figure has no settings: expected camera-error");
+    chosen.push_back({&entry, coarse, request.overrides});
+  }
+  return quickest_first(chosen);
+}
+
+// A missing recording is no failure of the method: the figure gets a claim that says so, and the others are
+// made.
+Figure made_or_not_run(const FigureEntry& entry, FigureContext& context) {
+  try {
+    return entry.make(context);
+  } catch (const MissingInput& error) {
+    Figure figure{entry.name, "Not run", std::string("Not run: ") + error.what()};
+    figure.claims = {claim_not_run(entry.name, entry.summary, error.what())};
+    return figure;
+  }
+}
+
+int command_figure(const CommandLine& line, const FigureRequest& request) {
+  for (const std::string& name : request.names) require_own_kind(name, "figure");
+  const std::vector<FigureRun> runs = chosen_figures(request);
+  FigureFolder folder(line, request.folder, runs);
+  Progress shown("figures", line.quiet);
+  make_figures(
+      line, runs, made_or_not_run,
+      [&](std::size_t run, const FigureContext& context, Figure figure) {
+        folder.finish(run, context, std::move(figure));
+      },
+      [&](const FigureProgress& progress) { folder.report(progress, shown); });
+  shown.clear();
+  return folder.exit_code();
+}
+
+std::vector<std::string> figures_thinned_by_quick() {
+  std::vector<std::string> names;
+  for (const FigureEntry& entry : figures())
+    if (entry.quick_coarse > 1) names.emplace_back(entry.name);
+  return names;
 }
 
 }  // namespace
@@ -85,50 +187,6 @@ std::string progress_text(const std::vector<FigureRun>& runs, const FigureProgre
   return std::to_string(made) + " of " + std::to_string(runs.size()) + at_work + "; about " +
          std::to_string(std::lround(progress.left.all_s)) + " s left";
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-// No buffer of fixed size is used for the line, because a claim may have any length.
-std::string line_of(const Claim& claim) {
-  const std::string verdict = claim.verdict == Verdict::fail ? "FAIL" : verdict_name(claim.verdict);
-  const std::string paper = claim.verdict == Verdict::differs ? ", " + claim.source + ": " + claim.paper : "";
-  const std::string measured = formatted("%.6g", claim.measured);
-  return "  " + verdict + std::string(verdict.size() < 7 ? 7 - verdict.size() : 0, ' ') + " " +
-         (claim.set_up ? "set-up: " : "") + claim.claim + ": " + measured + " " + claim.unit + " (" +
-         claim.criterion + paper + ")\n";
-}
-
-// Leaves claims about whole maps open, because a share of a coarse map is not that of the whole map.
-void leave_unjudged(Figure& figure, const FigureContext& context, int coarse) {
-  figure.caption += " Made from " + std::to_string(context.made_runs_of_maps()) + " of the " +
-                    std::to_string(context.runs_of_maps()) + " runs of its maps: one in " +
-                    std::to_string(coarse) + " values of each axis. Claims about a whole map stay open.";
-  for (Claim& claim : figure.claims) {
-    if (!claim.of_map) continue;
-    claim.verdict = Verdict::open;
-    claim.criterion += ", not judged on a coarse map";
-  }
-}
-
-bool was_made(const Figure& figure) {
-  return std::none_of(figure.claims.begin(), figure.claims.end(),
-                      [](const Claim& claim) { return claim.verdict == Verdict::not_run; });
-}
-
-fs::path made(const fs::path& folder) {
-  make_folder(folder);
-  return folder;
-}
-
-std::vector<std::string> names_of_figures() {
-  std::vector<std::string> list;
-  for (const FigureEntry& entry : figures()) list.emplace_back(entry.name);
-  return list;
-}
-
-}  // namespace
 
 FigureFolder::FigureFolder(const CommandLine& line, const std::string& folder,
                            const std::vector<FigureRun>& runs)
@@ -207,72 +265,6 @@ void FigureFolder::write_progress(const FigureProgress& progress) {
   write_file_atomically(progress_file(), text);
   written_ = text;
 }
-
-namespace {
-
-struct FigureRequest {
-  std::vector<std::string> names;
-  std::string folder;
-  int coarse = 1;      // uses every coarse-th value of a map's axes
-  bool quick = false;  // uses coarse maps where a map takes minutes
-  std::vector<std::string> overrides;
-};
-
-// Returns each requested figure once, the quickest first.
-std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
-  for (const std::string& name : request.names) {
-    const auto is_named = [&](const FigureEntry& entry) { return name == "all" || name == entry.name; };
-    if (std::none_of(figures().begin(), figures().end(), is_named))
-      throw InputError("figure " + name, "unknown: expected a name from `remote-touch list`");
-  }
-  std::vector<FigureRun> chosen;
-  for (const FigureEntry& entry : figures()) {
-    const auto names_it = [&](const std::string& name) { return name == "all" || name == entry.name; };
-    const int coarse = request.quick ? std::max(request.coarse, entry.quick_coarse) : request.coarse;
-    if (std::none_of(request.names.begin(), request.names.end(), names_it)) continue;
-    if (!request.overrides.empty() && !entry.takes_recording)
-      throw InputError("figure " + std::string(entry.name) + " --set " + request.overrides.front(),
-                       "this figure has no settings: expected camera-error");
-    chosen.push_back({&entry, coarse, request.overrides});
-  }
-  return quickest_first(chosen);
-}
-
-// A missing recording is no failure of the method: the figure gets a claim that says so, and the others are
-// made.
-Figure made_or_not_run(const FigureEntry& entry, FigureContext& context) {
-  try {
-    return entry.make(context);
-  } catch (const MissingInput& error) {
-    Figure figure{entry.name, "Not run", std::string("Not run: ") + error.what()};
-    figure.claims = {claim_not_run(entry.name, entry.summary, error.what())};
-    return figure;
-  }
-}
-
-int command_figure(const CommandLine& line, const FigureRequest& request) {
-  for (const std::string& name : request.names) require_own_kind(name, "figure");
-  const std::vector<FigureRun> runs = chosen_figures(request);
-  FigureFolder folder(line, request.folder, runs);
-  Progress shown("figures", line.quiet);
-  make_figures(
-      line, runs, made_or_not_run,
-      [&](std::size_t run, const FigureContext& context, Figure figure) {
-        folder.finish(run, context, std::move(figure));
-      },
-      [&](const FigureProgress& progress) { folder.report(progress, shown); });
-  shown.clear();
-  return folder.exit_code();
-}
-
-std::vector<std::string> figures_thinned_by_quick() {
-  std::vector<std::string> names;
-  for (const FigureEntry& entry : figures())
-    if (entry.quick_coarse > 1) names.emplace_back(entry.name);
-  return names;
-}
-
-}  // namespace
 
 void add_figure(Subcommands& commands) {
   auto [command, figure] =

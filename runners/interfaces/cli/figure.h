@@ -8,8 +8,8 @@
 
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/interfaces/cli/commands.h"
-#include "runners/interfaces/cli/progress.h"
+#include "runners/interfaces/cli/outputs.h"
+#include "runners/interfaces/cli/program.h"
 #include "runners/sweep/work_pool.h"
 
 namespace remote_touch {

@@ -9,13 +9,139 @@
 //   }
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/interfaces/cli/commands.h"
+
+// NOLINTNEXTLINE(readability-identifier-naming): the name that CLI11 has
+namespace CLI {
+class App;
+class Validator;
+}  // namespace CLI
 
 namespace remote_touch {
+
+// The parts that subcommands share, and those that tests or other commands call. Each command prints results
+// on stdout, reports errors as exceptions, and returns the exit code.
+
+// kChanged is returned only by `compare`: the results differ and nothing got worse.
+enum ExitCode { kDone = 0, kCheckFailed = 1, kBadInput = 2, kInterrupted = 3, kChanged = 4 };
+
+// Options and signals that all commands share.
+struct CommandLine {
+  bool quiet = false;
+  bool force = false;                     // overwrite files that are not results of this program
+  std::vector<std::string> plugins = {};  // the files of --plugin
+  const Kernels* kernels = nullptr;
+  const std::atomic<bool>* stop = nullptr;  // set by SIGINT and SIGTERM
+  // Set by SIGUSR1 and SIGUSR2; the code that responds resets them.
+  std::atomic<bool>* report = nullptr;
+  std::atomic<bool>* rearm = nullptr;
+};
+
+struct SweepRequest {
+  std::string sweep;
+  std::vector<std::string> overrides;
+  std::string output;  // {shard} in it is replaced by the shard, "3of7"
+  std::string shard;   // empty: from the environment, else the whole sweep
+  int threads = 0;     // 0: as OpenMP decides
+  bool dry_run = false;
+  bool strict = false;
+};
+int command_sweep(const CommandLine& line, const SweepRequest& request);
+
+struct MergeCommand {
+  std::vector<std::string> shards;
+  std::string output;
+  bool partial = false;
+};
+int command_merge(const CommandLine& line, const MergeCommand& command);
+
+struct HashesRequest {
+  std::string trace;
+  int every = 1;
+  std::string output;
+};
+int command_hashes(const CommandLine& line, const HashesRequest& request);
+
+struct ViewRequest {
+  std::vector<std::string> results;  // a trace, two to compare, or a sweep
+  std::vector<std::string> cells;    // cells of a sweep; empty: sweep_page() chooses them
+  std::string output;
+  double max_MB = 20;
+  std::string claims = {};  // claims.json of figures; empty: none
+};
+void write_view(const CommandLine& line, const ViewRequest& request);
+
+// A subcommand is a line in the list below, and one file with the request, the work and the options.
+
+// The threads of a command that has no option for them: as OpenMP decides, or none.
+inline constexpr int kUsualThreads = 0, kNoThreads = -1;
+
+// Adds subcommands to `app`. When the user calls one of them, `act` becomes the call of its function, and
+// `threads` becomes the number of threads that it starts. The request, which the options fill, lives as long
+// as `act`.
+struct Subcommands {
+  CLI::App& app;
+  CommandLine& line;
+  std::function<int()>& act;
+  int& threads;
+
+  template <class Request>
+  std::pair<CLI::App*, Request*> add(const char* name, const char* meaning,
+                                     int (*run)(const CommandLine&, const Request&),
+                                     int usual_threads = kUsualThreads) {
+    auto request = std::make_shared<Request>();
+    const auto threads_wanted = [request, usual_threads] {
+      if constexpr (requires { request->threads; })
+        return request->threads;
+      else
+        return usual_threads;
+    };
+    CLI::App* command =
+        declare(name, meaning, threads_wanted, [&line = line, request, run] { return run(line, *request); });
+    return {command, request.get()};
+  }
+  // threads_wanted() is called and `act` becomes `start` when the user calls this command itself, but not
+  // when the user calls a subcommand of it.
+  CLI::App* declare(const char* name, const char* meaning, std::function<int()> threads_wanted,
+                    std::function<int()> start);
+};
+
+// Accepts numbers from low to high. Rejects NaN, which CLI::Range accepts.
+CLI::Validator between(double low, double high);
+
+void add_set(CLI::App* command, std::vector<std::string>& overrides, const char* meaning);
+
+// Prints a line on standard error for each --set that a later --set replaces (changed_settings.h): only the
+// last one has an effect, and the user may have meant another parameter. Call it at the end of a command, so
+// that an error stays one line; command_live() calls it before its loop.
+void print_replaced(const std::vector<std::string>& overrides);
+
+// Returns "is a sweep: expected `remote-touch sweep NAME -o FILE`" if the name is not a file, and is a stored
+// name that this command does not accept. Returns an empty text otherwise. command: run, sweep or figure.
+std::string other_kind(const std::string& name, const std::string& command);
+// Throws InputError with this text.
+void require_own_kind(const std::string& name, const std::string& command);
+
+// The commands in the order of --help. add_run() adds `run`, and so on.
+// clang-format off
+#define REMOTE_TOUCH_COMMANDS(COMMAND) \
+  COMMAND(list) COMMAND(describe) COMMAND(view) COMMAND(export) COMMAND(inspect) \
+  COMMAND(run) COMMAND(sweep) COMMAND(merge) COMMAND(replay) COMMAND(recheck) COMMAND(analyse) \
+  COMMAND(figure) COMMAND(scorecard) COMMAND(compare) COMMAND(hashes) COMMAND(baseline) \
+  COMMAND(repro) COMMAND(cite) COMMAND(verify) COMMAND(live) COMMAND(recover) COMMAND(devices) \
+  COMMAND(jitter) COMMAND(cache)
+// clang-format on
+#define COMMAND(name) void add_##name(Subcommands& commands);
+REMOTE_TOUCH_COMMANDS(COMMAND)
+#undef COMMAND
 
 // Parses the arguments and runs the command. Returns the exit code; throws InputError for arguments that are
 // not understood. choose_kernels is called once, before a command runs.

@@ -19,17 +19,13 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/cache_file.h"
-#include "runners/experiment/settings/citation.h"
 #include "runners/experiment/settings/provenance.h"
-#include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
-#include "runners/interfaces/cli/progress.h"
-#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/presentation/export/export_formats.h"
-#include "runners/presentation/pages/sweep_page.h"
-#include "runners/presentation/pages/trace_page.h"
+#include "runners/presentation/pages/result_pages.h"
 #include "runners/sweep/stored_sweep.h"
 #include "scenarios/files/input_files.h"
 
@@ -83,25 +79,6 @@ ViewPage page_of(const ViewRequest& request, const ViewOptions& options) {
   if (is_sweep) return sweep_page(request.results.front(), request.cells, options);
   return trace_page({request.results.begin(), request.results.end()}, options);
 }
-
-}  // namespace
-
-void write_view(const CommandLine& line, const ViewRequest& request) {
-  std::vector<std::string> inputs = request.results;
-  inputs.push_back(request.claims);
-  require_report(line, request.output, inputs, kPage);
-  ViewOptions options;
-  options.max_bytes = static_cast<std::size_t>(1e6 * request.max_MB);
-  options.claims = request.claims;
-  options.kernels = line.kernels;
-  options.stop = line.stop;
-  const ViewPage page = page_of(request, options);
-  write_file_atomically(request.output, page.html);
-  std::printf("%s: %.1f MB\n%s", printable(request.output).c_str(),
-              1e-6 * static_cast<double>(page.html.size()), page.shown.c_str());
-}
-
-namespace {
 
 int command_view(const CommandLine& line, const ViewRequest& request) {
   write_view(line, request);
@@ -216,6 +193,21 @@ int command_cache(const CommandLine& line, const CacheRequest& request) {
 }
 
 }  // namespace
+
+void write_view(const CommandLine& line, const ViewRequest& request) {
+  std::vector<std::string> inputs = request.results;
+  inputs.push_back(request.claims);
+  require_report(line, request.output, inputs, kPage);
+  ViewOptions options;
+  options.max_bytes = static_cast<std::size_t>(1e6 * request.max_MB);
+  options.claims = request.claims;
+  options.kernels = line.kernels;
+  options.stop = line.stop;
+  const ViewPage page = page_of(request, options);
+  write_file_atomically(request.output, page.html);
+  std::printf("%s: %.1f MB\n%s", printable(request.output).c_str(),
+              1e-6 * static_cast<double>(page.html.size()), page.shown.c_str());
+}
 
 void add_list(Subcommands& commands) {
   auto [list, listed] = commands.add(

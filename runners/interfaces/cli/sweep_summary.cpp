@@ -7,7 +7,7 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
 #include "core/parameters/parameter.h"
-#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/program.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 

@@ -11,8 +11,8 @@
 #include "runners/evaluation/figures/figures.h"
 #include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/catalog/sections.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/settings/changed_settings.h"
@@ -90,43 +90,6 @@ std::string parameter_text(const std::string& path) {
   if (text.empty() && !owners.empty()) refuse_key(keys.back(), known, keys.front() + ".");
   return text;
 }
-
-}  // namespace
-
-std::string meaning_of(const TraceColumn& column) {
-  std::string meaning = column.meaning;
-  for (std::size_t i = 0; i < column.value_names.size(); ++i)
-    meaning.append(i == 0 ? ": " : ", ").append(std::to_string(i)).append(" ").append(column.value_names[i]);
-  return meaning;
-}
-
-const char* runs_with(TracePart part) {
-  switch (part) {
-    case TracePart::always:
-      break;
-    case TracePart::tool:
-      return "a run with a tool";
-    case TracePart::guidance:
-      return "a run with guidance or a sequence";
-    case TracePart::replay:
-      return "a run that replays a known contact";
-    case TracePart::measured_surface:
-      return "a run with a measured surface beside the true one";
-    case TracePart::slave:
-      return "a run with a slave";
-    case TracePart::channel_energy:
-      return "a run whose hand is to feel the slave";
-    case TracePart::slave_tool:
-      return "a run with a slave that has a tool";
-    case TracePart::rounded_hand:
-      return "a run whose device rounds the pose of the hand";
-    case TracePart::hand:
-      return "a run with an operator or a device";
-  }
-  return "every run";
-}
-
-namespace {
 
 std::string json_text(const std::string& json, const std::string& name) {
   return parse_json(json, name).dump(2) + "\n";
@@ -255,7 +218,50 @@ std::string figure_text(const std::string& name) {
               : "\n");
 }
 
+void add_sections(std::vector<NamedKind>& all) {
+  NamedKind& sections = all.emplace_back(NamedKind{"sections", {}});
+  for (const auto& section : experiment_sections()) sections.rows.push_back({section.key, section.summary});
+  for (const auto& section : experiment_sections()) {
+    if (!section.heading) continue;
+    NamedKind& kind = all.emplace_back(NamedKind{section.heading, {}});
+    for (const auto& entry : section.entries()) kind.rows.push_back({entry.name, entry.summary});
+  }
+}
+
 }  // namespace
+
+std::string meaning_of(const TraceColumn& column) {
+  std::string meaning = column.meaning;
+  for (std::size_t i = 0; i < column.value_names.size(); ++i)
+    meaning.append(i == 0 ? ": " : ", ").append(std::to_string(i)).append(" ").append(column.value_names[i]);
+  return meaning;
+}
+
+const char* runs_with(TracePart part) {
+  switch (part) {
+    case TracePart::always:
+      break;
+    case TracePart::tool:
+      return "a run with a tool";
+    case TracePart::guidance:
+      return "a run with guidance or a sequence";
+    case TracePart::replay:
+      return "a run that replays a known contact";
+    case TracePart::measured_surface:
+      return "a run with a measured surface beside the true one";
+    case TracePart::slave:
+      return "a run with a slave";
+    case TracePart::channel_energy:
+      return "a run whose hand is to feel the slave";
+    case TracePart::slave_tool:
+      return "a run with a slave that has a tool";
+    case TracePart::rounded_hand:
+      return "a run whose device rounds the pose of the hand";
+    case TracePart::hand:
+      return "a run with an operator or a device";
+  }
+  return "every run";
+}
 
 std::string described(const std::string& name) {
   std::string text;
@@ -269,20 +275,6 @@ std::string described(const std::string& name) {
   throw InputError(
       name, "unknown: expected a name from `remote-touch list`, or NAME.PARAMETER, such as proxy.r1_m");
 }
-
-namespace {
-
-void add_sections(std::vector<NamedKind>& all) {
-  NamedKind& sections = all.emplace_back(NamedKind{"sections", {}});
-  for (const auto& section : experiment_sections()) sections.rows.push_back({section.key, section.summary});
-  for (const auto& section : experiment_sections()) {
-    if (!section.heading) continue;
-    NamedKind& kind = all.emplace_back(NamedKind{section.heading, {}});
-    for (const auto& entry : section.entries()) kind.rows.push_back({entry.name, entry.summary});
-  }
-}
-
-}  // namespace
 
 std::string summary_of(const Measure& measure) {
   return measure.meaning + "; unit: " + measure.unit + "; " + text_of(measure.better) + "; " +

@@ -9,7 +9,6 @@
 #include "core/parameters/parameter.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/catalog/factory.h"
 #include "runners/interfaces/plugins/remote_touch_plugin.h"
 
 namespace remote_touch {

@@ -15,7 +15,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/result_comparison.h"
-#include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/settings/provenance.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/verification/contact_model.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/python/bindings.h"

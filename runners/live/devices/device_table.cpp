@@ -3,11 +3,10 @@
 #include <utility>
 
 #include "runners/experiment/sessions/session_scene.h"
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/built_in_devices.h"
 #include "runners/live/devices/clock.h"
-#include "runners/live/devices/device_address.h"
+#include "runners/live/devices/device_connection.h"
 #include "runners/live/devices/haply.h"
-#include "runners/live/devices/simulated_device.h"
 
 namespace remote_touch {
 

@@ -1,10 +1,9 @@
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 
 #include <array>
 #include <atomic>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {
 

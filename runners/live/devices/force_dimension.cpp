@@ -1,11 +1,10 @@
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/devices/vendor_library.h"
 
 namespace remote_touch {
 

@@ -4,8 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "runners/live/devices/device_address.h"
-#include "runners/live/devices/haply_messages.h"
+#include "runners/live/devices/device_connection.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/live/devices/haply_link.h"
+#include "runners/live/devices/haply.h"
 
 #ifdef REMOTE_TOUCH_HAPLY
 // The one file of this folder that includes Boost.Beast, which takes ten seconds to compile. The thread
@@ -10,8 +10,7 @@
 #include <boost/beast/websocket/stream.hpp>
 #include <cerrno>
 
-#include "runners/live/devices/deadline_socket.h"
-#include "runners/live/devices/haply_messages.h"
+#include "runners/live/devices/device_connection.h"
 #endif
 
 namespace remote_touch {

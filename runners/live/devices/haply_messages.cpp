@@ -1,4 +1,4 @@
-#include "runners/live/devices/haply_messages.h"
+#include "runners/live/devices/haply.h"
 
 #include <algorithm>
 #include <charconv>

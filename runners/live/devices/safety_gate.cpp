@@ -9,7 +9,7 @@ namespace {
 // Fraction of the vendor's maximum force and torque that is allowed.
 constexpr double kDeviceFraction = 0.9;
 
-Vec3 cut(const Vec3& v, double max_length) {
+Vec3 shortened(const Vec3& v, double max_length) {
   const double length = v.norm();
   return length > max_length ? Vec3(v * (max_length / length)) : v;
 }
@@ -22,7 +22,7 @@ bool differs(const Vec3& passed, const Vec3& command, double least) {
 }
 
 Vec3 towards(const Vec3& from, const Vec3& to, double max_length) {
-  return from + cut(to - from, max_length);
+  return from + shortened(to - from, max_length);
 }
 
 }  // namespace
@@ -106,12 +106,13 @@ Wrench SafetyGate::limited(double now_s, const DeviceReading& reading, const Dev
   const double part = is_stale ? 0 : fraction(now_s, command);
   // The last written force is old after a gap, so a step is never larger than that of a tick of 2 ms.
   const double step_s = std::min(gap_s, 0.002);
-  last_.force_N = cut(towards(last_.force_N, cut(part * command.force_N, limits_.max_force_N),
-                              limits_.force_slew_N_per_s * step_s),
-                      limits_.max_force_N);
-  last_.torque_Nm = cut(towards(last_.torque_Nm, cut(part * command.torque_Nm, limits_.max_torque_Nm),
-                                limits_.torque_slew_Nm_per_s * step_s),
-                        limits_.max_torque_Nm);
+  last_.force_N = shortened(towards(last_.force_N, shortened(part * command.force_N, limits_.max_force_N),
+                                    limits_.force_slew_N_per_s * step_s),
+                            limits_.max_force_N);
+  last_.torque_Nm =
+      shortened(towards(last_.torque_Nm, shortened(part * command.torque_Nm, limits_.max_torque_Nm),
+                        limits_.torque_slew_Nm_per_s * step_s),
+                limits_.max_torque_Nm);
   return last_;
 }
 

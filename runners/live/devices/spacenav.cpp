@@ -1,4 +1,4 @@
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "runners/live/devices/deadline_socket.h"
-#include "runners/live/devices/device_address.h"
+#include "runners/live/devices/device_connection.h"
 
 namespace remote_touch {
 

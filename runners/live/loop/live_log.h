@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "runners/experiment/sessions/session_recorder.h"
+#include "runners/experiment/sessions/session_file.h"
 #include "runners/live/loop/camera_feed.h"
 #include "runners/live/loop/servo.h"
 

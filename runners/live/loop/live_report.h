@@ -1,12 +1,15 @@
-// The report of a live run: its inputs, its timing as a table and a figure, and notes.
+// The report of a live run: its inputs, its timing as a table and a figure, and notes; and the lateness of
+// ticks on this machine.
 #pragma once
 
+#include <atomic>
 #include <string>
 #include <vector>
 
 #include "analysis/storage/result_file.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/simulation/run_report.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/live/devices/clock.h"
 #include "runners/live/loop/live_log.h"
 
 namespace remote_touch {
@@ -74,5 +77,20 @@ Figure live_figure(const LiveReport& report);
 
 // Returns the value at this fraction of the sorted values, by the nearest index; NaN if there are no values.
 double quantile(const std::vector<double>& sorted, double fraction);
+
+// Measures the lateness of the ticks of a haptic loop on this machine; the ticks themselves do nothing.
+struct Jitter {
+  std::vector<double> late_s;  // delay of every tick
+  long long missed = 0;        // ticks that never began
+  std::string real_time;       // rights that the system granted, see become_real_time()
+};
+
+// Measures the loop that is used for devices without a loop of their own. stop: may end it early; may be
+// null.
+Jitter measure_jitter(double duration_s, double rate_hz, const std::atomic<bool>* stop, Clock& clock);
+
+// Returns rows of "from to count bar". Each row ends at twice the time of the row before; empty rows are
+// omitted.
+std::string histogram(const std::vector<double>& late_s);
 
 }  // namespace remote_touch

@@ -7,7 +7,6 @@
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {
-
 namespace {
 
 // Rate at which two crystals may drift apart. The offset rises at this rate. Otherwise the frames of a sensor
@@ -15,26 +14,6 @@ namespace {
 constexpr double kDrift = 1e-4;
 // No frame arrives later than this after its capture. If one seems to, the sensor's clock has stood still.
 constexpr double kLatest_s = 1;
-
-}  // namespace
-
-double SensorClock::captured_s(double stamp_s, double arrived_s) {
-  const double difference_s = arrived_s - stamp_s, passed_s = stamp_s - stamp_s_;
-  // Time stamps go back if a sensor is reset or a recording starts again.
-  if (!has_begun_ || passed_s < 0 || difference_s - offset_s_ > kLatest_s) {
-    offset_s_ = difference_s;
-  } else {
-    offset_s_ = std::min(offset_s_ + kDrift * passed_s, difference_s);
-  }
-  double captured_s = stamp_s + offset_s_;
-  // An offset that falls by more than a period would reverse the order of two frames.
-  if (has_begun_ && captured_s <= captured_s_) captured_s = captured_s_ + 0.5 * (arrived_s - captured_s_);
-  has_begun_ = true;
-  stamp_s_ = stamp_s, captured_s_ = captured_s;
-  return captured_s;
-}
-
-namespace {
 
 // Calls copy_row(source, destination) for each row.
 template <class Pixel, class CopyRow>
@@ -54,23 +33,6 @@ bool copy_rows(const PixelRows& rows, const CameraIntrinsics& camera, std::size_
   }
   return true;
 }
-
-}  // namespace
-
-bool copy_depth(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint16_t>& depth) {
-  const std::size_t bytes = static_cast<std::size_t>(rows.width) * sizeof(std::uint16_t);
-  return copy_rows(rows, camera, sizeof(std::uint16_t), depth,
-                   [bytes](const std::uint8_t* from, std::uint16_t* to) { std::memcpy(to, from, bytes); });
-}
-
-bool copy_rgb(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint32_t>& colour) {
-  return copy_rows(rows, camera, 3, colour, [&rows](const std::uint8_t* from, std::uint32_t* to) {
-    for (int u = 0; u < rows.width; ++u, from += 3)
-      to[u] = static_cast<std::uint32_t>(from[0] << 16 | from[1] << 8 | from[2]);
-  });
-}
-
-namespace {
 
 using Eigen::Vector2d;
 
@@ -103,6 +65,35 @@ std::optional<SeenEnds> ends_of(int count, const Lens& lens, PixelAt pixel_at) {
 }
 
 }  // namespace
+
+double SensorClock::captured_s(double stamp_s, double arrived_s) {
+  const double difference_s = arrived_s - stamp_s, passed_s = stamp_s - stamp_s_;
+  // Time stamps go back if a sensor is reset or a recording starts again.
+  if (!has_begun_ || passed_s < 0 || difference_s - offset_s_ > kLatest_s) {
+    offset_s_ = difference_s;
+  } else {
+    offset_s_ = std::min(offset_s_ + kDrift * passed_s, difference_s);
+  }
+  double captured_s = stamp_s + offset_s_;
+  // An offset that falls by more than a period would reverse the order of two frames.
+  if (has_begun_ && captured_s <= captured_s_) captured_s = captured_s_ + 0.5 * (arrived_s - captured_s_);
+  has_begun_ = true;
+  stamp_s_ = stamp_s, captured_s_ = captured_s;
+  return captured_s;
+}
+
+bool copy_depth(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint16_t>& depth) {
+  const std::size_t bytes = static_cast<std::size_t>(rows.width) * sizeof(std::uint16_t);
+  return copy_rows(rows, camera, sizeof(std::uint16_t), depth,
+                   [bytes](const std::uint8_t* from, std::uint16_t* to) { std::memcpy(to, from, bytes); });
+}
+
+bool copy_rgb(const PixelRows& rows, const CameraIntrinsics& camera, std::vector<std::uint32_t>& colour) {
+  return copy_rows(rows, camera, 3, colour, [&rows](const std::uint8_t* from, std::uint32_t* to) {
+    for (int u = 0; u < rows.width; ++u, from += 3)
+      to[u] = static_cast<std::uint32_t>(from[0] << 16 | from[1] << 8 | from[2]);
+  });
+}
 
 Undistortion::Undistortion(const std::string& name, int width, int height, const Lens& lens) {
   if (width < 2 || height < 2 || width > kMaxSide_px || height > kMaxSide_px)

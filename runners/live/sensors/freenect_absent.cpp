@@ -1,6 +1,6 @@
 // Stands in for freenect_camera.cpp where its library is not installed.
 #include "core/parameters/parameter.h"
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 
 #include <libfreenect.h>
 #include <signal.h>
@@ -14,7 +14,6 @@
 #include <thread>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch {
 

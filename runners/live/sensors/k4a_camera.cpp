@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/sensors/adapters.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch::k4a {

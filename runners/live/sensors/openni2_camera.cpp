@@ -1,4 +1,4 @@
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 
 #include <OpenNI.h>
 #include <dlfcn.h>
@@ -16,8 +16,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "runners/libraries/lasting_thread.h"
-#include "runners/live/sensors/depth_source.h"
+#include "runners/libraries/shared_library.h"
 
 namespace remote_touch {
 

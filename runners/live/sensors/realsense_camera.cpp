@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/devices/device_address.h"
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/devices/device_connection.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch::rs2 {

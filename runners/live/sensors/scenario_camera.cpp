@@ -52,6 +52,17 @@ void write_points(const PointCloud& cloud, SensorFrame& frame) {
   }
 }
 
+// Returns the first frame with points, because an empty frame does not show the layout of the later ones. If
+// none of the first 100 has points, returns the first frame.
+PointCloud first_with_points(const Scenario& scenario) {
+  constexpr int kFrames = 100;
+  const PointCloud first = scenario.cloud(0);
+  if (first.size() > 0) return first;
+  for (int i = 1; i < std::min(scenario.frame_count(), kFrames); ++i)
+    if (PointCloud cloud = scenario.cloud(i); cloud.size() > 0) return cloud;
+  return first;
+}
+
 }  // namespace
 
 FrameEncoder::FrameEncoder(const Settings& settings, const PointCloud& first)
@@ -149,21 +160,6 @@ void FrameEncoder::encode(const PointCloud& cloud, int index, SensorFrame& frame
   frame.colour = view_.has_colour ? cloud.colour : std::vector<std::uint32_t>();
   if (view_.has_colour && cloud.colour.empty()) frame.colour.assign(cloud.size(), kNoColour);
 }
-
-namespace {
-
-// Returns the first frame with points, because an empty frame does not show the layout of the later ones. If
-// none of the first 100 has points, returns the first frame.
-PointCloud first_with_points(const Scenario& scenario) {
-  constexpr int kFrames = 100;
-  const PointCloud first = scenario.cloud(0);
-  if (first.size() > 0) return first;
-  for (int i = 1; i < std::min(scenario.frame_count(), kFrames); ++i)
-    if (PointCloud cloud = scenario.cloud(i); cloud.size() > 0) return cloud;
-  return first;
-}
-
-}  // namespace
 
 ScenarioCamera::ScenarioCamera(std::shared_ptr<const ShownScenario> scenario, Clock& clock,
                                const FrameEncoder::Settings& settings)

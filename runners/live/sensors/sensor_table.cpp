@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "runners/experiment/sessions/session_scene.h"
-#include "runners/live/devices/device_address.h"
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/devices/device_connection.h"
+#include "runners/live/sensors/depth_source.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/recordings/recorded_scene.h"
 

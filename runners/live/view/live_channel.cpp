@@ -1,4 +1,4 @@
-#include "runners/live/view/live_channel.h"
+#include "runners/live/view/live_pages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "runners/live/view/live_pages.h"
 
 namespace remote_touch {
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "runners/experiment/settings/provenance.h"
-#include "runners/presentation/pages/shown_meshes.h"
-#include "runners/presentation/pages/view_page.h"
+#include "runners/presentation/pages/result_pages.h"
+#include "runners/presentation/pages/shown_run.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/scene/scenario.h"
 
@@ -25,21 +25,6 @@ std::string write_redirect(const std::filesystem::path& folder, const std::strin
   unlink(file.c_str());
   return {};
 }
-
-}  // namespace
-
-RedirectPage::RedirectPage(const std::string& address, const std::vector<std::filesystem::path>& folders) {
-  const std::string text =
-      "<!DOCTYPE html><meta http-equiv=\"refresh\" content=\"0; url=" + address + "\">\n";
-  for (const std::filesystem::path& folder : folders)
-    if (file_.empty()) file_ = write_redirect(folder, text);
-}
-
-RedirectPage::~RedirectPage() {
-  if (!file_.empty()) unlink(file_.c_str());
-}
-
-namespace {
 
 constexpr const char* kPageSchema = "remote-touch-live/1";
 // The points near the hand: within kNearRadii contact radii of HIP and proxy; with a tool, within kNearTool_m
@@ -110,6 +95,17 @@ LivePageFile page_of(const Experiment& experiment, const LiveViewSource& source,
 }
 
 }  // namespace
+
+RedirectPage::RedirectPage(const std::string& address, const std::vector<std::filesystem::path>& folders) {
+  const std::string text =
+      "<!DOCTYPE html><meta http-equiv=\"refresh\" content=\"0; url=" + address + "\">\n";
+  for (const std::filesystem::path& folder : folders)
+    if (file_.empty()) file_ = write_redirect(folder, text);
+}
+
+RedirectPage::~RedirectPage() {
+  if (!file_.empty()) unlink(file_.c_str());
+}
 
 LiveView::LiveView(const Experiment& experiment, const LiveViewSource& source, const Kernels& kernels,
                    int port)

@@ -1,4 +1,4 @@
-#include "runners/live/view/view_server.h"
+#include "runners/live/view/live_view.h"
 
 #include "core/parameters/parameter.h"
 

@@ -1,4 +1,4 @@
-#include "runners/presentation/export/mcap_file.h"
+#include "runners/presentation/export/export_formats.h"
 
 #include <zlib.h>
 
@@ -9,7 +9,6 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "core/points/point_cloud.h"
-#include "runners/presentation/export/exported_run.h"
 
 namespace remote_touch {
 namespace {
@@ -65,6 +64,132 @@ std::string entries(const Map& map) {
   for (const auto& [key, value] : map) all += content(key, value);
   return all;
 }
+
+constexpr const char* kFrame = "world";
+
+#define PART_OF_MESSAGE \
+  "================================================================================\nMSG: "
+#define HEADER_PARTS                                                                                  \
+  PART_OF_MESSAGE "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" PART_OF_MESSAGE \
+                  "builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
+
+constexpr RosSchema kPose{"geometry_msgs/msg/PoseStamped",
+                          "std_msgs/Header header\ngeometry_msgs/Pose pose\n" HEADER_PARTS PART_OF_MESSAGE
+                          "geometry_msgs/Pose\ngeometry_msgs/Point position\n"
+                          "geometry_msgs/Quaternion orientation\n" PART_OF_MESSAGE
+                          "geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n" PART_OF_MESSAGE
+                          "geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
+constexpr RosSchema kWrench{
+    "geometry_msgs/msg/WrenchStamped",
+    "std_msgs/Header header\ngeometry_msgs/Wrench wrench\n" HEADER_PARTS PART_OF_MESSAGE
+    "geometry_msgs/Wrench\ngeometry_msgs/Vector3 force\n"
+    "geometry_msgs/Vector3 torque\n" PART_OF_MESSAGE
+    "geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"};
+constexpr RosSchema kPointCloud{
+    "sensor_msgs/msg/PointCloud2",
+    "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
+    "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n" HEADER_PARTS
+        PART_OF_MESSAGE
+    "sensor_msgs/PointField\nuint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\n"
+    "uint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\nstring name\nuint32 offset\nuint8 datatype\n"
+    "uint32 count\n"};
+
+#undef HEADER_PARTS
+#undef PART_OF_MESSAGE
+
+// Each number begins at a multiple of its size, counted from the end of the four bytes that name the
+// encoding.
+class CdrMessage {
+ public:
+  explicit CdrMessage(std::uint64_t time_ns) {
+    constexpr std::uint64_t kSecond = 1'000'000'000;
+    number(static_cast<std::int32_t>(time_ns / kSecond));
+    number(static_cast<std::uint32_t>(time_ns % kSecond));
+    text(kFrame);
+  }
+  template <class Number>
+  void number(Number value) {
+    bytes_.resize((bytes_.size() + sizeof value - 1) / sizeof value * sizeof value);
+    put(bytes_, value);
+  }
+  void text(const std::string& value) {
+    number(static_cast<std::uint32_t>(value.size() + 1));
+    bytes_.append(value.c_str(), value.size() + 1);
+  }
+  void vector(const Vec3& v) {
+    for (int axis = 0; axis < 3; ++axis) number(v[axis]);
+  }
+  void bytes(const std::string& value) {
+    number(static_cast<std::uint32_t>(value.size()));
+    bytes_ += value;
+  }
+  std::string whole() const { return std::string("\0\1\0\0", 4) + bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+std::uint64_t nanoseconds(double time_s) {
+  return static_cast<std::uint64_t>(std::llround(std::max(time_s, 0.0) * 1e9));
+}
+
+// Numbers have 32 bits, because readers of ROS 2 expect that. The rounding error is at most 0.06 micrometres
+// at a distance of 1 m.
+std::string cloud_message(const ExportedFrame& frame) {
+  const PointCloud& cloud = frame.points;
+  std::vector<std::string> fields{"x", "y", "z"};
+  if (!cloud.colour.empty()) fields.push_back("rgb");  // the bits of 0x00RRGGBB
+  if (cloud.has_normals()) fields.insert(fields.end(), {"normal_x", "normal_y", "normal_z"});
+  if (!cloud.fixture_radius_m.empty()) fields.push_back("fixture_radius");
+  constexpr std::uint32_t kNan = 0x7FC00000;  // NaN of 32 bits
+  const auto single = [](double number) { return static_cast<float>(number); };
+  std::string data;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    put(data, single(cloud.x[i]), single(cloud.y[i]), single(cloud.z[i]));
+    if (!cloud.colour.empty()) put(data, cloud.colour[i] == kNoColour ? kNan : cloud.colour[i]);
+    if (cloud.has_normals()) put(data, single(cloud.nx[i]), single(cloud.ny[i]), single(cloud.nz[i]));
+    if (!cloud.fixture_radius_m.empty()) put(data, single(cloud.fixture_radius_m[i]));
+  }
+  return point_cloud_message(nanoseconds(frame.captured_s), fields, data);
+}
+
+class RunMessages {
+ public:
+  RunMessages(const ExportedRun& run, McapWriter& mcap)
+      : run_(run),
+        mcap_(mcap),
+        cloud_(mcap.add_topic("/cloud", kPointCloud)),
+        hip_(mcap.add_topic("/hip", kPose)),
+        proxy_(mcap.add_topic("/proxy", kPose)),
+        force_(mcap.add_topic("/force", kWrench)) {
+    if (run.tool) tool_ = mcap.add_topic("/tool", kPose);
+  }
+
+  void add(const ExportedFrame& frame) {
+    add_ticks_before(frame.arrives_s);
+    mcap_.message(cloud_, nanoseconds(frame.arrives_s), nanoseconds(frame.captured_s), cloud_message(frame));
+  }
+  // Adds the messages of the remaining ticks before time_s, in the order of time.
+  void add_ticks_before(double time_s) {
+    for (; tick_ < run_.ticks() && run_.time_s[tick_] < time_s; ++tick_) {
+      const std::uint64_t now = nanoseconds(run_.time_s[tick_]);
+      const auto add = [&](std::uint16_t channel, const std::string& data) {
+        mcap_.message(channel, now, now, data);
+      };
+      add(hip_, pose_message(now, run_.hip_W[tick_], run_.hip_orientation_W[tick_]));
+      add(proxy_, pose_message(now, run_.proxy_W[tick_], run_.tool_orientation_W[tick_]));
+      if (tool_) add(*tool_, pose_message(now, run_.proxy_W[tick_], run_.tool_orientation_W[tick_]));
+      add(force_, wrench_message(now, run_.force_N[tick_], run_.torque_Nm[tick_]));
+    }
+  }
+
+ private:
+  const ExportedRun& run_;
+  McapWriter& mcap_;
+  const std::uint16_t cloud_, hip_, proxy_, force_;
+  std::optional<std::uint16_t> tool_;
+  std::size_t tick_ = 0;
+};
 
 }  // namespace
 
@@ -178,74 +303,6 @@ void McapWriter::finish() {
   emit(checked + content(crc_after(0, checked)) + kMagic);
 }
 
-namespace {
-
-constexpr const char* kFrame = "world";
-
-#define PART_OF_MESSAGE \
-  "================================================================================\nMSG: "
-#define HEADER_PARTS                                                                                  \
-  PART_OF_MESSAGE "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" PART_OF_MESSAGE \
-                  "builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
-
-constexpr RosSchema kPose{"geometry_msgs/msg/PoseStamped",
-                          "std_msgs/Header header\ngeometry_msgs/Pose pose\n" HEADER_PARTS PART_OF_MESSAGE
-                          "geometry_msgs/Pose\ngeometry_msgs/Point position\n"
-                          "geometry_msgs/Quaternion orientation\n" PART_OF_MESSAGE
-                          "geometry_msgs/Point\nfloat64 x\nfloat64 y\nfloat64 z\n" PART_OF_MESSAGE
-                          "geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
-constexpr RosSchema kWrench{
-    "geometry_msgs/msg/WrenchStamped",
-    "std_msgs/Header header\ngeometry_msgs/Wrench wrench\n" HEADER_PARTS PART_OF_MESSAGE
-    "geometry_msgs/Wrench\ngeometry_msgs/Vector3 force\n"
-    "geometry_msgs/Vector3 torque\n" PART_OF_MESSAGE
-    "geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"};
-constexpr RosSchema kPointCloud{
-    "sensor_msgs/msg/PointCloud2",
-    "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\n"
-    "bool is_bigendian\nuint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n" HEADER_PARTS
-        PART_OF_MESSAGE
-    "sensor_msgs/PointField\nuint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\n"
-    "uint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\nstring name\nuint32 offset\nuint8 datatype\n"
-    "uint32 count\n"};
-
-#undef HEADER_PARTS
-#undef PART_OF_MESSAGE
-
-// Each number begins at a multiple of its size, counted from the end of the four bytes that name the
-// encoding.
-class CdrMessage {
- public:
-  explicit CdrMessage(std::uint64_t time_ns) {
-    constexpr std::uint64_t kSecond = 1'000'000'000;
-    number(static_cast<std::int32_t>(time_ns / kSecond));
-    number(static_cast<std::uint32_t>(time_ns % kSecond));
-    text(kFrame);
-  }
-  template <class Number>
-  void number(Number value) {
-    bytes_.resize((bytes_.size() + sizeof value - 1) / sizeof value * sizeof value);
-    put(bytes_, value);
-  }
-  void text(const std::string& value) {
-    number(static_cast<std::uint32_t>(value.size() + 1));
-    bytes_.append(value.c_str(), value.size() + 1);
-  }
-  void vector(const Vec3& v) {
-    for (int axis = 0; axis < 3; ++axis) number(v[axis]);
-  }
-  void bytes(const std::string& value) {
-    number(static_cast<std::uint32_t>(value.size()));
-    bytes_ += value;
-  }
-  std::string whole() const { return std::string("\0\1\0\0", 4) + bytes_; }
-
- private:
-  std::string bytes_;
-};
-
-}  // namespace
-
 std::string pose_message(std::uint64_t time_ns, const Vec3& position_W,
                          const Eigen::Quaterniond& orientation_W) {
   CdrMessage message(time_ns);
@@ -284,72 +341,6 @@ std::string point_cloud_message(std::uint64_t time_ns, const std::vector<std::st
   message.number(std::uint8_t{1});  // is_dense: every point was measured
   return message.whole();
 }
-
-namespace {
-
-std::uint64_t nanoseconds(double time_s) {
-  return static_cast<std::uint64_t>(std::llround(std::max(time_s, 0.0) * 1e9));
-}
-
-// Numbers have 32 bits, because readers of ROS 2 expect that. The rounding error is at most 0.06 micrometres
-// at a distance of 1 m.
-std::string cloud_message(const ExportedFrame& frame) {
-  const PointCloud& cloud = frame.points;
-  std::vector<std::string> fields{"x", "y", "z"};
-  if (!cloud.colour.empty()) fields.push_back("rgb");  // the bits of 0x00RRGGBB
-  if (cloud.has_normals()) fields.insert(fields.end(), {"normal_x", "normal_y", "normal_z"});
-  if (!cloud.fixture_radius_m.empty()) fields.push_back("fixture_radius");
-  constexpr std::uint32_t kNan = 0x7FC00000;  // NaN of 32 bits
-  const auto single = [](double number) { return static_cast<float>(number); };
-  std::string data;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    put(data, single(cloud.x[i]), single(cloud.y[i]), single(cloud.z[i]));
-    if (!cloud.colour.empty()) put(data, cloud.colour[i] == kNoColour ? kNan : cloud.colour[i]);
-    if (cloud.has_normals()) put(data, single(cloud.nx[i]), single(cloud.ny[i]), single(cloud.nz[i]));
-    if (!cloud.fixture_radius_m.empty()) put(data, single(cloud.fixture_radius_m[i]));
-  }
-  return point_cloud_message(nanoseconds(frame.captured_s), fields, data);
-}
-
-class RunMessages {
- public:
-  RunMessages(const ExportedRun& run, McapWriter& mcap)
-      : run_(run),
-        mcap_(mcap),
-        cloud_(mcap.add_topic("/cloud", kPointCloud)),
-        hip_(mcap.add_topic("/hip", kPose)),
-        proxy_(mcap.add_topic("/proxy", kPose)),
-        force_(mcap.add_topic("/force", kWrench)) {
-    if (run.tool) tool_ = mcap.add_topic("/tool", kPose);
-  }
-
-  void add(const ExportedFrame& frame) {
-    add_ticks_before(frame.arrives_s);
-    mcap_.message(cloud_, nanoseconds(frame.arrives_s), nanoseconds(frame.captured_s), cloud_message(frame));
-  }
-  // Adds the messages of the remaining ticks before time_s, in the order of time.
-  void add_ticks_before(double time_s) {
-    for (; tick_ < run_.ticks() && run_.time_s[tick_] < time_s; ++tick_) {
-      const std::uint64_t now = nanoseconds(run_.time_s[tick_]);
-      const auto add = [&](std::uint16_t channel, const std::string& data) {
-        mcap_.message(channel, now, now, data);
-      };
-      add(hip_, pose_message(now, run_.hip_W[tick_], run_.hip_orientation_W[tick_]));
-      add(proxy_, pose_message(now, run_.proxy_W[tick_], run_.tool_orientation_W[tick_]));
-      if (tool_) add(*tool_, pose_message(now, run_.proxy_W[tick_], run_.tool_orientation_W[tick_]));
-      add(force_, wrench_message(now, run_.force_N[tick_], run_.torque_Nm[tick_]));
-    }
-  }
-
- private:
-  const ExportedRun& run_;
-  McapWriter& mcap_;
-  const std::uint16_t cloud_, hip_, proxy_, force_;
-  std::optional<std::uint16_t> tool_;
-  std::size_t tick_ = 0;
-};
-
-}  // namespace
 
 void write_mcap(const ExportJob& job) {
   const ExportedRun run = exported_run(job);

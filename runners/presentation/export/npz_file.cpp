@@ -1,4 +1,4 @@
-#include "runners/presentation/export/npz_file.h"
+#include "runners/presentation/export/export_formats.h"
 
 #include <zlib.h>
 
@@ -9,8 +9,6 @@
 #include <stdexcept>
 
 #include "core/parameters/parameter.h"
-#include "runners/presentation/export/exported_run.h"
-#include "runners/presentation/export/result_tables.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {
@@ -65,6 +63,44 @@ std::string array_of_texts(const std::vector<std::string>& texts, const std::str
   return array;
 }
 
+constexpr std::uint32_t kLocalHeader = 0x04034b50, kCentralHeader = 0x02014b50, kEnd = 0x06054b50;
+constexpr std::uint16_t kVersion = 20, kFirstOf1980 = 0x21, kNone = 0;
+
+std::uint32_t crc_of(const std::string& bytes) {
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+// Appends the fields that the header of a member and its entry at the end of the archive have in common: from
+// the version that is needed to the length of the extra field, which is none. Flags, method and time are 0.
+void put_member(std::string& bytes, std::uint32_t crc, std::uint32_t size, const std::string& name) {
+  put(bytes, kVersion, kNone, kNone, kNone, kFirstOf1980, crc, size, size);
+  put(bytes, static_cast<std::uint16_t>(name.size()), kNone);
+}
+
+std::string local_header(const std::string& name, std::uint32_t crc, std::uint32_t size) {
+  std::string header;
+  put(header, kLocalHeader);
+  put_member(header, crc, size, name);
+  return header + name;
+}
+
+constexpr const char* kFormat = "format.npy";
+
+std::string member_of(const std::vector<Table>& tables, const Table& table, const Column& column) {
+  return (tables.size() > 1 ? table.name + "/" : "") + column.name;
+}
+
+std::string about(const ExportJob& job, const std::vector<Table>& tables) {
+  Json attributes = Json::object(), members = Json::object();
+  for (const auto& [name, value] : exported_attributes(job.result, tables)) attributes[name] = value;
+  for (const Table& table : tables)
+    for (const Column& column : table.columns)
+      members[member_of(tables, table, column)] = {
+          {"unit", column.units}, {"meaning", column.long_name}, {"names", column.value_names}};
+  const Json all{{"attributes", std::move(attributes)}, {"members", std::move(members)}};
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 std::string npy_array(const Column& column) {
@@ -88,31 +124,6 @@ std::string npy_array(const Column& column) {
 std::string npy_text(const std::string& text) {
   return array_of_texts({text}, "()");
 }
-
-namespace {
-
-constexpr std::uint32_t kLocalHeader = 0x04034b50, kCentralHeader = 0x02014b50, kEnd = 0x06054b50;
-constexpr std::uint16_t kVersion = 20, kFirstOf1980 = 0x21, kNone = 0;
-
-std::uint32_t crc_of(const std::string& bytes) {
-  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
-// Appends the fields that the header of a member and its entry at the end of the archive have in common: from
-// the version that is needed to the length of the extra field, which is none. Flags, method and time are 0.
-void put_member(std::string& bytes, std::uint32_t crc, std::uint32_t size, const std::string& name) {
-  put(bytes, kVersion, kNone, kNone, kNone, kFirstOf1980, crc, size, size);
-  put(bytes, static_cast<std::uint16_t>(name.size()), kNone);
-}
-
-std::string local_header(const std::string& name, std::uint32_t crc, std::uint32_t size) {
-  std::string header;
-  put(header, kLocalHeader);
-  put_member(header, crc, size, name);
-  return header + name;
-}
-
-}  // namespace
 
 std::string ZipArchive::opening(const std::string& name, const std::string& content) {
   return local_header(name, crc_of(content), static_cast<std::uint32_t>(content.size())) + content;
@@ -148,27 +159,6 @@ void ZipArchive::finish() {
   put(directory, kNone);  // no comment
   write_(directory);
 }
-
-namespace {
-
-constexpr const char* kFormat = "format.npy";
-
-std::string member_of(const std::vector<Table>& tables, const Table& table, const Column& column) {
-  return (tables.size() > 1 ? table.name + "/" : "") + column.name;
-}
-
-std::string about(const ExportJob& job, const std::vector<Table>& tables) {
-  Json attributes = Json::object(), members = Json::object();
-  for (const auto& [name, value] : exported_attributes(job.result, tables)) attributes[name] = value;
-  for (const Table& table : tables)
-    for (const Column& column : table.columns)
-      members[member_of(tables, table, column)] = {
-          {"unit", column.units}, {"meaning", column.long_name}, {"names", column.value_names}};
-  const Json all{{"attributes", std::move(attributes)}, {"members", std::move(members)}};
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-}  // namespace
 
 void write_npz(const ExportJob& job) try {
   const std::vector<Table> tables = result_tables(job.result);

@@ -1,4 +1,4 @@
-#include "runners/presentation/export/result_tables.h"
+#include "runners/presentation/export/export_formats.h"
 
 #include <algorithm>
 #include <array>

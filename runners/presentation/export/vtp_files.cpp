@@ -1,4 +1,4 @@
-#include "runners/presentation/export/vtp_files.h"
+#include "runners/presentation/export/export_formats.h"
 
 #include <algorithm>
 #include <charconv>
@@ -6,8 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/points/point_cloud.h"
-#include "runners/presentation/export/exported_run.h"
-#include "runners/presentation/export/result_tables.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {

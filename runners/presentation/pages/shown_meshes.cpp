@@ -1,4 +1,4 @@
-#include "runners/presentation/pages/shown_meshes.h"
+#include "runners/presentation/pages/shown_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,29 +61,6 @@ std::vector<float> centres_and_radii(std::span<const Sphere> spheres) {
       list.push_back(static_cast<float>(number));
   return list;
 }
-
-}  // namespace
-
-ShownTool shown_tool(const Json& renderer) {
-  const ToolSettings settings = tool_settings(renderer);
-  if (!renderer.contains(kLeaves)) return {load_tool(settings), nullptr};
-  ToolOfSpheres loaded = load_tool_of_spheres(settings, renderer[kLeaves].get<int>());
-  return {std::move(loaded.tool), std::move(loaded.spheres)};
-}
-
-Json json_of(const ShownTool& tool, PackedArrays& numbers) {
-  std::vector<float> vertices;
-  std::vector<std::uint32_t> triangles;
-  for (const Vec3& v : tool.tool->mesh.vertices)
-    for (int axis = 0; axis < 3; ++axis) vertices.push_back(static_cast<float>(v[axis]));
-  for (const auto& triangle : tool.tool->mesh.triangles)
-    for (const int corner : triangle) triangles.push_back(static_cast<std::uint32_t>(corner));
-  Json json{{"vertices", numbers.add(vertices)}, {"triangles", numbers.add(triangles)}};
-  if (tool.spheres) json["spheres"] = numbers.add(centres_and_radii(tool.spheres->spheres.leaves()));
-  return json;
-}
-
-namespace {
 
 constexpr double kFinestGrid = 65535;      // steps along the longest side
 constexpr double kLeastStep_m = 1e-9;      // step for a mesh that is a single point
@@ -161,6 +138,25 @@ void thin(ShownMesh& mesh, std::size_t max_poses) {
 }
 
 }  // namespace
+
+ShownTool shown_tool(const Json& renderer) {
+  const ToolSettings settings = tool_settings(renderer);
+  if (!renderer.contains(kLeaves)) return {load_tool(settings), nullptr};
+  ToolOfSpheres loaded = load_tool_of_spheres(settings, renderer[kLeaves].get<int>());
+  return {std::move(loaded.tool), std::move(loaded.spheres)};
+}
+
+Json json_of(const ShownTool& tool, PackedArrays& numbers) {
+  std::vector<float> vertices;
+  std::vector<std::uint32_t> triangles;
+  for (const Vec3& v : tool.tool->mesh.vertices)
+    for (int axis = 0; axis < 3; ++axis) vertices.push_back(static_cast<float>(v[axis]));
+  for (const auto& triangle : tool.tool->mesh.triangles)
+    for (const int corner : triangle) triangles.push_back(static_cast<std::uint32_t>(corner));
+  Json json{{"vertices", numbers.add(vertices)}, {"triangles", numbers.add(triangles)}};
+  if (tool.spheres) json["spheres"] = numbers.add(centres_and_radii(tool.spheres->spheres.leaves()));
+  return json;
+}
 
 MeshOnGrid mesh_on_grid(const PosedMesh& mesh, std::size_t max_triangles) {
   BoundingBox box;

@@ -1,4 +1,4 @@
-#include "runners/presentation/pages/view_page.h"
+#include "runners/presentation/pages/result_pages.h"
 
 #include <openssl/evp.h>
 #include <zlib.h>

@@ -11,7 +11,7 @@
 
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/hand/scripted_motions.h"
+#include "runners/experiment/hand/trajectory.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"

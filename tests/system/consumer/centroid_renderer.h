@@ -7,7 +7,7 @@
 
 #include <core/kernels/kernels.h>
 #include <core/rendering/renderer.h>
-#include <runners/experiment/catalog/factory.h>
+#include <runners/experiment/catalog/catalog.h>
 
 namespace lab {
 

@@ -1,7 +1,7 @@
 #include "entries.h"
 
 #include <analysis/trace/trace.h>
-#include <runners/evaluation/verification/contact_model.h>
+#include <runners/evaluation/verification/metamorphic_checks.h>
 
 #include "centroid_renderer.h"
 #include "dome.h"

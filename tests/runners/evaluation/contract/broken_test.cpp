@@ -9,8 +9,7 @@
 #include "analysis/trace/trace.h"
 #include "core/points/neighbour_search.h"
 #include "runners/evaluation/contract/contract_tests.h"
-#include "runners/evaluation/contract/flat_scene.h"
-#include "runners/evaluation/verification/contact_model.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 
 namespace remote_touch::broken_contract_test {
 namespace {

@@ -1,5 +1,5 @@
 // The scorecard's scenes and methods as they are in data/: each runs with each, over the same noise.
-#include "runners/evaluation/scorecard/benchmark_run.h"
+#include "runners/evaluation/scorecard/benchmark.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/trace/trace.h"
-#include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/recordings/recording.h"

@@ -7,7 +7,6 @@
 
 #include "analysis/storage/result_file.h"
 #include "core/kernels/isa.h"
-#include "runners/evaluation/scorecard/card_summaries.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "scenarios/files/input_files.h"
 #include "tests/support/test_files.h"

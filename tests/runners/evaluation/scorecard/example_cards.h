@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/evaluation/scorecard/card_summaries.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 
 namespace remote_touch::made_cards {
 

@@ -7,7 +7,6 @@
 #include "core/kernels/isa.h"
 #include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
-#include "runners/evaluation/scorecard/report_json.h"
 #include "scenarios/files/input_files.h"
 #include "tests/support/recorded_wall.h"
 

@@ -1,15 +1,218 @@
 #include "runners/evaluation/scorecard/scorecard.h"
 
 #include <gtest/gtest.h>
-
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "runners/evaluation/scorecard/card_summaries.h"
+#include "core/points/noise.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 #include "tests/runners/evaluation/scorecard/example_cards.h"
+
+namespace remote_touch::ranking_test {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Two levels of 20 values around a middle. Ten elevenths of the spread are common to all methods.
+PairedValues values_around(double middle, std::uint32_t method) {
+  PairedValues values(2);
+  for (std::uint32_t i = 0; i < 2; ++i)
+    for (std::uint32_t k = 0; k < 20; ++k) {
+      const double common = uniforms({{1, 1}, {i, 0, 0}}, k)[0];
+      const double own = uniforms({{1, 1}, {i, 1 + method, 0}}, k)[0];
+      values[i].push_back(middle + common + 0.1 * own);
+    }
+  return values;
+}
+
+// Returns the values twice, so that there are as many pairs as a verdict needs.
+std::vector<double> twice(std::vector<double> values) {
+  const std::vector<double> again = values;
+  values.insert(values.end(), again.begin(), again.end());
+  return values;
+}
+
+TEST(Standings, MarksBestAndWorstIfThePairsShowIt) {
+  // The methods are 0.2 apart and the spread is 1, so only the comparison of pairs shows the difference.
+  const std::vector<PairedValues> three = {values_around(0.2, 0), values_around(0, 1), values_around(0.4, 2)};
+  const Ranking smaller = ranking(three, Better::smaller, false);
+  EXPECT_EQ(smaller.order, (std::vector<std::size_t>{1, 0, 2}));
+  EXPECT_TRUE(smaller.has_best && smaller.has_worst);
+  EXPECT_EQ(smaller.top_group, (std::vector<std::size_t>{1}));
+  EXPECT_EQ(ranking(three, Better::larger, false).order, (std::vector<std::size_t>{2, 0, 1}));
+  const Ranking reported = ranking(three, Better::neither, false);
+  EXPECT_FALSE(reported.has_best || reported.has_worst);
+}
+
+TEST(Standings, EqualMethodsHaveNoBestAndNoWorst) {
+  const PairedValues one = values_around(0, 0);
+  const Ranking same = ranking({one, one, values_around(0, 0)}, Better::smaller, false);
+  EXPECT_FALSE(same.has_best || same.has_worst);
+  EXPECT_EQ(same.top_group.size(), 3u);
+  const Ranking two_best = ranking({one, values_around(3, 1), one}, Better::smaller, false);
+  EXPECT_FALSE(two_best.has_best);
+  EXPECT_TRUE(two_best.has_worst);
+  EXPECT_EQ(two_best.top_group, (std::vector<std::size_t>{0, 2}));
+}
+
+TEST(Standings, FewFlippedEventsAreNoDifference) {
+  const PairedValues all(2, std::vector<double>(20, 1)), none(2, std::vector<double>(20, 0));
+  PairedValues one_less = all;
+  one_less[1][3] = 0;
+  const Ranking success = ranking({none, one_less, all}, Better::larger, true);
+  EXPECT_EQ(success.order, (std::vector<std::size_t>{2, 1, 0}));
+  EXPECT_FALSE(success.has_best);
+  EXPECT_TRUE(success.has_worst);
+  EXPECT_EQ(success.top_group, (std::vector<std::size_t>{2, 1}));
+}
+
+TEST(Standings, BestNeedsPairsThatAgreeWithTheOrder) {
+  // The first method has values only at the easy level, so its own mean is the best, but it is worse in every
+  // pair.
+  const PairedValues early = {twice({1, 1.1, 0.9, 1, 1.1, 0.9}), std::vector<double>(12, kNan)};
+  const PairedValues all = {twice({0.5, 0.6, 0.4, 0.5, 0.6, 0.4}), twice({3, 3.1, 2.9, 3, 3.1, 2.9})};
+  const Ranking result = ranking({early, all}, Better::smaller, false);
+  EXPECT_EQ(result.order.front(), 0u);
+  EXPECT_FALSE(result.has_best || result.has_worst);
+  EXPECT_EQ(result.top_group.size(), 2u);
+}
+
+TEST(Standings, TheBestIsApartFromAllOthers) {
+  // The third has a worse mean than the second, but has values for only half of the runs and is mostly as
+  // good as the first.
+  PairedValues first(1, std::vector<double>(24, 1)), second(1, std::vector<double>(24, 2)),
+      third(1, twice({1, 0.9, 9, 1, 0.9, 1}));
+  third[0].resize(24, kNan);
+  second[0][1] = second[0][8] = 2.1;
+  const Ranking result = ranking({first, second, third}, Better::smaller, false);
+  EXPECT_EQ(result.order, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_FALSE(result.has_best);
+  EXPECT_EQ(result.top_group, (std::vector<std::size_t>{0, 2}));
+  const Ranking reverse = ranking({first, second, third}, Better::larger, false);
+  EXPECT_EQ(reverse.order, (std::vector<std::size_t>{2, 1, 0}));
+  EXPECT_FALSE(reverse.has_worst);
+}
+
+TEST(Standings, TooFewCommonPairsGiveNoVerdict) {
+  PairedValues one(1, std::vector<double>(20, 1)), other(1, std::vector<double>(20, 2)),
+      rest(1, std::vector<double>(20, 3));
+  std::fill_n(other[0].begin(), 8, kNan);
+  std::fill_n(rest[0].rbegin(), 4, kNan);  // eight pairs of both
+  EXPECT_TRUE(ranking({one, other}, Better::smaller, false).has_best);
+  const Ranking apart = ranking({other, rest}, Better::smaller, false);
+  EXPECT_EQ(apart.ranked, 2u);
+  EXPECT_TRUE(std::isnan(apart.against[0][1].p));
+  EXPECT_FALSE(apart.has_best || apart.has_worst);
+  PairedValues lucky(1, std::vector<double>(20, kNan));
+  std::fill_n(lucky[0].begin(), 11, 0);
+  EXPECT_EQ(ranking({one, lucky, other}, Better::smaller, false).ranked, 2u);
+  const PairedValues won(1, std::vector<double>(11, 1)), lost(1, std::vector<double>(11, 0));
+  EXPECT_FALSE(ranking({won, lost}, Better::larger, true).has_best);  // events need as many pairs
+  // A value that is alone in its level is not thereby certain.
+  PairedValues nought(14, {0}), scattered(14, {0});
+  for (std::size_t i = 0; i < 14; ++i) scattered[i][0] = i % 2 == 0 ? 1.0 + 0.5 * static_cast<double>(i) : -3;
+  const Ranking alone = ranking({nought, scattered}, Better::smaller, false);
+  EXPECT_FALSE(alone.has_best);
+  EXPECT_LT(alone.mean[1].low, alone.mean[1].high);
+}
+
+// About ten of 200 comparisons of equal methods show a difference if they are not corrected. Corrected
+// together, hardly ever one does.
+TEST(Standings, IsCorrectedForAllComparisons) {
+  std::vector<Ranking> rankings;
+  int found = 0;
+  for (std::uint32_t k = 0; k < 200; ++k) {
+    PairedValues a(1), b(1);
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      const auto u = uniforms({{7, 1}, {k, 0, 0}}, i);
+      a[0].push_back(u[0]), b[0].push_back(u[1]);
+    }
+    rankings.push_back(ranking({a, b}, Better::smaller, false));
+    found += rankings.back().has_best;
+  }
+  EXPECT_GE(found, 3);
+  EXPECT_LE(found, 20);
+  PairedValues low(1), high(1);  // one true difference among them
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    const auto u = uniforms({{7, 2}, {i, 0, 0}}, 0);
+    low[0].push_back(u[0]), high[0].push_back(u[1] + 2);
+  }
+  rankings.push_back(ranking({high, low}, Better::smaller, false));
+  const double p = rankings.back().against[1][0].p;
+  std::vector<Ranking*> all;
+  for (Ranking& one : rankings) all.push_back(&one);
+  EXPECT_EQ(correct_together(all), 201);
+  for (std::size_t k = 0; k < 200; ++k) EXPECT_FALSE(rankings[k].has_best) << k;
+  EXPECT_TRUE(rankings.back().has_best);
+  EXPECT_EQ(rankings.back().order.front(), 1u);
+  EXPECT_NEAR(rankings.back().against[1][0].p, 201 * p, 1e-12 * p);  // the smallest of 201
+  EXPECT_EQ(rankings.back().against[0][1].p, rankings.back().against[1][0].p);
+}
+
+TEST(Standings, ARepeatedRunCountsOnce) {
+  // Level 0 repeats one run 20 times. The other level shows no difference.
+  PairedValues up(2, std::vector<double>(20, 1)), down = up;
+  down[0].assign(20, 0);
+  const std::vector<SharedRuns> both(2, {{true, false}}), one = {{{true, false}}, {{false, false}}};
+  EXPECT_TRUE(ranking({up, down}, Better::larger, true).has_best);
+  const Ranking events = ranking({up, down}, Better::larger, true, both);
+  EXPECT_FALSE(events.has_best);
+  EXPECT_EQ(events.mean[0].clusters, 21);
+  EXPECT_TRUE(ranking({up, down}, Better::larger, true, one).has_best);  // the other's runs differ
+  const PairedValues low(1, std::vector<double>(20, 1)), high(1, std::vector<double>(20, 2));
+  EXPECT_TRUE(ranking({low, high}, Better::smaller, false).has_best);
+  EXPECT_EQ(ranking({low, high}, Better::smaller, false, {{{true}}, {{true}}}).ranked, 0u);
+}
+
+// Four levels of 5 replicates are 20 pairs, but only 5 clusters if the levels share the random numbers of a
+// replicate.
+TEST(Standings, RunsOfAReplicateThatShareRandomNumbersAreOneCluster) {
+  const PairedValues low(4, std::vector<double>(5, 1)), high(4, std::vector<double>(5, 2));
+  for (const bool event : {false, true}) {
+    const PairedValues better = event ? PairedValues(4, std::vector<double>(5, 0)) : low;
+    const PairedValues worse = event ? low : high;
+    EXPECT_TRUE(ranking({better, worse}, Better::smaller, event).has_best);
+    const Ranking shared = ranking({better, worse}, Better::smaller, event, {{{}, true}, {}});
+    EXPECT_FALSE(shared.has_best);
+    EXPECT_TRUE(std::isnan(shared.against[0][1].p));
+    EXPECT_EQ(shared.mean[0].clusters, 5);
+    EXPECT_EQ(shared.mean[1].clusters, 20);
+  }
+}
+
+// Eleven runs are better by about 0.45 and one is worse by 0.5: the sign flips give p = 0.0063.
+TEST(Standings, ASkewedDifferenceEarnsNoVerdict) {
+  const PairedValues differences = {
+      {-.4233, -.4994, -.4994, -.4994, -.4233, -.4994, -.4614, .504, -.4625, -.4994, -.4245, -.4614}};
+  const PairedValues zero(1, std::vector<double>(12, 0));
+  const Ranking skewed = ranking({differences, zero}, Better::smaller, false);
+  EXPECT_NEAR(skewed.against[0][1].p, 0.00635, 5e-6);
+  EXPECT_TRUE(skewed.against[0][1].is_skewed && skewed.against[1][0].is_skewed);
+  EXPECT_FALSE(skewed.has_best || skewed.has_worst);
+}
+
+TEST(Standings, NearZeroComparesMagnitudes) {
+  const PairedValues low(1, twice({-5, -4, -6, -5, -4, -6})), high(1, twice({1, 2, 1, 2, 1, 2}));
+  EXPECT_EQ(ranking({low, high}, Better::near_zero, false).order.front(), 1u);
+  EXPECT_EQ(ranking({low, high}, Better::smaller, false).order.front(), 0u);
+}
+
+TEST(Standings, AMethodWithoutNumbersIsNotRanked) {
+  const PairedValues none(1, std::vector<double>(12, kNan)), good(1, twice({1, 2, 1.5, 1, 2, 1.5})),
+      bad(1, twice({9, 10, 9.5, 9, 10, 9.5}));
+  const Ranking result = ranking({none, bad, good}, Better::smaller, false);
+  EXPECT_EQ(result.order, (std::vector<std::size_t>{2, 1, 0}));
+  EXPECT_EQ(result.ranked, 2u);
+  EXPECT_TRUE(result.has_best && result.has_worst);
+  EXPECT_EQ(ranking({none, none}, Better::smaller, false).ranked, 0u);
+}
+
+}  // namespace
+}  // namespace remote_touch::ranking_test
 
 namespace remote_touch::scorecard_test {
 namespace {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "runners/evaluation/verification/metamorphic_checks.h"
-#include "runners/evaluation/verification/verification_scenes.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "tests/runners/evaluation/verification/wrong_renderers.h"
 #include "tests/support/scenes.h"

@@ -4,8 +4,6 @@
 #include <set>
 
 #include "runners/evaluation/verification/metamorphic_checks.h"
-#include "runners/evaluation/verification/variation.h"
-#include "runners/evaluation/verification/verification_scenes.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "tests/runners/evaluation/verification/wrong_renderers.h"
 #include "tests/support/scenes.h"

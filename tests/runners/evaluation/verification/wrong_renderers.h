@@ -11,7 +11,6 @@
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/kernels/isa.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/catalog/factory.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 
 namespace remote_touch {

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "core/parameters/parameter.h"
-#include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "tests/support/test_files.h"
 

@@ -1,5 +1,5 @@
 // The table of sections: what each line must provide for reading, writing and help.
-#include "runners/experiment/catalog/sections.h"
+#include "runners/experiment/catalog/configuration.h"
 
 #include <gtest/gtest.h>
 

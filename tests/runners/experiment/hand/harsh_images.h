@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/experiment/hand/image_scan.h"
+#include "runners/experiment/hand/image_motions.h"
 #include "tests/support/depth_scenes.h"
 #include "tests/support/note_kinds.h"
 #include "tests/support/scenes.h"

@@ -1,4 +1,4 @@
-#include "runners/experiment/hand/held_motion.h"
+#include "runners/experiment/hand/simulated_hand.h"
 
 #include <gtest/gtest.h>
 

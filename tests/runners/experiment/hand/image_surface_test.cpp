@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "runners/experiment/hand/image_press.h"
+#include "runners/experiment/hand/image_motions.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::image_surface_test {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <random>
 
-#include "runners/experiment/hand/held_motion.h"
 #include "runners/experiment/hand/simulated_hand.h"
 #include "tests/runners/experiment/hand/held_motion_oracle.h"
 

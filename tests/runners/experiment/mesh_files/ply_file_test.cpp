@@ -1,6 +1,6 @@
 // The counts that the header of a PLY file claims are checked against the size of the file before any library
 // reads it.
-#include "runners/experiment/mesh_files/ply_file.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,6 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/experiment/opencl/depth_device.h"
-#include "runners/experiment/opencl/device_pipeline.h"
 #include "runners/experiment/opencl/opencl_devices.h"
 #include "scenarios/recordings/recording.h"
 #include "tests/core/dissertation/depth/depth_cases.h"

@@ -8,7 +8,6 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/opencl/device_frames.h"
-#include "runners/experiment/opencl/device_pipeline.h"
 #include "runners/experiment/opencl/opencl_devices.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
 #include "tests/doubles/loaded_opencl_double.h"

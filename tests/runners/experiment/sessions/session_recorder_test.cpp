@@ -1,4 +1,4 @@
-#include "runners/experiment/sessions/session_recorder.h"
+#include "runners/experiment/sessions/session_file.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -17,7 +17,6 @@
 #include <type_traits>
 
 #include "analysis/storage/hdf5_file.h"
-#include "runners/experiment/sessions/session_file.h"
 #include "tests/runners/experiment/sessions/small_session.h"
 #include "tests/support/test_files.h"
 

@@ -1,10 +1,9 @@
-#include "runners/experiment/settings/citation.h"
+#include "runners/experiment/settings/provenance.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "runners/experiment/settings/provenance.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::citation_test {

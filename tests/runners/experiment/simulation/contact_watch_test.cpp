@@ -1,4 +1,4 @@
-#include "runners/experiment/simulation/contact_watch.h"
+#include "runners/experiment/simulation/run_notes.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "analysis/trace/trace.h"
-#include "runners/evaluation/verification/contact_model.h"
+#include "runners/evaluation/verification/metamorphic_checks.h"
 #include "tests/runners/experiment/simulation/cloud_kinds.h"
 
 namespace remote_touch::frame_needs_test {

@@ -8,7 +8,6 @@
 
 #include "analysis/trace/contact_measures.h"
 #include "analysis/trace/measures.h"
-#include "runners/experiment/simulation/run_report.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/recorded_wall.h"
 

@@ -1,4 +1,4 @@
-#include "runners/interfaces/cli/subcommands.h"
+#include "runners/interfaces/cli/program.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Tests of the text that the command `hashes` prints.
 #include <gtest/gtest.h>
 
-#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/program.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

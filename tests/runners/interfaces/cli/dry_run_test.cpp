@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/kernels/isa.h"
-#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/program.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::dry_run_test {

@@ -5,7 +5,7 @@
 #include "analysis/storage/block_journal.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/kernels/isa.h"
-#include "runners/interfaces/cli/commands.h"
+#include "runners/interfaces/cli/program.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_test {

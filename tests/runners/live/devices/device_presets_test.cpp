@@ -15,7 +15,7 @@
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/live/devices/device_placement.h"
+#include "runners/live/devices/haptic_device.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 #include "tests/doubles/vendor_devices.h"
 #include "tests/support/test_files.h"
 

@@ -1,7 +1,7 @@
 // The adapter of Force Dimension's DHD, with a test double: what it does beyond the contract of all adapters.
 #include <gtest/gtest.h>
 
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 #include "tests/doubles/vendor_devices.h"
 #include "tests/support/test_files.h"
 

@@ -1,7 +1,7 @@
 // The WebSocket to Haply's service, over a real socket to a service that is simulated
 // (tests/doubles/haply_service.h). Times are those of the machine: a call that does not end by its deadline
 // hangs.
-#include "runners/live/devices/haply_link.h"
+#include "runners/live/devices/haply.h"
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -14,8 +14,6 @@
 
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/live/devices/clock.h"
-#include "runners/live/devices/haply.h"
-#include "runners/live/devices/haply_messages.h"
 #include "tests/doubles/haply_service.h"
 #include "tests/runners/live/devices/haply_ticks.h"
 #include "tests/support/test_files.h"

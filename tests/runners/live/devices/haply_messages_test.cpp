@@ -1,6 +1,6 @@
 // The text that Haply's service and its client exchange: samples of its documentation, and texts that are no
 // message.
-#include "runners/live/devices/haply_messages.h"
+#include "runners/live/devices/haply.h"
 
 #include <gtest/gtest.h>
 

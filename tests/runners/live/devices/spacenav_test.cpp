@@ -1,6 +1,6 @@
 // The adapter of spacenavd: against a socket of the test's own on a simulated clock, and against the stock
 // daemon with a simulated serial mouse (tests/doubles/spacenav_daemon.h).
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

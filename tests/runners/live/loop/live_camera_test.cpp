@@ -9,7 +9,7 @@
 #include <string>
 
 #include "runners/live/loop/live_run.h"
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 #include "tests/doubles/virtual_openni2/virtual_camera.h"
 #include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/support/start_with_libraries.h"

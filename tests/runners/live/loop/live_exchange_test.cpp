@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "runners/live/devices/clock.h"
-#include "runners/live/loop/live_controls.h"
+#include "runners/live/loop/servo.h"
 
 namespace remote_touch::live_exchange_test {
 namespace {

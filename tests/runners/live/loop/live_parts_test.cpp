@@ -1,4 +1,4 @@
-#include "runners/live/loop/live_parts.h"
+#include "runners/live/loop/live_run.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "runners/live/devices/adapters.h"
+#include "runners/live/devices/device_table.h"
 #include "tests/doubles/simulated_haply.h"
 #include "tests/doubles/spacenav_socket.h"
 #include "tests/runners/live/loop/pressed_hand.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runners/live/devices/device_table.h"
-#include "runners/live/loop/live_parts.h"
+#include "runners/live/loop/live_run.h"
 #include "runners/live/sensors/scenario_camera.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "runners/live/devices/clock.h"
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::freenect_absent_test {

@@ -1,5 +1,5 @@
 // The adapter on fakenect, the library that libfreenect ships to play recordings instead of a Kinect.
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 
 #include <gtest/gtest.h>
 

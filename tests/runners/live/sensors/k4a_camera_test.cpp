@@ -1,6 +1,6 @@
 // The adapter of the k4a interface, with a test double: what it does beyond the contract of all adapters of
 // depth libraries.
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The adapter on the real run-time library of OpenNI 2, its recorder and its player. Only the camera is a
 // double: a driver (tests/doubles/virtual_openni2) that the library loads like any other.
-#include "runners/live/sensors/adapters.h"
+#include "runners/live/sensors/depth_source.h"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>

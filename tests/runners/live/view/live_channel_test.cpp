@@ -1,4 +1,4 @@
-#include "runners/live/view/live_channel.h"
+#include "runners/live/view/live_pages.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runners/presentation/export/mcap_file.h"
+#include "runners/presentation/export/export_formats.h"
 
 #include <gtest/gtest.h>
 

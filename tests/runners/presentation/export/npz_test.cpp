@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "runners/presentation/export/npz_file.h"
+#include "runners/presentation/export/export_formats.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::npz_test {

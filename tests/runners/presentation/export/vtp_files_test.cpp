@@ -1,4 +1,4 @@
-#include "runners/presentation/export/vtp_files.h"
+#include "runners/presentation/export/export_formats.h"
 
 #include <gtest/gtest.h>
 

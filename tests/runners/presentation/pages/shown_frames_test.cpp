@@ -1,4 +1,4 @@
-#include "runners/presentation/pages/shown_frames.h"
+#include "runners/presentation/pages/shown_run.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runners/presentation/pages/shown_meshes.h"
+#include "runners/presentation/pages/shown_run.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runners/presentation/pages/sweep_page.h"
+#include "runners/presentation/pages/result_pages.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include "analysis/trace/trace.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/pages/view_page.h"
 #include "runners/sweep/sweep_run.h"
 #include "tests/runners/presentation/pages/read_page.h"
 #include "tests/support/scenes.h"

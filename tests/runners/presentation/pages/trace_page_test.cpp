@@ -1,4 +1,4 @@
-#include "runners/presentation/pages/trace_page.h"
+#include "runners/presentation/pages/result_pages.h"
 
 #include <gtest/gtest.h>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/pages/view_page.h"
 #include "tests/runners/presentation/pages/read_page.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"

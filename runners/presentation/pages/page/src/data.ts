@@ -1,4 +1,4 @@
-// The page shows the JSON that runners/presentation/pages/trace_page.cpp writes, and the numbers beside it.
+// The page shows the JSON that runners/presentation/pages/result_pages.cpp writes, and the numbers beside it.
 
 export type Numbers = Float64Array | Float32Array | Int32Array | Uint32Array | Uint16Array | Uint8Array;
 export type Vector = [number, number, number];

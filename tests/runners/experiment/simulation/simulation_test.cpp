@@ -1,0 +1,244 @@
+#include "runners/experiment/simulation/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/trace/trace.h"
+#include "tests/runners/experiment/simulation/reported_run.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::run_report_test {
+namespace {
+
+// The notes of a run: each is written for a run that did not do what its experiment describes, and for no
+// other.
+
+constexpr const char* kPlane = R"({"name": "flat-grid", "rows": 40, "columns": 40, "spacing_m": 0.0015})";
+constexpr const char* kPress =
+    R"({"name": "press", "start_m": [0, 0.02, 0], "press_at_s": 0.1, "depth_m": 0.01})";
+
+TEST(RunReport, AnOrdinaryPressHasNoNotes) {
+  const RunReport report = run_of(kPlane, kPress).report;
+  EXPECT_TRUE(report.notes.empty());
+  EXPECT_TRUE(report.inputs.empty());  // no recording was read
+  EXPECT_EQ(text_of(report), "");
+  EXPECT_NO_THROW(refuse_notes(report));
+}
+
+TEST(RunReport, ReportsAPressThatWasNotReached) {
+  const RunReport report = run_of(kPlane, kPress, R"("duration_s": 0.1)").report;
+  EXPECT_EQ(kinds_of(report.notes), (Kinds{"phase not reached", "no contact"}));
+  EXPECT_EQ(report.notes[0].text, "the run ends at 0.1 s, before the press begins at 0.1 s");
+  EXPECT_HAS(text_of(report), "  note (phase not reached): the run ends at 0.1 s");
+  EXPECT_EQ(refusal([&] { refuse_notes(report); }),
+            "--strict: phase not reached: the run ends at 0.1 s, before the press begins at 0.1 s; "
+            "no contact: no point was touched, and no force was felt")
+      << "all notes";
+}
+
+TEST(RunReport, ReportsAMotionOfTheSceneThatWasNotReached) {
+  const std::string waits = R"({"name": "moving-plane", "start_height_m": 0, "wait_s": 0.4})";
+  EXPECT_EQ(run_of(waits, kPress).kinds(), Kinds{"phase not reached"});
+  EXPECT_EQ(run_of(waits, kPress, R"("duration_s": 0.5)").kinds(), Kinds{});
+}
+
+TEST(RunReport, ReportsAPressAfterTheMotion) {
+  const std::string rises =
+      R"({"name": "moving-plane", "start_height_m": -0.01, "wait_s": 0, "speed_m_per_s": 0.2, "rise_height_m": 0.01})";
+  const RunReport report = run_of(rises, kPress).report;
+  EXPECT_EQ(kinds_of(report.notes), Kinds{"after the motion"});
+  EXPECT_HAS(report.notes[0].text,
+             "the press begins at 0.1 s, after the rise of the plane has ended at 0.05 s");
+}
+
+// The plane rises from the start on; the run shows it in two frames at 2 Hz and in one at 0.5 Hz.
+TEST(RunReport, ReportsAMotionThatFewFramesShow) {
+  const auto lift = [](const std::string& rate_hz, const std::string& more = "") {
+    return R"({"name": "moving-lift", "rows": 41, "columns": 41, "noise_sigma_m": 0, "frame_rate_hz": )" +
+           rate_hz + more + "}";
+  };
+  const char* const rest = R"({"name": "waypoints", "waypoints": [[0, 0, 0, 0]]})";
+  const auto noted = [&](const std::string& scene, const std::string& duration_s) {
+    return run_of(scene, rest, R"("duration_s": )" + duration_s).has("few frames");
+  };
+  EXPECT_TRUE(noted(lift("2"), "0.8"));
+  EXPECT_FALSE(noted(lift("5"), "0.8"));
+  EXPECT_FALSE(noted(lift("30"), "0.05")) << "the run is cut short";
+  EXPECT_FALSE(noted(lift("0.5", R"(, "start_velocity_m_per_s": 0, "acceleration_m_per_s2": 0)"), "0.8"))
+      << "the scene is at rest";
+  EXPECT_HAS(text_of(run_of(lift("0.5"), rest, R"("duration_s": 0.8)").report),
+             "note (few frames): 1 frame in the 0.8 s in which the scene moves: its motion");
+  const std::string jumps =
+      R"({"name": "moving-plane", "start_height_m": -0.01, "wait_s": 0, "speed_m_per_s": 1, "rise_height_m": 0.01})";
+  EXPECT_FALSE(noted(jumps, "0.8")) << "a brief motion";
+}
+
+TEST(RunReport, ReportsATrajectoryThatDoesNotEnd) {
+  const std::string path = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.01, 0, 0.2]]})";
+  EXPECT_EQ(run_of(kPlane, path).kinds(), Kinds{});
+  EXPECT_EQ(run_of(kPlane, path, R"("duration_s": 0.14)").kinds(), Kinds{"phase not reached"});
+}
+
+TEST(RunReport, ReportsThatNothingWasTouched) {
+  const std::string above = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, 0.01, 0, 0.3]]})";
+  EXPECT_EQ(run_of(kPlane, above).kinds(), Kinds{"no contact"});
+}
+
+// The proxy falls through a square of points farther apart than sqrt(2) r_c = 7.07 mm.
+TEST(RunReport, ReportsPointsThatAreTooFarApart) {
+  const auto plane = [](const char* spacing) {
+    return std::string(R"({"name": "flat-grid", "rows": 41, "columns": 41, "spacing_m": )") + spacing + "}";
+  };
+  EXPECT_EQ(run_of(plane("0.0069"), kPress).kinds(), Kinds{});
+  const RunReport report = run_of(plane("0.0072"), kPress).report;
+  EXPECT_EQ(kinds_of(report.notes), Kinds{"wide spacing"});
+  // The centre of a square is 7.2 mm / sqrt(2) from its corners.
+  EXPECT_HAS(report.notes[0].text, "a gap of radius 5.09 mm at the first contact");
+  EXPECT_HAS(report.notes[0].text, "contact radius 5 mm");
+}
+
+// Every event that the run does not reach is named once: a rule that never begins, a change, a press of a
+// button and others.
+TEST(RunReport, ReportsEveryTimeThatTheRunDoesNotReach) {
+  const std::string still = R"({"name": "waypoints", "waypoints": [[0, 0.003, 0, 0], [0, 0.003, 0, 0.1]]})";
+  const std::string plates = R"({"name": "plates", "plates": [[0, 0, 0, 0.2, 0.2, 0.1, 0, 2, 3],
+      [0, -0.1, 0, 0.2, 0.2, 0, 0, 4, 5], [0, -0.1, 0, 0.2, 0.2, 0.1, 0, 5, 5]]})";
+  const std::string change = R"({"parameter": "renderer.stiffness_N_per_m", "value": 100, "time_s": )";
+  const std::string step = R"({"action": "wait", "not_before_s": 3})";
+  const struct {
+    std::string scenario, rest;
+    std::vector<std::string> begins;
+  } runs[] = {
+      {kPlane,
+       R"("changes": [)" + change + "0.1}, " + change + "5}, " + change + "6}]",
+       {"the change of renderer.stiffness_N_per_m begins at 5 s"}},
+      {kPlane,
+       R"("fixtures": [{"name": "everywhere", "radius_m": 0.01, "schedule": [[0, 1], [7, 1], [8, 0]]}])",
+       {"the change of the strength of fixtures.0 begins at 7 s"}},
+      {kPlane, R"("fixtures": [{"name": "everywhere", "radius_m": 0.01, "schedule": [[0, 1], [8, 0]]}])", {}},
+      {kPlane,
+       R"("operator": {"presses": [[0.1, 0, 0.1], [3, 1, 0.2]], "grip": [[0, 1], [2, 1], [3, 0]]})",
+       {"the press of button 1 begins at 3 s", "the change of operator.grip begins at 2 s"}},
+      {kPlane, R"("sequence": [{"action": "wait"}, )" + step + "]", {"sequence.1 (wait) begins at 3 s"}},
+      {R"({"name": "moving-shape", "vanish_at_s": 2})",
+       R"("seed": 1)",
+       {"the vanishing of the surface begins at 2 s"}},
+      {R"({"name": "moving-shape", "vanish_at_s": 0.2})", R"("seed": 1)", {}},
+      {R"({"name": "moving-shape", "empty_frame_at_s": 2})",
+       R"("seed": 1)",
+       {"the empty frame begins at 2 s"}},
+      {plates, R"("seed": 1)", {"the motion of plate 1 begins at 2 s"}},
+      {R"({"name": "wedge"})",
+       R"("seed": 1)",
+       {"the closing of the walls begins at 1 s", "the opening of the walls begins at 3 s"}},
+      {R"({"name": "wedge", "closed_gap_m": 0.05})", R"("seed": 1)", {}},
+      {R"({"name": "wedge", "close_start_s": 4, "close_end_s": 4, "open_start_s": 4, "open_end_s": 4})",
+       R"("seed": 1)",
+       {}},
+  };
+  for (const auto& run : runs) {
+    const bool has_duration = run.rest.find("duration_s") != std::string::npos;
+    const std::string rest = has_duration ? run.rest : R"("duration_s": 0.3, )" + run.rest;
+    std::vector<std::string> begins;
+    for (const Note& note : run_of(run.scenario, still, rest).report.notes)
+      if (note.kind == "phase not reached") begins.push_back(note.text.substr(note.text.find("before ") + 7));
+    EXPECT_EQ(begins, run.begins) << run.scenario << run.rest;
+  }
+}
+
+// A motion that never happens is neither missed nor over.
+TEST(RunReport, SaysNothingOfAPlaneThatDoesNotRise) {
+  const std::string rests = R"({"name": "moving-plane", "start_height_m": 0, "rise_height_m": 0, "wait_s": )";
+  EXPECT_EQ(run_of(rests + "5}", kPress).kinds(), Kinds{});
+  EXPECT_EQ(run_of(rests + "0}", kPress).kinds(), Kinds{});
+}
+
+TEST(RunReport, BecomesAttributesOfTheResult) {
+  TextAttributes attributes{{"config", "{}"}};
+  add_report(attributes, {});
+  EXPECT_EQ(attributes.size(), 1u);  // absent where there is nothing to report
+  add_report(attributes, {{"office: 3 frames"}, {{"no contact", "no contact at all"}, {"no frame", "none"}}});
+  EXPECT_EQ(attribute(attributes, "frames_read"), "office: 3 frames");
+  EXPECT_EQ(attribute(attributes, "notes"), "no contact at all\nnone");
+}
+
+using Names = std::vector<std::string>;
+
+Trace run(const std::string& experiment, std::vector<std::string> settings) {
+  SimulationOptions options;
+  options.find_true_contact = true;
+  settings.emplace_back("duration_s=0.8");
+  return simulate(Experiment::load(experiment, settings), options);
+}
+
+Names main_names(const Trace& trace, Fixtures fixtures) {
+  Names names;
+  for (const auto& [measure, value] : main_measures(measured_values(built_in_measures(), trace), fixtures)) {
+    EXPECT_FALSE(std::isnan(value)) << measure->name;
+    names.push_back(measure->name);
+  }
+  return names;
+}
+
+TEST(MainMeasures, ProxyRunsReportTheTrueSurfaceFirst) {
+  const Trace trace = run("fig4.12", {});
+  EXPECT_EQ(main_names(trace, Fixtures::none),
+            (Names{"popped_through", "max_penetration", "rms_contact_error", "max_force", "max_force_jump"}));
+  EXPECT_EQ(main_names(trace, Fixtures::some), (Names{"min_slave_distance", "max_force", "max_force_jump",
+                                                      "force_fraction", "unconverged_fraction"}));
+}
+
+TEST(MainMeasures, OfASlaveBeginWithItsContact) {
+  const Trace trace = run("steer-robot", {});
+  EXPECT_EQ(main_names(trace, Fixtures::some),
+            (Names{"max_slave_force", "min_slave_clearance", "max_device_force", "min_slave_distance",
+                   "max_force"}));
+}
+
+TEST(MainMeasures, HaveOthersIfTheTruthIsUnknown) {
+  Trace trace = run("fig4.12", {});
+  for (double& distance_m : trace.signed_distance_m) distance_m = std::nan("");
+  trace.contact.clear();
+  EXPECT_EQ(main_names(trace, Fixtures::none),
+            (Names{"max_force", "max_force_jump", "force_fraction", "unconverged_fraction", "mean_steps"}));
+}
+
+TEST(MainMeasures, OfAToolHaveItsTorqueAndGuidanceItsGoal) {
+  EXPECT_EQ(
+      main_names(run("tool-lift", {}), Fixtures::none),
+      (Names{"tool_popped_through", "max_tool_penetration", "max_force", "max_force_jump", "max_torque"}));
+  Trace guided;
+  RenderOutput out;
+  out.guidance.emplace().active = true;
+  out.guidance->goal_W = Vec3(0.01, 0, 0);
+  guided.append(0, {}, out, {0.01, 0.01, 0});
+  EXPECT_EQ(main_names(guided, Fixtures::some).front(), "min_slave_distance");
+  EXPECT_EQ(main_names(guided, Fixtures::some).at(1), "guidance_error");
+}
+
+TEST(MainMeasures, HaveAllThatAreNotBuiltIn) {
+  const Trace trace = run("fig4.12", {});
+  std::vector<Measure> list = built_in_measures();
+  list.push_back({"mine", "N/s", "my own", MeasuredRuns::all, [](const Trace&) { return 41.0; }});
+  const std::vector<MeasuredValue> all = measured_values(list, trace);
+  const std::vector<MeasuredValue> chosen = main_measures(all, Fixtures::none);
+  ASSERT_EQ(chosen.size(), 6u);
+  EXPECT_EQ(chosen.back().measure->name, "mine");
+  EXPECT_EQ(chosen.back().value, 41);
+}
+
+TEST(MainMeasures, AreFewerIfFewHaveAValue) {
+  EXPECT_LE(main_names(Trace(), Fixtures::none).size(), 5u);
+}
+
+TEST(UnitInWords, NamesEveryUnitOfTheBuiltInMeasures) {
+  for (const Measure& measure : built_in_measures())
+    EXPECT_NE(unit_in_words(measure.unit), measure.unit) << measure.name;
+  EXPECT_EQ(unit_in_words("m"), "metres");
+  EXPECT_EQ(unit_in_words("1"), "");
+  EXPECT_EQ(unit_in_words("N/s"), "N/s");
+}
+
+}  // namespace
+}  // namespace remote_touch::run_report_test
