@@ -4,10 +4,8 @@
 #include <hdf5_hl.h>
 #include <unistd.h>
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <mutex>
@@ -17,6 +15,7 @@
 #include <stdexcept>
 
 #include "analysis/storage/hdf5_file.h"
+#include "core/parameters/parameter.h"
 
 namespace remote_touch {
 namespace {
@@ -324,10 +323,9 @@ Column read_dataset(hid_t data, const std::string& name, const RowRange* rows) {
 
 void add_dimension(hid_t file, const std::string& path, hsize_t size) {
   if (is_there(file, path)) return;
-  std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "%s%10llu", kNoVariable, static_cast<unsigned long long>(size));
+  const std::string text = formatted("%s%10llu", kNoVariable, static_cast<unsigned long long>(size));
   const Handle dimension = made_scale(file, path, H5T_IEEE_F32BE, size);  // never written: needs no space
-  check(H5DSset_scale(dimension, text.data()));
+  check(H5DSset_scale(dimension, text.c_str()));
 }
 
 std::string component_labels(hid_t file, const std::string& group, int width) {

@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
 #include "analysis/trace/interval_estimates.h"
+#include "core/parameters/parameter.h"
 #include "core/points/noise.h"
 
 namespace remote_touch {
@@ -108,13 +108,8 @@ class Walk {
 
 // Returns why an end of an interval is open: "5 % needs 72 runs at one value".
 std::string reason_of(const Walk& walk, const LimitRule& rule, const char* end) {
-  char text[96];
-  if (walk.lacks_runs())
-    std::snprintf(text, sizeof text, "%.4g %% needs %lld runs", 100 * rule.level,
-                  static_cast<long long>(walk.needed()));
-  else
-    std::snprintf(text, sizeof text, "not clear at the %s value", end);
-  return text;
+  if (!walk.lacks_runs()) return formatted("not clear at the %s value", end);
+  return formatted("%.4g %% needs %lld runs", 100 * rule.level, static_cast<long long>(walk.needed()));
 }
 
 // Sets value and place from the known runs.
