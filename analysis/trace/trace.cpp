@@ -240,6 +240,7 @@ const std::vector<TraceColumn>& trace_columns() {
 void Trace::reserve(std::size_t ticks) {
 #define TRACE_COLUMN(member, Row, name, unit, part, ...) \
   if (TracePart::part == TracePart::always) member.reserve(ticks);
+#include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
 }
 
@@ -248,6 +249,7 @@ void Trace::append(double time, const DeviceState& device, const RenderOutput& o
   const TraceTick t{time, device, out, truth, hand, slave};
 #define TRACE_COLUMN(member, Row, name, unit, part, value, ...) \
   if (has(t, TracePart::part)) member.push_back(static_cast<Row>(value));
+#include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
   if (truth.contact) contact.push_back(*truth.contact);
   if (truth.normal) true_normal.push_back(*truth.normal);
@@ -257,9 +259,11 @@ std::optional<Trace> trace_of(const std::function<std::optional<Column>(const st
   Trace trace;
 #define TRACE_COLUMN(member, Row, name, ...) \
   if (!read_rows(column(name), trace.member)) return std::nullopt;
+#include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
 #define TRACE_COLUMN(member, Row, name, unit, part, ...) \
   if (trace.member.size() != (has(trace, TracePart::part) ? trace.length() : 0)) return std::nullopt;
+#include "analysis/trace/trace_columns.h"
 #undef TRACE_COLUMN
   return trace;
 }

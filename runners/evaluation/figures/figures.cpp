@@ -9,6 +9,7 @@ namespace remote_touch {
 std::span<const FigureEntry> figures() {
   static constexpr FigureEntry kFigures[] = {
 #define FIGURE(...) {__VA_ARGS__},
+#include "runners/evaluation/figures/figure_table.h"
 #undef FIGURE
   };
   return kFigures;

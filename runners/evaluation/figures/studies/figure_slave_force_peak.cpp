@@ -27,7 +27,7 @@ constexpr std::size_t kRendered = 0, kRegion = 1, kNone = 2, kSlaveForce = 3;
 constexpr double kHitFrom_m = 0.1;
 constexpr double kHitFrequencies_hz[] = {1, 2, 4, 8, 16};
 
-struct Press {
+struct SlavePress {
   double frequency_hz;
   std::vector<double> peaks_N = {};  // over kLinkDelays_s
   double derived_N = 0;
@@ -56,7 +56,7 @@ double derived_N(const Felt& felt, double frequency_hz) {
   return impact_force_N(push_N, kSlaveStiffness_N_per_m, kSlaveMass_kg, touch->speed_m_per_s);
 }
 
-std::vector<std::vector<Press>> presses(FigureContext& context) {
+std::vector<std::vector<SlavePress>> presses(FigureContext& context) {
   std::vector<Experiment> runs;
   for (const Felt& felt : kFelt)
     for (const double frequency_hz : kHitFrequencies_hz)
@@ -65,7 +65,7 @@ std::vector<std::vector<Press>> presses(FigureContext& context) {
             approach_task({frequency_hz, delay_s, felt.feedback, felt.region_m}, kHitFrom_m, true));
   const std::vector<double> peaks_N = context.measure(runs, max_slave_force_N);
   auto next = peaks_N.begin();
-  std::vector<std::vector<Press>> all;
+  std::vector<std::vector<SlavePress>> all;
   for (const Felt& felt : kFelt) {
     all.emplace_back();
     for (const double frequency_hz : kHitFrequencies_hz) {
@@ -81,20 +81,21 @@ std::string milliseconds(double time_s) {
   return std::to_string(std::lround(1000 * time_s));
 }
 
-Panel press_panel(Figure& figure, const Felt& felt, const std::vector<Press>& list) {
-  Table table = table_over<Press>(
+Panel press_panel(Figure& figure, const Felt& felt, const std::vector<SlavePress>& list) {
+  Table table = table_over<SlavePress>(
       felt.name, felt.title, list,
-      {{"frequency", "Hz", "natural frequency of the slave", [](const Press& p) { return p.frequency_hz; }},
-       {"derived", "N", "derived force", [](const Press& p) { return p.derived_N; }}});
+      {{"frequency", "Hz", "natural frequency of the slave",
+        [](const SlavePress& p) { return p.frequency_hz; }},
+       {"derived", "N", "derived force", [](const SlavePress& p) { return p.derived_N; }}});
   const bool is_bound = felt.feedback != std::string("slave-force");
   Panel panel{felt.title, "natural frequency (Hz)", "largest force (N)"};
   panel.curves.push_back({felt.name, "frequency", "derived", CurveStyle::dashed,
                           is_bound ? "bound of the impact" : "first impact, derived"});
   for (std::size_t k = 0; k < std::size(kLinkDelays_s); ++k) {
     const std::string name = "delay_" + milliseconds(kLinkDelays_s[k]) + "_ms";
-    add_columns<Press>(
+    add_columns<SlavePress>(
         table, list,
-        {{name, "N", "largest force on the slave", [k](const Press& p) { return p.peaks_N[k]; }}});
+        {{name, "N", "largest force on the slave", [k](const SlavePress& p) { return p.peaks_N[k]; }}});
     panel.curves.push_back(
         {felt.name, "frequency", name, CurveStyle::dots, milliseconds(kLinkDelays_s[k]) + " ms"});
   }
@@ -103,9 +104,9 @@ Panel press_panel(Figure& figure, const Felt& felt, const std::vector<Press>& li
 }
 
 // Returns the peaks as fractions of the derived forces, for delays of from_s and more.
-std::vector<double> ratios(const std::vector<Press>& list, double from_s) {
+std::vector<double> ratios(const std::vector<SlavePress>& list, double from_s) {
   std::vector<double> all;
-  for (const Press& press : list)
+  for (const SlavePress& press : list)
     for (std::size_t k = 0; k < std::size(kLinkDelays_s); ++k)
       if (kLinkDelays_s[k] >= from_s && press.derived_N > 0)
         all.push_back(press.peaks_N[k] / press.derived_N);
@@ -113,23 +114,24 @@ std::vector<double> ratios(const std::vector<Press>& list, double from_s) {
 }
 
 // Returns the smallest of the peaks as fractions of the derived forces.
-double smallest_ratio(const std::vector<std::vector<Press>>& all) {
+double smallest_ratio(const std::vector<std::vector<SlavePress>>& all) {
   std::vector<double> smallest;
-  for (const std::vector<Press>& list : all) smallest.push_back(min_of(ratios(list, 0)));
+  for (const std::vector<SlavePress>& list : all) smallest.push_back(min_of(ratios(list, 0)));
   return min_of(smallest);
 }
 
-double largest_without_touch_N(const std::vector<Press>& list) {
+double largest_without_touch_N(const std::vector<SlavePress>& list) {
   std::vector<double> peaks_N;
-  for (const Press& press : list)
+  for (const SlavePress& press : list)
     if (press.derived_N == 0) peaks_N.insert(peaks_N.end(), press.peaks_N.begin(), press.peaks_N.end());
   return max_of(peaks_N);
 }
 
-double largest_change_with_delay_N(const std::vector<std::vector<Press>>& all) {
+double largest_change_with_delay_N(const std::vector<std::vector<SlavePress>>& all) {
   std::vector<double> changes_N;
   for (const std::size_t felt : {kRendered, kRegion, kNone})
-    for (const Press& press : all[felt]) changes_N.push_back(max_of(press.peaks_N) - min_of(press.peaks_N));
+    for (const SlavePress& press : all[felt])
+      changes_N.push_back(max_of(press.peaks_N) - min_of(press.peaks_N));
   return max_of(changes_N);
 }
 
@@ -144,7 +146,7 @@ Figure figure_slave_force_peak(FigureContext& context) {
       "at the surface and the largest force F of its drive; F is 0 behind a region and with the force of "
       "the slave. There is no noise. Simulated."};
   figure.source = "the theory of a linear slave";
-  const std::vector<std::vector<Press>> all = presses(context);
+  const std::vector<std::vector<SlavePress>> all = presses(context);
   for (std::size_t i = 0; i < std::size(kFelt); ++i)
     figure.panels.push_back(press_panel(figure, kFelt[i], all[i]));
   place_in_rows(figure, 2);
