@@ -92,6 +92,16 @@ constexpr const char* kStyles[] = {"line", "dots", "steps", "dashed",  "circle",
                                    "map",  "band", "image", "surface", "letters", "intervals"};
 constexpr const char* kKinds[] = {"points", "segments", "solid"};
 
+}  // namespace
+
+CurveStyle curve_style_named(const std::string& name) {
+  const auto found = std::find(std::begin(kStyles), std::end(kStyles), name);
+  if (found == std::end(kStyles)) throw std::invalid_argument("unknown style of a curve: " + name);
+  return static_cast<CurveStyle>(found - std::begin(kStyles));
+}
+
+namespace {
+
 void write_scene(Hdf5Writer& hdf5, const std::string& path, const Scene& scene) {
   const auto vector = [](const Vec3& v) { return std::vector{v.x(), v.y(), v.z()}; };
   hdf5.group(path);

@@ -63,6 +63,8 @@ enum class CurveStyle {
   // an arrow points away from the other end: a limit above the largest value that was tried has z = infinity.
   intervals
 };
+// Returns the style of this name in files, such as "line". Throws std::invalid_argument if there is none.
+CurveStyle curve_style_named(const std::string& name);
 
 struct Curve {
   std::string table, x, y;  // names of a table and two of its columns

@@ -5,8 +5,8 @@ import os
 import sys
 import urllib.parse
 
-from plotting.plot_error import PlotError
-from plotting.typeset import typeset_html
+from .plot_error import PlotError
+from .typeset import typeset_html
 
 DISSERTATION = "the dissertation"
 COLUMNS = {"claim": "Claim", "paper": "Dissertation", "measured": "Measured", "criterion": "Criterion", "unit": "Unit"}

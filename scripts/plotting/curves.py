@@ -8,10 +8,10 @@ import matplotlib.patheffects
 import matplotlib.transforms
 import numpy as np
 
-from plotting.cells import cell_ends, cell_size, colour_range, outlines
-from plotting.scene import rgb
-from plotting.style import DASHES, MARKERS, NOTHING_COLOUR, is_formula
-from plotting.typeset import typeset
+from .cells import cell_ends, cell_size, colour_range, outlines
+from .scene import rgb
+from .style import DASHES, MARKERS, NOTHING_COLOUR, is_formula
+from .typeset import typeset
 
 NOTHING = "no value"  # where a map or a bar chart has none
 CELLS = ("squares", "map")  # the styles that draw cells

@@ -1,8 +1,8 @@
 """Reads what can be drawn: a figure, or a trace or a sweep as one."""
-from plotting.figure_file import SCHEMA, Figure, open_file, read_figure, text
-from plotting.plot_error import PlotError
-from plotting.results import trace_panels
-from plotting.sweeps import left_out, sweep_panels
+from .figure_file import SCHEMA, Figure, open_file, read_figure, text
+from .plot_error import PlotError
+from .results import trace_panels
+from .sweeps import left_out, sweep_panels
 
 TRACE, SWEEP = "remote-touch-trace/3", "remote-touch-sweep/3"
 

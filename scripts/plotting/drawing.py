@@ -5,12 +5,12 @@ import re
 import matplotlib.ticker
 import numpy as np
 
-from plotting.cells import asks_for_log, distinct
-from plotting.curves import DRAW, has_cells, is_sampled, reach, room_aside_in
-from plotting.style import LINES, is_formula, looks_in_panel
-from plotting.surface import draw_surface, is_surface
-from plotting.typeset import typeset, with_unit
-from plotting.wrapping import TITLE, folded, text_width_in, wrapped
+from .cells import asks_for_log, distinct
+from .curves import DRAW, has_cells, is_sampled, reach, room_aside_in
+from .style import LINES, is_formula, looks_in_panel
+from .surface import draw_surface, is_surface
+from .typeset import typeset, with_unit
+from .wrapping import TITLE, folded, text_width_in, wrapped
 
 LONGEST_NAME_IN, LONGEST_BAR_LABEL_IN = 1.4, 1.8
 

@@ -6,7 +6,7 @@ import re
 import h5py
 import numpy as np
 
-from plotting.plot_error import PlotError
+from .plot_error import PlotError
 
 SCHEMA = "remote-touch-figure/3"
 STYLES = ("line", "dashed", "steps", "dots", "circle", "bars", "squares", "map", "band", "intervals", "image", "surface",

@@ -5,13 +5,13 @@ import select
 import signal
 import sys
 
-from plotting.claims import is_set_up, read_claims, verdict
-from plotting.drawable import read_drawable
-from plotting.figure_file import SCHEMA, schema_of
-from plotting.layout import draw_figure
-from plotting.page import page, write_page
-from plotting.plot_error import PlotError
-from plotting.progress import read_progress
+from .claims import is_set_up, read_claims, verdict
+from .drawable import read_drawable
+from .figure_file import SCHEMA, schema_of
+from .layout import draw_figure
+from .page import page, write_page
+from .plot_error import PlotError
+from .progress import read_progress
 
 LOOK_EVERY_S = 0.5
 

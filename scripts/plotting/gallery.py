@@ -1,8 +1,8 @@
 """The gallery at the top of index.html: each figure with a small picture, one sentence, and its verdict."""
 import re
 
-from plotting.claims import address, esc, is_set_up, verdict
-from plotting.typeset import in_mm, typeset_html
+from .claims import address, esc, is_set_up, verdict
+from .typeset import in_mm, typeset_html
 
 LONGEST = 170  # letters of a sentence
 WORDS = {"pass": "hold", "differs": "differ", "FAIL": "failed", "open": "open", "not run": "not run"}  # in this order

@@ -7,16 +7,16 @@ import matplotlib.figure
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from plotting.cells import colour_range
-from plotting.curves import has_cells, room_above_in
-from plotting.drawing import add_colour_bar, add_words, draw_panel, is_image, title_words
-from plotting.legends import LARGEST_SHARE, add_legends, share
-from plotting.picture_file import save
-from plotting.scene import draw_scene
-from plotting.style import COLUMN_IN, LINES, PAGE_IN, PNG_DPI, RC, looks
-from plotting.surface import add_title, is_surface
-from plotting.units import in_shown_units
-from plotting.wrapping import HEADING, TITLE, text_width_in, wrapped
+from .cells import colour_range
+from .curves import has_cells, room_above_in
+from .drawing import add_colour_bar, add_words, draw_panel, is_image, title_words
+from .legends import LARGEST_SHARE, add_legends, share
+from .picture_file import save
+from .scene import draw_scene
+from .style import COLUMN_IN, LINES, PAGE_IN, PNG_DPI, RC, looks
+from .surface import add_title, is_surface
+from .units import in_shown_units
+from .wrapping import HEADING, TITLE, text_width_in, wrapped
 
 PAD_IN, HEADING_LINE_IN = 0.06, 0.155
 MARGIN_IN = 0.45  # the widest right margin that is made for titles

@@ -8,8 +8,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
 
-from plotting.style import DASHES, TEXT_PT
-from plotting.wrapping import folded, text_width_in
+from .style import DASHES, TEXT_PT
+from .wrapping import folded, text_width_in
 
 GAP_IN = 0.05  # between a legend and what is below it
 MARKER_IN = 0.45  # what an entry needs beside its words

@@ -2,11 +2,11 @@
 import json
 import os
 
-from plotting.claims import address, claim_table, esc, figure_of, overview
-from plotting.gallery import gallery
-from plotting.progress import duration
-from plotting.style import COLUMN_IN
-from plotting.typeset import in_mm, typeset_html
+from .claims import address, claim_table, esc, figure_of, overview
+from .gallery import gallery
+from .progress import duration
+from .style import COLUMN_IN
+from .typeset import in_mm, typeset_html
 
 CSS = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 62rem;

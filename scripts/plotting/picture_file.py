@@ -5,8 +5,8 @@ import io
 import PIL.Image
 import PIL.PngImagePlugin
 
-from plotting.plot_error import PlotError
-from plotting.typeset import CONTROL
+from .plot_error import PlotError
+from .typeset import CONTROL
 
 MADE_BY = "remote-touch, scripts/plot"
 FORMATS = ("png", "svg", "pdf")

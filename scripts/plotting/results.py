@@ -4,9 +4,9 @@ import math
 import h5py
 import numpy as np
 
-from plotting.figure_file import Column, Curve, Panel, enum_names, text
-from plotting.plot_error import PlotError
-from plotting.typeset import SHOWN_UNITS, with_unit
+from .figure_file import Column, Curve, Panel, enum_names, text
+from .plot_error import PlotError
+from .typeset import SHOWN_UNITS, with_unit
 
 AUTOMATIC = [math.nan, math.nan]
 

@@ -10,11 +10,11 @@ import matplotlib.patheffects
 import numpy as np
 from matplotlib.colors import to_hex
 
-from plotting.cells import colour_range
-from plotting.raster import Camera, Canvas
-from plotting.style import COLOURS, OF_LABEL, PNG_DPI, meaning
-from plotting.typeset import typeset
-from plotting.units import shown_column
+from .cells import colour_range
+from .raster import Camera, Canvas
+from .style import COLOURS, OF_LABEL, PNG_DPI, meaning
+from .typeset import typeset
+from .units import shown_column
 
 FINER = 2  # pixels are drawn so much finer, then averaged
 LARGEST_PX = 1100  # a picture of one column has 1050: 300 dpi

@@ -4,12 +4,12 @@ import json
 import os
 import urllib.parse
 
-from plotting.claims import esc
-from plotting.plot_error import PlotError
-from plotting.page import CSS, write_page
-from plotting.scorecard_plots import CSS as PLOT_CSS
-from plotting.scorecard_plots import level_text, looks_css, noise_plot, shapes
-from plotting.scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, has_rule_before,
+from .claims import esc
+from .plot_error import PlotError
+from .page import CSS, write_page
+from .scorecard_plots import CSS as PLOT_CSS
+from .scorecard_plots import level_text, looks_css, noise_plot, shapes
+from .scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, has_rule_before,
                                        level_heads, level_tables, measure_table, overview_table, success_table,
                                        threshold_value)
 

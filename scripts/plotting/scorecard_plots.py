@@ -1,6 +1,6 @@
 """The small pictures of a scorecard's page: successes over noise, a line for each method."""
-from plotting.claims import esc
-from plotting.style import DASHES, MARKERS, method_looks
+from .claims import esc
+from .style import DASHES, MARKERS, method_looks
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 420, 190, 34, 8, 8, 26
 

@@ -1,6 +1,6 @@
 """The tables of a scorecard's page."""
-from plotting.claims import esc
-from plotting.scorecard_plots import key, level_text
+from .claims import esc
+from .scorecard_plots import key, level_text
 
 SHOWN_UNITS = {"m": (1e3, "mm"), "J": (1e3, "mJ"), "s": (1e3, "ms"), "1": (1, "")}  # factor, words
 MARKS = {"best": "best", "worst": "worst", "none": "", "given": "worst", "taken": "best"}  # classes of the style

@@ -1,8 +1,8 @@
 """The states of the runs of a sweep. A run of an unfinished sweep whose checksum is wrong counts as not made."""
 import numpy as np
 
-from plotting.figure_file import text
-from plotting.results import dataset
+from .figure_file import text
+from .results import dataset
 
 PENDING, DONE = 1, 2
 

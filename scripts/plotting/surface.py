@@ -4,7 +4,7 @@ import math
 import matplotlib.ticker
 import numpy as np
 
-from plotting.typeset import typeset
+from .typeset import typeset
 
 LONGEST = 150  # lines of the grid along each axis that are drawn
 DEGREES_UP, DEGREES_ROUND = 32, -62  # where the viewer is

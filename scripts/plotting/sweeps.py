@@ -10,12 +10,12 @@ import re
 
 import numpy as np
 
-from plotting.cells import colour_range
-from plotting.figure_file import Column, Curve, enum_names, text
-from plotting.plot_error import PlotError
-from plotting.results import AUTOMATIC, column, dataset, panel
-from plotting.states import DONE, read_states
-from plotting.typeset import SHOWN_UNITS, unit_words
+from .cells import colour_range
+from .figure_file import Column, Curve, enum_names, text
+from .plot_error import PlotError
+from .results import AUTOMATIC, column, dataset, panel
+from .states import DONE, read_states
+from .typeset import SHOWN_UNITS, unit_words
 
 MAX_PANELS, MAX_SLICES, ACROSS = 8, 12, 4
 FEW = 5  # values of an axis that has a line for each

@@ -1,7 +1,7 @@
 """Shows the lengths of a figure in mm."""
 import dataclasses
 
-from plotting.typeset import SHOWN_UNITS, in_mm, in_shown_unit
+from .typeset import SHOWN_UNITS, in_mm, in_shown_unit
 
 
 def shown_column(column):

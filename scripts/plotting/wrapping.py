@@ -7,8 +7,8 @@ from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.cbook import is_math_text
 from matplotlib.font_manager import FontProperties
 
-from plotting.style import HEADING_PT, PNG_DPI, TEXT_PT
-from plotting.typeset import typeset
+from .style import HEADING_PT, PNG_DPI, TEXT_PT
+from .typeset import typeset
 
 NARROWEST_IN = 0.5  # the least width of a line
 TITLE, HEADING = ("bold", TEXT_PT), ("normal", HEADING_PT)  # weight and size

@@ -94,7 +94,9 @@ Column column_of(const py::handle& tuple) {
   column.name = parts[0].cast<std::string>(), column.units = parts[1].cast<std::string>();
   column.long_name = parts[2].cast<std::string>();
   const py::object values = parts[3];
-  if (!take_numbers<double>(values, column) && !take_numbers<std::int32_t>(values, column) &&
+  if (py::isinstance<py::list>(values))
+    column.values = values.cast<std::vector<std::string>>();
+  else if (!take_numbers<double>(values, column) && !take_numbers<std::int32_t>(values, column) &&
       !take_numbers<std::uint64_t>(values, column))
     throw InputError("column " + column.name, "expected float64, int32 or uint64 numbers");
   column.value_names = parts[4].cast<std::vector<std::string>>();

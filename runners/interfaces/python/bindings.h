@@ -16,6 +16,8 @@ void bind_sweeps(pybind11::module_& module);
 void bind_chunks(pybind11::module_& module);  // runs of a sweep in workers of an executor
 void bind_scorecards(pybind11::module_& module);
 void bind_results(pybind11::module_& module);  // files, comparisons, descriptions
+void bind_studies(pybind11::module_& module);  // runs of a study, its figure file and its claims
+void bind_theory(pybind11::module_& module);   // closed forms and estimates, as the module _core.theory
 
 // Results for Python: files, sweeps and tallies as arrays over their axes, comparisons and scorecards.
 

@@ -24,6 +24,7 @@ PyObject* input_error_type = nullptr;  // belongs to the module, which is never 
 
 void bind_errors(py::module_& module) {
   input_error_type = py::register_exception<InputError>(module, "InputError", PyExc_ValueError).ptr();
+  py::register_exception<MissingInput>(module, "MissingInput", input_error_type);
   // pybind11 calls this translator before the one above. The exception that a class raised becomes the cause
   // of the InputError.
   py::register_exception_translator([](std::exception_ptr thrown) {
@@ -51,6 +52,8 @@ PYBIND11_MODULE(_core, module) {
   bind_chunks(module);
   bind_scorecards(module);
   bind_results(module);
+  bind_studies(module);
+  bind_theory(module);
   module.def("choose_kernels", &choose_python_kernels, py::arg("isa"),
              "The x86-64 level; empty: the fastest.");
   module.def("set_data_folder", &set_data_folder, py::arg("folder"), "Where recordings are.");

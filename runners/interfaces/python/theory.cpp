@@ -1,0 +1,281 @@
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <vector>
+
+#include "analysis/theory/haptic_loops.h"
+#include "analysis/theory/surface_contacts.h"
+#include "analysis/trace/curve_fits.h"
+#include "analysis/trace/interval_estimates.h"
+#include "runners/interfaces/python/bindings.h"
+
+namespace remote_touch {
+
+// The closed forms of analysis/theory, and the estimates and fits of analysis/trace. The headers there state
+// formulas and preconditions; a structure is passed by the names of its members.
+
+namespace py = pybind11;
+
+namespace {
+
+void bind_slaves(py::module_& theory) {
+  theory.def(
+      "following_error_m",
+      [](double amplitude_m, double hz, double natural_frequency_hz, double age_s) {
+        return following_error_m({amplitude_m, hz, natural_frequency_hz, age_s});
+      },
+      py::kw_only(), py::arg("amplitude_m"), py::arg("hz"), py::arg("natural_frequency_hz"), py::arg("age_s"),
+      "The largest distance between a shaking motion and a slave that follows it.");
+  theory.def(
+      "first_impact",
+      [](double speed_m_per_s, double way_m, double gap_m, double natural_frequency_hz) -> py::object {
+        const auto impact = first_impact({speed_m_per_s, way_m, gap_m, natural_frequency_hz});
+        if (!impact) return py::none();
+        return py::make_tuple(impact->time_s, impact->speed_m_per_s);
+      },
+      py::kw_only(), py::arg("speed_m_per_s"), py::arg("way_m"), py::arg("gap_m"),
+      py::arg("natural_frequency_hz"),
+      "Time and speed at which a slave first reaches the surface; None if it never does.");
+  theory.def("impact_force_N", &impact_force_N, py::kw_only(), py::arg("push_N"),
+             py::arg("stiffness_N_per_m"), py::arg("mass_kg"), py::arg("speed_m_per_s"),
+             "The largest force on a mass that hits a spring.");
+}
+
+// The arguments of a PositionForceLoop with their defaults, for each function of one.
+template <class Of>
+void def_of_loop(py::module_& theory, const char* name, Of of, const char* text) {
+  const PositionForceLoop loop;
+  theory.def(
+      name,
+      [of](double mass_kg, double stiffness_N_per_m, double damping_Ns_per_m, double slave_mass_kg,
+           double slave_natural_frequency_hz, double slave_damping_ratio,
+           double environment_stiffness_N_per_m, double environment_damping_Ns_per_m, double feedback_gain,
+           double round_trip_s) {
+        return of(
+            {mass_kg, stiffness_N_per_m, damping_Ns_per_m, slave_mass_kg, slave_natural_frequency_hz,
+             slave_damping_ratio, environment_stiffness_N_per_m, environment_damping_Ns_per_m, feedback_gain},
+            round_trip_s);
+      },
+      py::kw_only(), py::arg("mass_kg") = loop.mass_kg, py::arg("stiffness_N_per_m") = loop.stiffness_N_per_m,
+      py::arg("damping_Ns_per_m") = loop.damping_Ns_per_m, py::arg("slave_mass_kg") = loop.slave_mass_kg,
+      py::arg("slave_natural_frequency_hz") = loop.slave_natural_frequency_hz,
+      py::arg("slave_damping_ratio") = loop.slave_damping_ratio,
+      py::arg("environment_stiffness_N_per_m") = loop.environment_stiffness_N_per_m,
+      py::arg("environment_damping_Ns_per_m") = loop.environment_damping_Ns_per_m,
+      py::arg("feedback_gain") = loop.feedback_gain, py::arg("round_trip_s") = 0.0, text);
+}
+
+template <class Of>
+void def_of_wall(py::module_& theory, const char* name, Of of, const char* text) {
+  const SampledWall wall;
+  theory.def(
+      name,
+      [of](double mass_kg, double damping_Ns_per_m, double wall_damping_Ns_per_m, double spring_share,
+           int delay_ticks, int velocity_ticks, double tick_s) {
+        return of({mass_kg, damping_Ns_per_m, wall_damping_Ns_per_m, spring_share, delay_ticks,
+                   velocity_ticks, tick_s});
+      },
+      py::kw_only(), py::arg("mass_kg") = wall.mass_kg, py::arg("damping_Ns_per_m") = wall.damping_Ns_per_m,
+      py::arg("wall_damping_Ns_per_m") = wall.wall_damping_Ns_per_m,
+      py::arg("spring_share") = wall.spring_share, py::arg("delay_ticks") = wall.delay_ticks,
+      py::arg("velocity_ticks") = wall.velocity_ticks, py::arg("tick_s") = wall.tick_s, text);
+}
+
+void bind_loops(py::module_& theory) {
+  def_of_loop(
+      theory, "delay_onset",
+      [](const PositionForceLoop& loop, double) {
+        const DelayOnset onset = delay_onset(loop);
+        return py::make_tuple(onset.round_trip_s, onset.frequency_hz);
+      },
+      "The least round trip (s) for which the loop is not stable, and the frequency (Hz) there.");
+  def_of_loop(
+      theory, "max_environment_stiffness",
+      [](const PositionForceLoop& loop, double round_trip_s) {
+        return max_environment_stiffness(loop, round_trip_s);
+      },
+      "The stiffness (N/m) of the environment up to which the loop is stable with every shorter round trip.");
+  theory.def("held_round_trip", &held_round_trip, py::arg("round_trip_s"), py::arg("tick_s"),
+             py::arg("holds"), "The round trip without holds that has the same phase.");
+  def_of_wall(theory, "wall_law_N_per_m", &wall_law_N_per_m,
+              "The largest stable stiffness of a sampled wall for slow oscillations.");
+  def_of_wall(theory, "exact_wall_limit_N_per_m", &exact_wall_limit_N_per_m,
+              "The smallest stiffness of a sampled wall at which an oscillation grows.");
+}
+
+py::tuple as_tuple(const RestingWrench& wrench) {
+  return py::make_tuple(wrench.force_N, wrench.torque_Nm);
+}
+
+void bind_tools(py::module_& theory) {
+  const EvenSpring spring;
+  const auto stiffness = py::arg("stiffness_N_per_m") = spring.stiffness_N_per_m;
+  const auto radius = py::arg("gyration_radius_m") = spring.gyration_radius_m;
+  theory.def(
+      "block_on_line",
+      [](double a_m, double b_m, double height_m, double angle_rad, double k, double r) {
+        return as_tuple(block_on_line(a_m, b_m, {k, r}, height_m, angle_rad));
+      },
+      py::arg("a_m"), py::arg("b_m"), py::arg("height_m"), py::arg("angle_rad"), stiffness, radius,
+      "Force (x, y in N) and torque (N m) on the hand that holds a block on a line.");
+  theory.def(
+      "ball_in_groove",
+      [](double radius_m, double slope_rad, const Eigen::Vector2d& place_m, double k, double r) {
+        return as_tuple(ball_in_groove(radius_m, slope_rad, {k, r}, place_m));
+      },
+      py::arg("radius_m"), py::arg("slope_rad"), py::arg("place_m"), stiffness, radius,
+      "Force and torque on the hand that holds a ball in a groove.");
+  theory.def("stop_angle_rad", &stop_angle_rad, py::arg("a_m"), py::arg("b_m"), py::arg("w_m"),
+             "The angle at which two corners of a bar touch the sides of a slot.");
+  theory.def(
+      "bar_in_slot",
+      [](double a_m, double b_m, double w_m, double angle_rad, double k, double r) {
+        return as_tuple(bar_in_slot(a_m, b_m, w_m, {k, r}, angle_rad));
+      },
+      py::arg("a_m"), py::arg("b_m"), py::arg("w_m"), py::arg("angle_rad"), stiffness, radius,
+      "Force and torque on the hand that turns a bar in a slot.");
+  const auto under = [](const UnderPlate& plate) { return py::make_tuple(plate.drop_m, plate.rise_m); };
+  theory.def(
+      "under_edge",
+      [under](double slope_rad, double half_m, double turn_rad) {
+        return under(under_edge(slope_rad, half_m, turn_rad));
+      },
+      py::arg("slope_rad"), py::arg("half_m"), py::arg("turn_rad") = 0.0,
+      "Drop and rise (m) of an edge under a plate.");
+  theory.def(
+      "under_corner",
+      [under](double slope_rad, double half_m) { return under(under_corner(slope_rad, half_m)); },
+      py::arg("slope_rad"), py::arg("half_m"), "Drop and rise (m) of a corner under a plate.");
+  theory.def(
+      "under_ball", [under](double radius_m, double seen_m) { return under(under_ball(radius_m, seen_m)); },
+      py::arg("radius_m"), py::arg("seen_m"), "Drop and rise (m) of a ball under a plate.");
+  theory.def(
+      "noisy_jump_m",
+      [](double thickness_m, const std::vector<std::pair<double, double>>& points, double sigma_m) {
+        std::vector<NoisyPoint> noisy;
+        for (const auto& [height_m, probability] : points) noisy.push_back({height_m, probability});
+        return noisy_jump_m(thickness_m, noisy, sigma_m);
+      },
+      py::arg("thickness_m"), py::arg("points"), py::arg("sigma_m"),
+      "The jump after which a plate is lost with probability 1/2. points: (height, probability of being "
+      "under the plate).");
+}
+
+void bind_bounds(py::module_& theory) {
+  theory.def("ball_closing", &ball_closing, py::arg("heights"), py::arg("spacing"), py::arg("radius"),
+             "The surface that a ball can touch over a profile.");
+  theory.def(
+      "critical_acceleration",
+      [](double r1_m, double frame_rate_hz) {
+        return critical_acceleration({r1_m, frame_rate_hz, 0, 1});
+      },
+      py::arg("r1_m"), py::arg("frame_rate_hz"), "(4.14): r_1 f_c^2, m/s^2.");
+  const auto touch = [](double r1_m, double r2_m, double nearest_beside_m, double frame_rate_hz) {
+    return FirstTouch{r1_m, r2_m, nearest_beside_m, frame_rate_hz};
+  };
+  theory.def(
+      "max_first_touch_velocity",
+      [touch](double r1_m, double r2_m, double b_m, double hz) {
+        return max_first_touch_velocity(touch(r1_m, r2_m, b_m, hz));
+      },
+      py::kw_only(), py::arg("r1_m"), py::arg("r2_m"), py::arg("nearest_beside_m"), py::arg("frame_rate_hz"),
+      "Up to this velocity (m/s) of the surface no proxy is lost at the first touch.");
+  theory.def(
+      "max_touched_velocity",
+      [touch](double r1_m, double r2_m, double b_m, double hz) {
+        return max_touched_velocity(touch(r1_m, r2_m, b_m, hz));
+      },
+      py::kw_only(), py::arg("r1_m"), py::arg("r2_m"), py::arg("nearest_beside_m"), py::arg("frame_rate_hz"),
+      "The same limit for a hand that touches the surface between two frames.");
+  theory.def(
+      "lost_at_first_touch",
+      [touch](double velocity_m_per_s, double r1_m, double r2_m, double b_m, double hz) {
+        return lost_at_first_touch(touch(r1_m, r2_m, b_m, hz), velocity_m_per_s);
+      },
+      py::kw_only(), py::arg("velocity_m_per_s"), py::arg("r1_m"), py::arg("r2_m"),
+      py::arg("nearest_beside_m"), py::arg("frame_rate_hz"),
+      "The fraction of start times for which a proxy at rest is lost.");
+  theory.def(
+      "fitted_pop_through_law",
+      [](const std::vector<std::array<double, 3>>& points) {
+        std::vector<LimitPoint> list;
+        for (const auto& [spacing, noise, limit] : points) list.push_back({spacing, noise, limit});
+        const PopThroughLaw law = fitted_law(list);
+        return py::make_tuple(law.gain, law.loss);
+      },
+      py::arg("points"),
+      "gain and loss of the law limit = (1 - s^2 / 2)^(1/2) + (gain - loss s) sigma. points: (spacing, "
+      "noise, limit) as pure numbers.");
+  theory.def(
+      "printed_thickness", [](double sigma_m) { return printed_thickness().at(sigma_m); }, py::arg("sigma_m"),
+      "(4.23), m.");
+  theory.def(
+      "printed_normal_error", [](double sigma_m) { return printed_normal_error().at(sigma_m); },
+      py::arg("sigma_m"), "(4.24).");
+  theory.def(
+      "bound_acceleration",
+      [](double r1_m, double hz, double v0, int updates, double thickness_m, double normal_error) {
+        return bound_acceleration({r1_m, hz, v0, updates}, thickness_m, normal_error);
+      },
+      py::kw_only(), py::arg("r1_m"), py::arg("frame_rate_hz"), py::arg("start_velocity_m_per_s"),
+      py::arg("updates"), py::arg("thickness_m"), py::arg("normal_error"), "(4.25) solved for a, m/s^2.");
+}
+
+py::tuple as_tuple(const Estimate& estimate) {
+  return py::make_tuple(estimate.value, estimate.low, estimate.high);
+}
+
+void bind_estimates(py::module_& theory) {
+  theory.def(
+      "estimated_mean", [](const std::vector<double>& numbers) { return as_tuple(estimated_mean(numbers)); },
+      py::arg("numbers"), "Mean and its 95 % interval: value, low, high.");
+  theory.def(
+      "estimated_fraction",
+      [](std::int64_t events, std::int64_t without, std::int64_t unknown) {
+        return as_tuple(estimated_fraction(EventCounts{events, without, unknown}));
+      },
+      py::arg("events"), py::arg("without"), py::arg("unknown") = 0,
+      "Fraction of runs with an event and its 95 % interval: value, low, high.");
+  theory.def(
+      "estimated_quantile",
+      [](const std::vector<double>& values, double q) { return as_tuple(estimated_quantile(values, q)); },
+      py::arg("values"), py::arg("q"), "Quantile and its 95 % interval: value, low, high.");
+  theory.def("exact_interval", &exact_interval, py::arg("events"), py::arg("runs"),
+             "The exact 95 % interval of a fraction.");
+  theory.def(
+      "fit_polynomial",
+      [](const std::vector<double>& x, const std::vector<double>& y, const std::vector<int>& powers) {
+        return fit_polynomial(x, y, powers);
+      },
+      py::arg("x"), py::arg("y"), py::arg("powers"), "Least squares with chosen powers.");
+  py::class_<PolynomialFit>(theory, "PolynomialFit", "A fitted curve.")
+      .def_readonly("powers", &PolynomialFit::powers)
+      .def_readonly("coefficients", &PolynomialFit::coefficients)
+      .def_readonly("residual_rms", &PolynomialFit::residual_rms)
+      .def("at", &PolynomialFit::at, py::arg("x"))
+      .def("half_width", &PolynomialFit::half_width, py::arg("x"));
+  theory.def("isotonic_falling", &isotonic_falling, py::arg("values"), py::arg("weights"),
+             "The decreasing values nearest to the given ones.");
+  theory.def("crossing", &crossing, py::arg("x"), py::arg("falling"), py::arg("level"),
+             "The x at which a decreasing curve crosses the level.");
+  theory.def(
+      "sinusoid_in",
+      [](const std::vector<double>& time_s, const std::vector<double>& values, double hz) {
+        const Sinusoid wave = sinusoid_in(time_s, values, hz);
+        return py::make_tuple(wave.amplitude, wave.phase_rad);
+      },
+      py::arg("time_s"), py::arg("values"), py::arg("hz"), "Amplitude and phase (rad) of a frequency.");
+}
+
+}  // namespace
+
+void bind_theory(py::module_& module) {
+  py::module_ theory = module.def_submodule("theory", "Closed forms, estimates and fits.");
+  bind_slaves(theory);
+  bind_loops(theory);
+  bind_tools(theory);
+  bind_bounds(theory);
+  bind_estimates(theory);
+}
+
+}  // namespace remote_touch
