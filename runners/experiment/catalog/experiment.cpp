@@ -8,6 +8,7 @@
 
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
+#include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/sessions/session_scene.h"
@@ -104,11 +105,10 @@ bool triangulation_draws(const Json& scene) {
 }
 
 bool scene_draws(const Json& scene) {
-  static const Names known = {"flat-grid",    "moving-lift", "moving-shape",  "plates",       "triangle-wave",
-                              "camera-scene", "points",      "beating-heart", "valve-tank",   "box",
-                              "slot",         "wedge",       "panel",         "moving-plane", "recording",
-                              "mesh-scene",   "live-session"};
-  if (!has(known, scene.value("name", ""))) return true;
+  const std::string name = scene.value("name", "");
+  const auto is_named = [&](const ScenarioEntry& entry) { return entry.name == name; };
+  if (std::ranges::none_of(built_in_catalog().scenarios(), is_named))
+    return true;  // what it draws is not known
   if (scene.contains("sensor") && scene["sensor"] != "simple") return triangulation_draws(scene);
   return is_any_above_0(scene, kOfScene);
 }

@@ -32,28 +32,6 @@ std::vector<double> expected_s(const std::vector<FigureRun>& runs) {
 
 namespace fs = std::filesystem;
 
-// No buffer of fixed size is used for the line, because a claim may have any length.
-std::string line_of(const Claim& claim) {
-  const std::string verdict = claim.verdict == Verdict::fail ? "FAIL" : verdict_name(claim.verdict);
-  const std::string paper = claim.verdict == Verdict::differs ? ", " + claim.source + ": " + claim.paper : "";
-  const std::string measured = formatted("%.6g", claim.measured);
-  return "  " + verdict + std::string(verdict.size() < 7 ? 7 - verdict.size() : 0, ' ') + " " +
-         (claim.set_up ? "set-up: " : "") + claim.claim + ": " + measured + " " + claim.unit + " (" +
-         claim.criterion + paper + ")\n";
-}
-
-// Leaves claims about whole maps open, because a share of a coarse map is not that of the whole map.
-void leave_unjudged(Figure& figure, const FigureContext& context, int coarse) {
-  figure.caption += " Made from " + std::to_string(context.made_runs_of_maps()) + " of the " +
-                    std::to_string(context.runs_of_maps()) + " runs of its maps: one in " +
-                    std::to_string(coarse) + " values of each axis. Claims about a whole map stay open.";
-  for (Claim& claim : figure.claims) {
-    if (!claim.of_map) continue;
-    claim.verdict = Verdict::open;
-    claim.criterion += ", not judged on a coarse map";
-  }
-}
-
 bool was_made(const Figure& figure) {
   return std::none_of(figure.claims.begin(), figure.claims.end(),
                       [](const Claim& claim) { return claim.verdict == Verdict::not_run; });
@@ -210,7 +188,9 @@ void FigureFolder::finish(std::size_t run, const FigureContext& context, Figure 
   context.require_unchanged_inputs();
   Recipe recipe{"figure", figure.name, runs_[run].overrides};
   if (context.made_runs_of_maps() < context.runs_of_maps()) {
-    leave_unjudged(figure, context, runs_[run].coarse);
+    figure.caption += coarse_text(context.made_runs_of_maps(), context.runs_of_maps(), runs_[run].coarse);
+    for (Claim& claim : figure.claims)
+      if (claim.of_map) leave_open(claim);
     recipe.coarse = runs_[run].coarse;
   }
   const fs::path file = file_of(figure.name);
@@ -225,7 +205,7 @@ void FigureFolder::finish(std::size_t run, const FigureContext& context, Figure 
     not_made_ += "remote-touch: figure " + figure.name + ": " + figure.caption + "\n";
   printed_[run] = "figure " + figure.name + " -> " + file.string() + "\n";
   for (const Claim& claim : figure.claims) {
-    printed_[run] += line_of(claim);
+    printed_[run] += line_of(claim) + "\n";
     all_hold_ &= claim.verdict != Verdict::fail;
   }
   for (const std::string& note : context.note_lines()) printed_[run] += "  note: " + note + "\n";

@@ -207,9 +207,12 @@ void bind_studies(py::module_& module) {
       .def_readwrite("of_map", &Claim::of_map)
       .def_readwrite("set_up", &Claim::set_up)
       .def_property_readonly("verdict", [](const Claim& one) { return verdict_name(one.verdict); })
-      .def("leave_open", [](Claim& one) { one.verdict = Verdict::open; });
+      .def("leave_open", &leave_open)
+      .def("__str__", &line_of);
   module.def("claim", &claim, py::arg("kind"), py::arg("figure"), py::arg("text"), py::arg("paper"),
              py::arg("measured"), py::arg("low"), py::arg("high"), py::arg("unit"), "A claim of a figure.");
+  module.def("coarse_text", &coarse_text, py::arg("made_runs"), py::arg("runs"), py::arg("coarse"),
+             "What a caption says of maps that were made in part.");
   module.def("claim_not_run", &claim_not_run, py::arg("figure"), py::arg("claim"), py::arg("reason"));
   module.def("write_figure", &write, py::arg("file"), py::arg("name"), py::arg("title"), py::arg("caption"),
              py::arg("tables"), py::arg("panels"), py::arg("origin"), "Writes the file of a figure.");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/atomic_file.h"
+#include "core/parameters/parameter.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {
@@ -59,6 +60,26 @@ void Claims::between(const std::string& claim, double measured, double low, doub
 void Claims::differs(const std::string& claim, double measured, double low, double high,
                      const std::string& unit, const std::string& paper) const {
   add(claim_differs(figure_.name, opening_ + claim, paper, measured, low, high, unit));
+}
+
+std::string line_of(const Claim& claim) {
+  const std::string verdict = claim.verdict == Verdict::fail ? "FAIL" : verdict_name(claim.verdict);
+  const std::string paper = claim.verdict == Verdict::differs ? ", " + claim.source + ": " + claim.paper : "";
+  const std::string measured = formatted("%.6g", claim.measured);
+  return "  " + verdict + std::string(verdict.size() < 7 ? 7 - verdict.size() : 0, ' ') + " " +
+         (claim.set_up ? "set-up: " : "") + claim.claim + ": " + measured + " " + claim.unit + " (" +
+         claim.criterion + paper + ")";
+}
+
+void leave_open(Claim& claim) {
+  claim.verdict = Verdict::open;
+  claim.criterion += ", not judged on a coarse map";
+}
+
+std::string coarse_text(std::size_t made_runs, std::size_t runs, int coarse) {
+  return " Made from " + std::to_string(made_runs) + " of the " + std::to_string(runs) +
+         " runs of its maps: one in " + std::to_string(coarse) +
+         " values of each axis. Claims about a whole map stay open.";
 }
 
 namespace {

@@ -105,6 +105,13 @@ class Claims {
   bool Claim::*mark_;
 };
 
+// Returns a claim as the line that commands print, without its end.
+std::string line_of(const Claim& claim);
+// Leaves a claim about whole maps open, because a share of a coarse map is not that of the whole map.
+void leave_open(Claim& claim);
+// Returns what the caption of a figure says of maps that were made in part.
+std::string coarse_text(std::size_t made_runs, std::size_t runs, int coarse);
+
 // claims.json: the claims of a folder's figures, with their verdicts.
 
 class ClaimsFile {

@@ -10,16 +10,18 @@ All bad input is an InputError, a ValueError of one line.
 import os as _os
 
 from remote_touch import _core
-from remote_touch._core import Cloud, Device, Frame, InputError, NoiseKey, Output, Scene
+from remote_touch._core import Cloud, Device, Frame, InputError, MissingInput, NoiseKey, Output, Scene
 from remote_touch.calls import Comparison, analyse, compare, describe, list, open, replay, run, scorecard, sweep
 from remote_touch.classes import Renderer, Scenario, Setting, Trajectory, register, scene
 
 __version__ = _core.version()
-__all__ = ["Cloud", "Comparison", "Device", "Frame", "InputError", "NoiseKey", "Output", "Renderer", "Scenario", "Scene",
+__all__ = ["Cloud", "Comparison", "Device", "Frame", "InputError", "MissingInput", "NoiseKey", "Output", "Renderer", "Scenario", "Scene",
            "Setting", "Trajectory", "analyse", "compare", "describe", "list", "open", "register", "replay", "run", "scene",
            "scorecard", "sweep"]
 
 InputError.__module__ = __name__  # where users find it
+MissingInput.__module__ = __name__
+MissingInput.__doc__ = "A recording or another file of data that is not there."
 InputError.__doc__ = "Input that cannot be used: one line, what is wrong: what is expected."
 # The same variables as for the command line.
 _core.choose_kernels(_os.environ.get("REMOTE_TOUCH_ISA", ""))

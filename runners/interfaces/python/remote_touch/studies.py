@@ -225,13 +225,13 @@ class Study:
         """Rows with the axes and columns of a grid of runs; the last axis runs fastest.
 
         axes: {"delay": [0, 0.1]}. task(cell): the (experiment, settings) of a cell, which has a member for each axis.
-        columns: {"force": function of a run, or of a run and its cell}.
+        columns: {"force": function of a run, or of a run and its cell}. Of the configurations the file has the first.
         """
         cells = product(axes)
         functions = [_of_run_and_cell(function) for function in columns.values()]
         made = self._side_by_side([task(cell) for cell in cells],
                                   lambda run, i: (run.config, [function(run, cells[i]) for function in functions]))
-        self._configs += [json.dumps(config) for config, _ in made]
+        self._configs += [json.dumps(config) for config, _ in made[:1]]
         rows = Rows({name: np.array([getattr(cell, name) for cell in cells]) for name in axes})
         rows.update({name: np.array([values[i] for _, values in made]) for i, name in enumerate(columns)})
         return rows
@@ -275,7 +275,7 @@ class Study:
 
     # --- the figure ---
 
-    def table(self, name, title, columns=None, **named):
+    def table(self, name, title, columns=None, /, **named):
         """Adds a table. Each column is name=(values, units, long_name); texts may be values. Returns its Rows."""
         rows, listed = Rows(), []
         for column, (values, units, long_name, *names) in {**(columns or {}), **named}.items():
@@ -313,7 +313,10 @@ class Study:
     def write(self, folder, command):
         """Writes figNAME.h5, and the claims into claims.json of the folder."""
         if self.made_runs_of_maps < self.runs_of_maps:
-            self._leave_unjudged()
+            self.caption += _core.coarse_text(self.made_runs_of_maps, self.runs_of_maps, self.coarse)
+            for claim in self.all_claims:
+                if claim.of_map:
+                    claim.leave_open()
         folder = pathlib.Path(folder)
         origin = self._core.origin("[" + ", ".join(self._configs) + "]", command)
         entry = STUDIES.get(self.name)
@@ -321,12 +324,6 @@ class Study:
                            json.dumps(self.panels, default=float), [*origin, ("summary", entry.summary if entry else "")])
         _write_claims(folder, self.name, self.all_claims)
         return self._core.note_lines()
-
-    def _leave_unjudged(self):
-        self.caption += f" Made from {self.made_runs_of_maps} of the {self.runs_of_maps} runs of its maps."
-        for claim in self.all_claims:
-            if claim.of_map:
-                claim.leave_open()
 
 
 def _of_run_and_cell(function):
@@ -375,20 +372,6 @@ def make(name, folder, *, coarse=None, quick=False, executor=None, set=(), comma
     return made
 
 
-def cite(file):
-    """The reference of a figure file as text: title, program, version, digest and command."""
-    import remote_touch
-    tables = remote_touch.open(file)
-    of = next(iter(tables.values())).attrs if tables else {}
-    return (f"{of.get('title', '')} (figure {of.get('figure', '')}). Remote Touch {of.get('version', '')}, digest "
-            f"{of.get('digest', '')[:16]}, made by `{of.get('command', '')}`.")
-
-
-def _line_of(claim):
-    name = {"pass": "pass", "fail": "FAIL"}.get(claim.verdict, claim.verdict)
-    return f"  {name}: {claim.claim}: {claim.measured:g} {claim.unit}, {claim.criterion}"
-
-
 def _options(arguments):
     parser = argparse.ArgumentParser(description="Makes studies: figure files, claims, pictures and a page.")
     parser.add_argument("names", nargs="*", metavar="NAME", help="names of studies (default: all of the files)")
@@ -418,7 +401,7 @@ def _make_all(options):
             made = make(name, options.output, coarse=options.coarse, quick=options.quick, executor=executor, set=options.set)
             print(f"study {name} -> {options.output / f'fig{name}.h5'}")
             for claim in made.all_claims:
-                print(_line_of(claim))
+                print(claim)
                 failed |= claim.verdict == "fail"
             for note in made.notes:
                 print(f"  note: {note}", flush=True)

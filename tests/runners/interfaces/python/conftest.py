@@ -14,6 +14,7 @@ import remote_touch as rt  # noqa: E402: it reads the first two
 ROOT = pathlib.Path(__file__).resolve().parents[4]
 EXAMPLES = ROOT / "runners" / "interfaces" / "python" / "examples"
 PAGE = ROOT / "runners" / "interfaces" / "python" / "README.md"
+STUDY_PAGE = ROOT / "data" / "studies" / "README.md"
 
 # A plane at rest, pressed by hand: milliseconds.
 PRESS = {

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 import remote_touch as rt
-from conftest import EXAMPLES, PAGE, ROOT
+from conftest import EXAMPLES, PAGE, ROOT, STUDY_PAGE
 from remote_touch import _core, calls, classes
 
 IMPORT = ("import time; t = time.process_time(); import remote_touch; print(time.process_time() - t); import sys; "
@@ -139,7 +139,7 @@ def test_no_other_page_has_python():
     """Which no test would run."""
     sys.path.insert(0, str(ROOT / "tests" / "system"))
     from page_files import pages
-    assert [page for page in pages(ROOT) if re.search(r"^```python", page.read_text(), re.MULTILINE)] == [PAGE]
+    assert [page for page in pages(ROOT) if re.search(r"^```python", page.read_text(), re.MULTILINE)] == [STUDY_PAGE, PAGE]
 
 
 def test_an_installed_copy(tmp_path):

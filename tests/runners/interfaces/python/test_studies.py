@@ -1,0 +1,172 @@
+"""Studies: what the library makes of runs, and what it refuses."""
+import concurrent.futures
+import json
+import multiprocessing
+import pathlib
+import re
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+import pytest
+from conftest import PRESS, ROOT, STUDY_PAGE
+from remote_touch import InputError, studies
+from remote_touch.studies import Rows, line, product, study
+
+
+@study("test-depth", "how hard a plane pushes, over the depth", title="A press", caption="A plane that is pressed.", quick_coarse=2)
+def press(s):
+    rows = s.grid({"depth": [0.005, 0.01], "seed": [1, 2]},
+                  lambda cell: (PRESS, {"trajectory.depth_m": cell.depth, "seed": cell.seed}),
+                  {"force": lambda run: run.norm("force").max(), "twice": lambda run, cell: 2 * cell.depth})
+    s.table("forces", "largest force", depth=(rows.depth, "m", "depth"), force=(rows.force, "N", "largest force"),
+            name=([f"seed {seed}" for seed in rows.seed], "1", "name"))
+    s.panel("Largest force", "depth (m)", "force (N)", [line("forces", "depth", "force", "proxy")], x_range=(0, 0.02))
+    claims = s.claims("a press: ")
+    claims.at_least("the plane pushes: smallest force", rows.force.min(), 0.1, "N")
+    claims.agrees("the depth is doubled: difference", rows.twice.sum(), 0.06, 0.001)
+
+
+def made(folder, name="test-depth", **options):
+    folder.mkdir(exist_ok=True)
+    result = studies.make(name, folder, **options)
+    return result, h5py.File(folder / f"fig{name}.h5"), json.loads((folder / "claims.json").read_text())
+
+
+def text(file, name):
+    return file.attrs[name].decode()
+
+
+def declared(name, make):
+    """A study that a test declares."""
+    study(name, "of a test")(make)
+    return name
+
+
+def test_a_study_writes_the_files_of_a_figure(tmp_path):
+    result, file, claims = made(tmp_path)
+    assert text(file, "schema") == "remote-touch-figure/3" and text(file, "figure") == "test-depth"
+    assert text(file, "summary").startswith("how hard") and len(json.loads(text(file, "config"))) == 1
+    assert file["tables/forces/force"].attrs["units"] == b"N" and file["tables/forces/force"][()].min() > 0.1
+    assert file["tables/forces/name"][()].tolist()[0] == b"seed 1"
+    assert list(file["panels/0"].attrs["x_range"]) == [0, 0.02]
+    assert [claim["verdict"] for claim in claims] == ["pass", "pass"] == [claim.verdict for claim in result.all_claims]
+    assert claims[0]["claim"] == "a press: the plane pushes: smallest force" and claims[0]["criterion"] == "at least 0.1"
+    assert claims[1]["unit"] == "standard errors" and claims[1]["measured"] < 1e-9
+
+
+def test_an_executor_changes_no_bit(tmp_path):
+    with concurrent.futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as workers:
+        _, by_workers, _ = made(tmp_path / "workers", executor=workers)
+    _, by_threads, _ = made(tmp_path / "threads")
+    assert by_workers.attrs["digest"] == by_threads.attrs["digest"] and by_workers.attrs["config"] == by_threads.attrs["config"]
+
+
+SWEEP = {"title": "depth", "experiment": PRESS, "axes": [{"parameter": "trajectory.depth_m", "from": 0.002, "to": 0.01, "count": 5}],
+         "measures": ["max_force"]}
+
+
+def test_a_coarse_map_leaves_claims_about_it_open(tmp_path):
+    def mapped(s):
+        cells = s.map(SWEEP)
+        s.claims(of_map=True).at_least("a map: forces", cells.max_force.min(), 0)
+        s.claims().at_most("no map: number of cells", cells.max_force.size, 5)
+    name = declared("test-map", mapped)
+    _, whole, claims = made(tmp_path / "whole", name)
+    assert [claim["verdict"] for claim in claims] == ["pass", "pass"] and "Made from" not in text(whole, "caption")
+    _, coarse, claims = made(tmp_path / "coarse", name, coarse=2)
+    assert [claim["verdict"] for claim in claims] == ["open", "pass"] and claims[1]["measured"] == 3
+    assert "Made from 3 of the 5 runs of its maps: one in 2" in text(coarse, "caption")
+
+
+def test_claims_judge():
+    entry = studies.Entry("judged", "", None, {"title": "", "caption": "", "source": "a book"}, 1, "")
+    s = studies.Study(entry)
+    claims = s.claims("x: ", set_up=True)
+    claims.at_most("a", 1, 2)
+    claims.at_most("b", float("nan"), 2)
+    claims.between("c", 3, 1, 2)
+    claims.differs("d", 1.5, 1, 2, paper="7")
+    claims.agrees("e", 1, 2, 0.1)
+    claims.agrees("f", 1, 1, 0)  # no error: nothing can be judged
+    assert [claim.verdict for claim in s.all_claims] == ["pass", "fail", "fail", "differs", "fail", "fail"]
+    assert all(claim.set_up and claim.source == "a book" for claim in s.all_claims)
+
+
+def test_rows():
+    rows = Rows(a=np.array([1, 1, 2]), b=np.array([3, 4, 5]))
+    assert rows.where(a=1).b.tolist() == [3, 4] and len(rows) == 3 and len(Rows()) == 0
+    assert [(cell.x, cell.y) for cell in product({"x": [1, 2], "y": [3, 4]})] == [(1, 3), (1, 4), (2, 3), (2, 4)]
+    with pytest.raises(AttributeError, match="no column 'c': there is a, b"):
+        rows.c
+
+
+def refusal(folder, make, **options):
+    with pytest.raises(InputError) as error:
+        made(folder, declared("test-refused", make), **options)
+    assert not (folder / "figtest-refused.h5").exists()
+    return str(error.value)
+
+
+def test_refusals(tmp_path, monkeypatch):
+    def refuse(make):
+        monkeypatch.delitem(studies.STUDIES, "test-refused", raising=False)
+        return refusal(tmp_path, make)
+    assert "expected an experiment's name" in refuse(lambda s: s.run("no-such-experiment"))
+    assert "scenario.noise_sigma_m = -1" in refuse(lambda s: s.run("fig4.12", {"scenario.noise_sigma_m": -1}))
+    assert "differ in length" in refuse(lambda s: s.table("t", "t", a=([1, 2], "1", "a"), b=([1], "1", "b")))
+    assert "unknown style of a curve: wave" in refuse(
+        lambda s: s.panel("", "", "", [studies.Curve("t", "a", "b", "wave")]))
+    with pytest.raises(InputError, match="declared twice"):
+        study("test-depth", "again")(test_rows)
+
+
+def test_a_missing_recording_is_told(tmp_path):
+    name = declared("test-missing", lambda s: s.run("fig4.16-recorded"))
+    _, file, claims = made(tmp_path, name)
+    assert claims[0]["verdict"] == "not run" and "REMOTE_TOUCH_DATA" in claims[0]["criterion"]
+    assert text(file, "caption").startswith("Not run: ")
+
+
+SCRIPT = """
+import sys
+from remote_touch.studies import line, main, study
+@study("mine", "of a user", title="Mine", caption="Of a user.")
+def mine(s):
+    s.table("t", "t", x=([1, 2], "m", "place"), y=([1, 3], "N", "force"))
+    s.panel("A line", "x (m)", "y (N)", [line("t", "x", "y")])
+    s.claims().at_most("it is small: largest", 3, float(s.overrides[0]) if s.overrides else 2)
+if __name__ == "__main__":
+    sys.exit(main())
+"""
+
+
+def test_a_file_is_a_program(tmp_path):
+    (tmp_path / "mine.py").write_text(SCRIPT)
+    call = lambda *words: subprocess.run([sys.executable, "-B", "mine.py", *words], cwd=tmp_path, capture_output=True, text=True, check=False)
+    held = call("-o", "out", "--set", "4", "--format", "pdf")
+    assert held.returncode == 0, held.stderr
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {"figmine.h5", "figmine.png", "figmine.pdf", "claims.json", "index.html"}
+    assert "pass    it is small: largest: 3 1 (at most 4)" in held.stdout
+    failed = call("-o", "out", "--no-pictures")
+    assert failed.returncode == 1 and "FAIL    it is small" in failed.stdout
+    assert call("--list").stdout.split()[0] == "mine"
+    wrong = call("yours")
+    assert wrong.returncode == 2 and wrong.stderr == "studies: study yours: unknown: expected one of mine\n"
+
+
+def test_the_script_of_the_page(tmp_path):
+    script = re.search(r"^```python\n(.*?)^```", STUDY_PAGE.read_text(), re.MULTILINE | re.DOTALL).group(1)
+    (tmp_path / "soft_wall.py").write_text(script)
+    done = subprocess.run([sys.executable, "-B", "soft_wall.py", "-o", "soft_wall"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "pass    a spring on a plane" in done.stdout, done.stdout + done.stderr
+    assert (tmp_path / "soft_wall" / "figsoft-wall.png").exists()
+
+
+def test_every_study_of_the_project_is_declared():
+    """Each file in data/studies that declares a study has the name of the study."""
+    for path in sorted((ROOT / "data" / "studies").glob("*/*.py")):
+        text = pathlib.Path(path).read_text()
+        if "@study(" in text:
+            assert "sys.exit(main())" in text, path
