@@ -58,8 +58,6 @@ FIGURE("7.5-guidance", "where guidance leads the hand, over its stiffness, with 
        figure_7_5_guidance, 18)
 FIGURE("7.5-recorded", "the task of 7.5 on a recorded desk: from an organ model to a dragon",
        figure_7_5_recorded, 7)
-FIGURE("latency", "how far a forbidden region is violated when frames arrive late, irregularly or not at all",
-       figure_latency, 18)
 FIGURE("sensor-models-recorded",
        "simulated depth sensors against recordings of real ones: noise, steps of depth, holes at edges",
        figure_sensor_models_recorded, 2.5)
@@ -77,23 +75,6 @@ FIGURE(
     "device-width",
     "the same with a tool, its rotation, another hand, other frame rates and noise, and the energy that frame updates give the hand",
     figure_device_width, 30)
-FIGURE(
-    "steer-robot",
-    "which region keeps a slow slave behind a delay off an organ that moves, and the force on it otherwise",
-    figure_steer_robot, 10)
-FIGURE("slave-force-peak",
-       "how hard a slave hits a surface at rest, over its bandwidth, the delay and what the hand feels",
-       figure_slave_force_peak, 0.4)
-FIGURE("slave-region-radius",
-       "the region that keeps a slave from touching, over delay, speed of the organ and noise",
-       figure_slave_region_radius, 6)
-FIGURE("slave-packets", "packets of commands and forces over the dead-band, beside published reductions",
-       figure_slave_packets, 5)
-FIGURE("slave-lift", "Fig 4.12 with a slave: the force of a rising surface on a slave that is late",
-       figure_slave_lift, 0.2)
-FIGURE("anticipation",
-       "the time by which the hand feels a contact before the slave touches, over delay and bandwidth",
-       figure_anticipation, 0.3)
 FIGURE("tool-forces", "force and torque of a tool by six methods, against scenes where they are known",
        figure_tool_forces, 1.6)
 FIGURE("tool-lifts",

@@ -10,8 +10,8 @@ TEST(OtherKind, NamesTheCommand) {
   EXPECT_EQ(other_kind("fig4.13", "run"), "is a sweep: expected `remote-touch sweep fig4.13 -o FILE`");
   EXPECT_EQ(other_kind("fig4.12", "sweep"), "is an experiment: expected `remote-touch run fig4.12 -o FILE`");
   EXPECT_EQ(other_kind("fig4.13", "figure"), "is a sweep: expected `remote-touch sweep fig4.13 -o FILE`");
-  EXPECT_EQ(other_kind("figlatency", "figure"),
-            "is a figure: expected `remote-touch figure latency -o FOLDER`");
+  EXPECT_EQ(other_kind("figbounds", "figure"),
+            "is a figure: expected `remote-touch figure bounds -o FOLDER`");
 }
 
 TEST(OtherKind, IsEmptyForTheCommandsOwnNamesForFilesAndForNoWord) {
