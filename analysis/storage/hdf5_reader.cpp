@@ -44,20 +44,10 @@ std::string name_of_attribute(hid_t attribute) {
   return name;
 }
 
-// Returns the list of properties with which the library reads a copy of the bytes instead of a file.
-Handle access_to(std::string_view bytes) {
-  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  check(H5Pset_fapl_core(access, 1 << 20, false));
-  check(H5Pset_file_image(access, const_cast<char*>(bytes.data()), bytes.size()));
-  return access;
-}
-
 class LibrarySource final : public Hdf5Source {
  public:
   explicit LibrarySource(const std::string& file)
       : file_(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose) {}
-  explicit LibrarySource(std::string_view bytes)
-      : file_(H5Fopen("bytes", H5F_ACC_RDONLY, access_to(bytes)), H5Fclose) {}
 
   TextAttributes attributes() const override {
     use_hdf5();
@@ -270,11 +260,6 @@ bool require_readable(const std::filesystem::path& file) {
 std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file) {
   use_hdf5();
   return std::make_unique<LibrarySource>(file.string());
-}
-
-std::unique_ptr<Hdf5Source> open_hdf5_image(std::string_view bytes) {
-  use_hdf5();
-  return std::make_unique<LibrarySource>(bytes);
 }
 
 std::string packed(const Hdf5Summary& summary) {

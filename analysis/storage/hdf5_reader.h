@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -32,9 +31,6 @@ class Hdf5Source {
 // Opens a file in this process. pre: the file is as it was written, because the library crashes, hangs or
 // allocates all memory on some damaged files.
 std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& file);
-
-// Opens the bytes of such a file.
-std::unique_ptr<Hdf5Source> open_hdf5_image(std::string_view bytes);
 
 // A child process with limits answers each query. Only that process calls the library.
 std::unique_ptr<Hdf5Source> open_hdf5_in_child(const std::filesystem::path& file,

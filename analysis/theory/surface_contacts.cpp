@@ -1,6 +1,6 @@
 #include "analysis/theory/surface_contacts.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -52,17 +52,6 @@ double median(double low, double high, Function&& falling) {
     (falling(middle) > 0.5 ? low : high) = middle;
   }
   return 0.5 * (low + high);
-}
-
-// Returns the distance from the proxy's centre to the plane if the nearest points are this far from the
-// centre.
-double plane_distance_m(const FirstTouch& touch, double point_distance_m) {
-  const double b = touch.nearest_beside_m;
-  return std::sqrt(point_distance_m * point_distance_m - b * b);
-}
-
-double resting_m(const FirstTouch& touch) {
-  return plane_distance_m(touch, 0.5 * (touch.r1_m + touch.r2_m));
 }
 
 double plane_height(const Trace& trace, std::size_t i, const Vec3& normal) {
@@ -272,44 +261,6 @@ double scatter_bound(const Lift& lift, const NoiseEffect& noise) {
     (survival_probability(lift, noise, middle) >= 0.5 ? low : high) = middle;
   }
   return low;
-}
-
-double max_first_touch_velocity(const FirstTouch& touch) {
-  return plane_distance_m(touch, touch.r1_m) * touch.frame_rate_hz;
-}
-
-double max_touched_velocity(const FirstTouch& touch) {
-  return resting_m(touch) * touch.frame_rate_hz;
-}
-
-double lost_at_first_touch(const FirstTouch& touch, double velocity_m_per_s) {
-  const double moved_m = velocity_m_per_s / touch.frame_rate_hz;
-  const double touching_m = plane_distance_m(touch, touch.r1_m);
-  const double first_m = std::max(0.0, moved_m - touching_m);
-  const double second_m = std::max(0.0, moved_m + touching_m - 2 * resting_m(touch));
-  return std::min(1.0, (first_m + second_m) / moved_m);
-}
-
-PopThroughLaw fitted_law(const std::vector<LimitPoint>& points) {
-  const auto rows = static_cast<Eigen::Index>(points.size());
-  Eigen::MatrixX2d terms(rows, 2);
-  Eigen::VectorXd changes(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const LimitPoint& point = points[static_cast<std::size_t>(i)];
-    terms.row(i) << point.noise, -point.spacing * point.noise;
-    changes[i] = point.limit - PopThroughLaw::without_noise(point.spacing);
-  }
-  const Eigen::Vector2d law = terms.colPivHouseholderQr().solve(changes);
-  return {law[0], law[1]};
-}
-
-double rms_residual(const PopThroughLaw& law, const std::vector<LimitPoint>& points) {
-  double sum = 0;
-  for (const LimitPoint& point : points) {
-    const double residual = point.limit - law.limit(point.spacing, point.noise);
-    sum += residual * residual;
-  }
-  return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
 std::vector<LiftUpdate> lift_updates(const Trace& trace, const Vec3& normal, double r1_m,

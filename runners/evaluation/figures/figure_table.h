@@ -14,17 +14,6 @@ FIGURE("4.13-tracked", "the pop-through map of the renderer tracked-sheet, next 
        figure_4_13_tracked, 150, true, 4)
 FIGURE("bounds", "the bounds (4.14) to (4.25), their parts measured, and how far they hold", figure_bounds,
        38)
-FIGURE("frame-rates",
-       "up to which acceleration the proxy stays on a surface, at 15, 30 and 60 frames per second",
-       figure_frame_rates, 5)
-FIGURE("first-touch",
-       "how fast a surface may move when it first touches the proxy, at 15, 30 and 60 frames per second",
-       figure_first_touch, 1.3)
-FIGURE("proxy-rates", "whether (4.23), (4.24) and the 16 r_c/s of [1] can come from one machine",
-       figure_proxy_rates, 20)
-FIGURE("pop-through-law",
-       "from which acceleration on lifts pop through, over spacing, noise and speed: a law from 1e7 lifts",
-       figure_pop_through_law, 12)
 FIGURE("4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14, 0.15)
 FIGURE("4.15", "ramp and box as the points of a simulated depth camera, in 3-D", figure_4_15, 0.1)
 FIGURE("4.15-meshes",
@@ -68,13 +57,6 @@ FIGURE(
 FIGURE("handshake", "a hand that shakes before a depth camera is pressed, and shakes a passive hand (1.1)",
        figure_handshake, 2.5)
 FIGURE("handshake-human", "the figure handshake with the mesh of a human hand", figure_handshake_human, 2.5)
-FIGURE("device-wall",
-       "up to which stiffness a rendered plane is stable, over damping and delay of the device",
-       figure_device_wall, 10)
-FIGURE(
-    "device-width",
-    "the same with a tool, its rotation, another hand, other frame rates and noise, and the energy that frame updates give the hand",
-    figure_device_width, 30)
 FIGURE("tool-forces", "force and torque of a tool by six methods, against scenes where they are known",
        figure_tool_forces, 1.6)
 FIGURE("tool-lifts",

@@ -170,42 +170,6 @@ void bind_bounds(py::module_& theory) {
         return critical_acceleration({r1_m, frame_rate_hz, 0, 1});
       },
       py::arg("r1_m"), py::arg("frame_rate_hz"), "(4.14): r_1 f_c^2, m/s^2.");
-  const auto touch = [](double r1_m, double r2_m, double nearest_beside_m, double frame_rate_hz) {
-    return FirstTouch{r1_m, r2_m, nearest_beside_m, frame_rate_hz};
-  };
-  theory.def(
-      "max_first_touch_velocity",
-      [touch](double r1_m, double r2_m, double b_m, double hz) {
-        return max_first_touch_velocity(touch(r1_m, r2_m, b_m, hz));
-      },
-      py::kw_only(), py::arg("r1_m"), py::arg("r2_m"), py::arg("nearest_beside_m"), py::arg("frame_rate_hz"),
-      "Up to this velocity (m/s) of the surface no proxy is lost at the first touch.");
-  theory.def(
-      "max_touched_velocity",
-      [touch](double r1_m, double r2_m, double b_m, double hz) {
-        return max_touched_velocity(touch(r1_m, r2_m, b_m, hz));
-      },
-      py::kw_only(), py::arg("r1_m"), py::arg("r2_m"), py::arg("nearest_beside_m"), py::arg("frame_rate_hz"),
-      "The same limit for a hand that touches the surface between two frames.");
-  theory.def(
-      "lost_at_first_touch",
-      [touch](double velocity_m_per_s, double r1_m, double r2_m, double b_m, double hz) {
-        return lost_at_first_touch(touch(r1_m, r2_m, b_m, hz), velocity_m_per_s);
-      },
-      py::kw_only(), py::arg("velocity_m_per_s"), py::arg("r1_m"), py::arg("r2_m"),
-      py::arg("nearest_beside_m"), py::arg("frame_rate_hz"),
-      "The fraction of start times for which a proxy at rest is lost.");
-  theory.def(
-      "fitted_pop_through_law",
-      [](const std::vector<std::array<double, 3>>& points) {
-        std::vector<LimitPoint> list;
-        for (const auto& [spacing, noise, limit] : points) list.push_back({spacing, noise, limit});
-        const PopThroughLaw law = fitted_law(list);
-        return py::make_tuple(law.gain, law.loss);
-      },
-      py::arg("points"),
-      "gain and loss of the law limit = (1 - s^2 / 2)^(1/2) + (gain - loss s) sigma. points: (spacing, "
-      "noise, limit) as pure numbers.");
   theory.def(
       "printed_thickness", [](double sigma_m) { return printed_thickness().at(sigma_m); }, py::arg("sigma_m"),
       "(4.23), m.");

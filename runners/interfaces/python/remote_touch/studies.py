@@ -337,8 +337,8 @@ def _processors():
 
 
 def _call(folder, subject, set):
-    """The arguments of a run in C++. A name of a file beside the study stands for the file."""
-    if isinstance(subject, str) and not os.path.exists(subject) and (folder / f"{subject}.json").exists():
+    """The arguments of a run in C++. The name of a file beside the study stands for the file."""
+    if isinstance(subject, str) and (folder / f"{subject}.json").exists():
         subject = folder / f"{subject}.json"
     return (*_subject(subject), _overrides(set))
 

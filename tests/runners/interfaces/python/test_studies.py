@@ -170,3 +170,35 @@ def test_every_study_of_the_project_is_declared():
         text = pathlib.Path(path).read_text()
         if "@study(" in text:
             assert "sys.exit(main())" in text, path
+
+
+def lost_by_the_rules(beside_m, moved_m, phase):
+    """Whether a proxy at rest is lost, by the rules of 4.2 alone, frame by frame in one dimension: heights along the normal of a
+    plane of points that rises by moved_m a frame."""
+    r1_m, r2_m, r3_m, rc_m = 0.00499, 0.00501, 0.01, 0.005
+    rest_m, height_m, step_before_m, has_normal = np.sqrt(rc_m ** 2 - beside_m ** 2), 0.0, 0.0, False
+    for frame in range(40):
+        plane_m = -(30 - frame + phase) * moved_m
+        height_m += step_before_m  # (4.3)
+        if height_m < plane_m:
+            return True
+        nearest_m, step_m = np.hypot(height_m - plane_m, beside_m), 0.0
+        if nearest_m < r1_m:
+            step_m = plane_m + rest_m - height_m  # (4.10)
+        elif nearest_m > r2_m:
+            step_m = max(0.0, plane_m + rest_m) - height_m  # (4.9)
+        height_m += step_m
+        step_before_m = max(0.0, step_before_m + (step_m if has_normal else 0))  # (4.13) uses the normal from before the frame
+        has_normal = has_normal or np.hypot(height_m - plane_m, beside_m) < r3_m
+    return False
+
+
+def test_the_law_of_the_first_touch_is_that_of_the_rules(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "data" / "studies" / "proxy")
+    import first_touch
+    phases = (np.arange(200) + 0.5) / 200
+    for beside_m in (0, 0.00075, 0.0010606601717798212):
+        law = first_touch.Touches("", "", 30, beside_m, 0)
+        for moved_m in np.arange(0.0045, 0.0105, 0.00043):
+            followed = np.mean([lost_by_the_rules(beside_m, moved_m, phase) for phase in phases])
+            assert abs(law.derived(30 * moved_m) - followed) <= 1 / 200
