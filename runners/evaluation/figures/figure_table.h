@@ -57,15 +57,4 @@ FIGURE(
 FIGURE("handshake", "a hand that shakes before a depth camera is pressed, and shakes a passive hand (1.1)",
        figure_handshake, 2.5)
 FIGURE("handshake-human", "the figure handshake with the mesh of a human hand", figure_handshake_human, 2.5)
-FIGURE("tool-forces", "force and torque of a tool by six methods, against scenes where they are known",
-       figure_tool_forces, 1.6)
-FIGURE("tool-lifts",
-       "up to which speed, tilt, turn and acceleration a plate stays on a surface, by three contact rules",
-       figure_tool_lifts, 50)
-FIGURE("tool-shapes",
-       "what speed lets an edge, a corner, a ball or a wall pass through a plate, by three contact rules",
-       figure_tool_shapes, 60)
-FIGURE("tool-tracked",
-       "a plate on noisy surfaces that accelerate, by tracked sheets and by three contact rules",
-       figure_tool_tracked, 100, true, 2)
 FIGURE("turbidity", "two valves in turbid water found by hue: precision and recall", figure_turbidity, 1.4)

@@ -37,7 +37,7 @@ import numpy as np
 
 from remote_touch import _core
 from remote_touch._core import InputError, MissingInput
-from remote_touch.calls import _overrides, _subject
+from remote_touch.calls import _integer, _overrides, _subject
 
 STUDIES = {}  # name -> Entry, of all files that were imported
 
@@ -353,13 +353,13 @@ def _write_claims(folder, name, claims):
     _core.replace_claims(str(folder / "claims.json"), order, name, claims)
 
 
-def make(name, folder, *, coarse=None, quick=False, executor=None, set=(), command=None):
+def make(name, folder, *, coarse=1, quick=False, executor=None, set=(), command=None):
     """Makes a declared study; writes its files into the folder. Returns its Study, with all_claims.
 
     A study whose recording is missing is written as not run. command: recorded in the file.
     """
     entry = STUDIES[name]
-    coarse = coarse or (entry.quick_coarse if quick else 1)
+    coarse = max(_integer("coarse", coarse, 1, 10), entry.quick_coarse if quick else 1)
     os.makedirs(folder, exist_ok=True)
     made = Study(entry, coarse, executor, set)
     try:
@@ -378,7 +378,7 @@ def _options(arguments):
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("out/studies"), help="a folder (default: out/studies)")
     parser.add_argument("--list", action="store_true", help="print the names and end")
     parser.add_argument("--quick", action="store_true", help="use a part of the values of each axis of maps that take minutes")
-    parser.add_argument("--coarse", type=int, metavar="N", help="use every Nth value of each axis of maps")
+    parser.add_argument("--coarse", type=int, default=1, metavar="N", help="use every Nth value of each axis of maps, 1 to 10")
     parser.add_argument("--set", action="append", default=[], metavar="PATH=VALUE", help="a setting, for studies that take settings")
     parser.add_argument("--processes", type=int, metavar="N", help="make the runs in N processes (default: in threads)")
     parser.add_argument("--format", choices=("png", "svg", "pdf"), default="png", help="of the pictures (default: png)")
