@@ -27,7 +27,8 @@ OF_THE_PROGRAM = [
     (r"runners/live/", ["command_line_live", "runners/live/loop.several_cameras_in_one_process"]),
     (r"runners/evaluation/(scorecard|figures)/|data/(methods|scenes|scorecard)", ["stored_scorecard", "figures_quick"]),
     (r"runners/presentation/pages/|tests/system/viewer/", ["command_line_view", "viewer_.*"]),
-    (r"runners/interfaces/python/|tests/runners/interfaces/python/", ["python_module"]),
+    (r"runners/interfaces/python/|tests/runners/interfaces/python/", ["python_module", "studies_quick"]),
+    (r"data/studies/", ["python_module", "studies_quick"]),
     (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "plot_style", "scorecard_page", "figures_quick"]),
     (r"scripts/benchmark|data/benchmarks/|tests/benchmarks/README\.md$", ["benchmark_tables"]),
     (r".*\.md$", ["page_links", "reference"]),
@@ -100,7 +101,7 @@ def main():
     print(f"Left to scripts/test --ci: {', '.join(sorted(left)) or 'nothing that includes what changed'}", flush=True)
     known = targets_of_build(build)
     targets = [room.replace("/", "_") + "_tests" for room in with_tests] + ["remote-touch"]
-    if "python_module" in of_program:
+    if {"python_module", "studies_quick"} & {*of_program}:
         targets.append("remote_touch_python")
     own_main = [file.stem for room in with_tests for file in (ROOT / "tests" / room).glob("*_test.cpp")]
     wanted = [each for each in targets + own_main if each in known]
