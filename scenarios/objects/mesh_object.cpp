@@ -90,7 +90,8 @@ std::vector<PosedMesh> posed_meshes(std::span<const MeshObject> objects,
   assert(objects.size() == X_WO.size());
   std::vector<PosedMesh> meshes;
   for (std::size_t i = 0; i < objects.size(); ++i)
-    meshes.push_back({objects[i].name, objects[i].shape->vertices(), objects[i].shape->triangles(), X_WO[i]});
+    meshes.push_back({objects[i].name, objects[i].shape->vertices(), objects[i].shape->triangles(), X_WO[i],
+                      objects[i].is_closed});
   return meshes;
 }
 

@@ -57,6 +57,7 @@ struct PosedMesh {
   std::span<const Vec3> vertices_O;               // frame O of the object, m
   std::span<const std::array<int, 3>> triangles;  // indices of vertices, counter-clockwise seen from outside
   std::optional<RigidTransform> X_WO;             // object to world frame; nothing: unknown
+  bool is_closed = true;                          // false: a sheet, whose both sides can be seen
 };
 
 // A scenario is a pure function of its configuration, the noise key and the frame number: the same call gives

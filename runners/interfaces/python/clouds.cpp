@@ -85,10 +85,10 @@ std::unique_ptr<PythonCloud> make_cloud(const py::object& points, const py::obje
   return std::make_unique<PythonCloud>(std::move(cloud));
 }
 
-void bind_cloud(py::module_& module) {
+CloudClass bind_cloud(py::module_& module) {
   using PC = PointCloud;
-  py::class_<PythonCloud, std::shared_ptr<PythonCloud>>(module, "Cloud", "A point cloud; it does not change.")
-      .def(py::init(&make_cloud), py::arg("points"), py::kw_only(), py::arg("normals") = py::none(),
+  CloudClass made(module, "Cloud", "A point cloud; it does not change.");
+  made.def(py::init(&make_cloud), py::arg("points"), py::kw_only(), py::arg("normals") = py::none(),
            py::arg("colour") = py::none(), py::arg("fixture_radius_m") = py::none(),
            py::arg("stiffness_N_per_m") = py::none(), py::arg("columns") = 0)
       .def("__len__", [](const PythonCloud& cloud) { return cloud.shown->size(); })
@@ -115,6 +115,7 @@ void bind_cloud(py::module_& module) {
       .def_readonly("index", &PythonFrame::index)
       .def_readonly("captured_s", &PythonFrame::captured_s)
       .def_readonly("arrives_s", &PythonFrame::arrives_s);
+  return made;
 }
 
 std::uint64_t unsigned_of(const py::object& value, int bits, const char* subject) {
@@ -214,6 +215,7 @@ void bind_noise(py::module_& module) {
 
 std::unique_ptr<PythonScene> make_scene(const std::string& name, const std::string& settings,
                                         const NoiseKey& key) {
+  const AloneInThread alone;
   const auto factory = find_entry(scenarios(), name, "scene").make();
   read_parameters(parse_json(settings, "scene"), factory->settings(), "scene");
   const std::string problem = factory->validate();
@@ -228,9 +230,9 @@ int checked_frame(const Scenario& scenario, int frame) {
   return frame;
 }
 
-void bind_scene(py::module_& module) {
-  py::class_<PythonScene, std::shared_ptr<PythonScene>>(module, "Scene", "A scenario that answers queries.")
-      .def(py::init(&make_scene), py::arg("name"), py::arg("settings"), py::arg("key"))
+SceneClass bind_scene(py::module_& module) {
+  SceneClass made(module, "Scene", "A scenario that answers queries.");
+  made.def(py::init(&make_scene), py::arg("name"), py::arg("settings"), py::arg("key"))
       .def_property_readonly("frame_rate_hz", [](const PythonScene& s) { return (*s).frame_rate_hz(); })
       .def_property_readonly("frame_count", [](const PythonScene& s) { return (*s).frame_count(); })
       .def(
@@ -243,6 +245,7 @@ void bind_scene(py::module_& module) {
       .def(
           "cloud",
           [](const PythonScene& s, int frame) {
+            const AloneInThread alone;
             return std::make_shared<PythonCloud>((*s).cloud(checked_frame(*s, frame)));
           },
           py::arg("frame"))
@@ -260,6 +263,7 @@ void bind_scene(py::module_& module) {
             return (*s).surface_height(x, z, time_s);
           },
           py::arg("x"), py::arg("z"), py::arg("time_s"));
+  return made;
 }
 
 }  // namespace
@@ -288,10 +292,11 @@ const Scenario& PythonScene::operator*() const {
 }
 
 void bind_clouds(py::module_& module) {
-  bind_cloud(module);
+  CloudClass cloud = bind_cloud(module);
   bind_device(module);
   bind_noise(module);
-  bind_scene(module);
+  SceneClass scene = bind_scene(module);
+  bind_images(module, cloud, scene);
 }
 
 }  // namespace remote_touch

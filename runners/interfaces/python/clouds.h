@@ -1,6 +1,7 @@
 // The objects that classes of Python receive and return: clouds, frames, outputs, scenes.
 #pragma once
 
+#include <omp.h>
 #include <pybind11/pybind11.h>
 
 #include <memory>
@@ -57,5 +58,25 @@ class PythonScene {
   std::unique_ptr<const Scenario> own_;
   const Scenario* scenario_;
 };
+
+// While it exists, this thread works alone: an image is done in milliseconds, and several threads of Python
+// do not wait for each other's helpers.
+class AloneInThread {
+ public:
+  AloneInThread() : threads_(omp_get_max_threads()) { omp_set_num_threads(1); }
+  ~AloneInThread() { omp_set_num_threads(threads_); }
+  AloneInThread(const AloneInThread&) = delete;
+  AloneInThread& operator=(const AloneInThread&) = delete;
+
+ private:
+  const int threads_;
+};
+
+// Adds to these classes what computes with images: cameras, depths, true surfaces. Adds DepthSensor, and
+// BuiltRenderer, a renderer of the catalog that is stepped by hand.
+using CloudClass = pybind11::class_<PythonCloud, std::shared_ptr<PythonCloud>>;
+using SceneClass = pybind11::class_<PythonScene, std::shared_ptr<PythonScene>>;
+void bind_images(pybind11::module_& module, CloudClass& cloud, SceneClass& scene);
+void bind_built_renderer(pybind11::module_& module);
 
 }  // namespace remote_touch

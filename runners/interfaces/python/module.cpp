@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "core/parameters/parameter.h"
@@ -47,6 +48,7 @@ PYBIND11_MODULE(_core, module) {
   bind_errors(module);
   bind_clouds(module);
   bind_classes(module);
+  bind_built_renderer(module);
   bind_experiments(module);
   bind_sweeps(module);
   bind_chunks(module);
@@ -187,9 +189,14 @@ void bind_classes(py::module_& module) {
            py::arg("contact_count") = 0, py::arg("status") = "ok", py::arg("torque_Nm") = none,
            py::arg("tool_orientation") = none)
       .def_property_readonly("force_N", [](const PythonOutput& o) { return array_of(o.output.force_N); })
-      .def_property_readonly("proxy_m", [](const PythonOutput& o) -> py::object {
-        if (!o.has_proxy) return py::none();
-        return array_of(o.output.proxy_W);
+      .def_property_readonly("proxy_m",
+                             [](const PythonOutput& o) -> py::object {
+                               if (!o.has_proxy) return py::none();
+                               return array_of(o.output.proxy_W);
+                             })
+      .def_property_readonly("normal", [](const PythonOutput& o) { return array_of(o.output.normal_W); })
+      .def_property_readonly("state", [](const PythonOutput& o) {
+        return std::array{"free", "contact", "entrenched"}[static_cast<std::size_t>(o.output.state)];
       });
   module.def("register_class", &register_class, py::arg("kind"), py::arg("name"), py::arg("summary"),
              py::arg("type"), py::arg("settings"), "Puts a class into the catalog.");

@@ -14,12 +14,12 @@ from remote_touch import _core
 from remote_touch._core import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from typing import Any, ClassVar, TypeVar, Union
 
     from numpy.typing import ArrayLike
 
-    from remote_touch._core import Cloud, Device, Frame, NoiseKey, Output, Scene
+    from remote_touch._core import BuiltRenderer, Cloud, Device, Frame, NoiseKey, Output, Scene
     _Class = TypeVar("_Class", bound=Union[type["Renderer"], type["Scenario"], type["Trajectory"]])
 
 
@@ -164,6 +164,16 @@ def scene(name: str, *, key: NoiseKey | None = None, **settings: Any) -> Scene:
     if key is not None and not isinstance(key, _core.NoiseKey):
         raise InputError(f"key = {key!r}: expected an rt.NoiseKey")
     return _core.Scene(_native(name), _json(settings, "scene: "), key if key is not None else _core.NoiseKey())
+
+
+def renderer(experiment: str | os.PathLike[str] | dict[str, Any], *, set: Mapping[str, Any] | None = None) -> BuiltRenderer:
+    """The renderer of an experiment, which is named as for rt.run(), to be given clouds and stepped by hand.
+
+    on_frame(cloud, captured_s): a new frame, which the depth pipeline and the fixtures of the experiment process before.
+    step(device, time_s): an Output for a Device or a position. Scene and trajectory of the experiment are not used.
+    """
+    from remote_touch.calls import _overrides, _subject
+    return _core.BuiltRenderer(*_subject(experiment), _overrides(set))
 
 
 def _kind_of(cls):

@@ -1,0 +1,325 @@
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/dissertation/depth/depth_pipeline.h"
+#include "core/parameters/parameter.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/settings/json_parameters.h"
+#include "runners/interfaces/python/bindings.h"
+#include "runners/interfaces/python/clouds.h"
+#include "runners/interfaces/python/long_work.h"
+#include "scenarios/objects/mesh_scene.h"
+#include "scenarios/recordings/recorded_scene.h"
+#include "scenarios/simulated/depth_sensor.h"
+
+namespace remote_touch {
+
+// What studies compute with: images and true surfaces of scenes, simulated sensors, and renderers in steps.
+
+namespace py = pybind11;
+
+namespace {
+
+Json json_of(const py::handle& settings, const std::string& subject) {
+  return parse_json(py::str(py::module_::import("json").attr("dumps")(settings)), subject);
+}
+
+// Settings from the named arguments of a call in Python.
+template <class Settings>
+Settings settings_of(const py::kwargs& given, const char* subject) {
+  Settings settings;
+  read_parameters(json_of(given, subject), parameters(settings), subject);
+  if (const std::string problem = validate(settings); !problem.empty())
+    throw InputError(std::string(subject) + "." + problem);
+  return settings;
+}
+
+py::dict as_dict(const CameraIntrinsics& c) {
+  using namespace py::literals;
+  return py::dict("width"_a = c.width, "height"_a = c.height, "fx"_a = c.fx, "fy"_a = c.fy, "cx"_a = c.cx,
+                  "cy"_a = c.cy);
+}
+
+CameraIntrinsics camera_of(const py::dict& given) {
+  const auto number = [&](const char* name) { return given[name].cast<double>(); };
+  return {given["width"].cast<int>(),
+          given["height"].cast<int>(),
+          number("fx"),
+          number("fy"),
+          number("cx"),
+          number("cy")};
+}
+
+template <class Number>
+py::array as_image(std::vector<Number> pixels, const CameraIntrinsics& camera) {
+  return owning_array(std::move(pixels), {camera.height, camera.width});
+}
+
+using Numbers2d = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+std::vector<double> pixels_of(const Numbers2d& image) {
+  return {image.data(), image.data() + image.size()};
+}
+
+const ImageLayout& layout_of(const PythonCloud& cloud) {
+  if (!cloud.shown->image || cloud.shown->size() != cloud.shown->image->camera.pixels())
+    throw InputError("Cloud", "its points are not the pixels of an image: expected a frame of a camera");
+  return *cloud.shown->image;
+}
+
+DepthImage depth_of(const PythonCloud& cloud) {
+  const ImageLayout& layout = layout_of(cloud);
+  const RigidTransform X_CW = layout.X_WC.inverse();
+  DepthImage depth{layout.camera.width, layout.camera.height, {}};
+  for (std::size_t i = 0; i < cloud.shown->size(); ++i)
+    depth.z_m.push_back((X_CW * cloud.shown->point(i)).z());
+  return depth;
+}
+
+PixelRectangle checked(const PixelRectangle& at, const CameraIntrinsics& camera) {
+  if (at.left < 0 || at.top < 0 || at.width < 1 || at.height < 1 || at.width > camera.width - at.left ||
+      at.height > camera.height - at.top)
+    throw InputError("rectangle", "expected pixels in the image of " + size_text(camera));
+  return at;
+}
+
+// Returns the pixels of the rectangle as an image of their own; of the columns it has only the positions.
+std::shared_ptr<PythonCloud> window_of(const PythonCloud& cloud, int left, int top, int width, int height) {
+  PointCloud window;
+  window.image = layout_of(cloud);
+  CameraIntrinsics& camera = window.image->camera;
+  const int columns = camera.width;
+  checked({left, top, width, height}, camera);
+  camera.width = width, camera.height = height, camera.cx -= left, camera.cy -= top;
+  for (int row = top; row < top + height; ++row)
+    for (int column = left; column < left + width; ++column)
+      window.append(cloud.shown->point(static_cast<std::size_t>(row) * columns + column));
+  return std::make_shared<PythonCloud>(std::move(window));
+}
+
+std::shared_ptr<PythonCloud> filtered(const PythonCloud& cloud, int left, int top, int width, int height,
+                                      const py::kwargs& settings) {
+  const ImageLayout& layout = layout_of(cloud);
+  const AloneInThread alone;
+  DepthPipeline pipeline(settings_of<DepthPipelineSettings>(settings, "depth_pipeline"),
+                         chosen_python_kernels());
+  PointCloud made;
+  pipeline.process(depth_of(cloud), layout.camera, layout.X_WC,
+                   checked({left, top, width, height}, layout.camera), made);
+  return std::make_shared<PythonCloud>(std::move(made));
+}
+
+// Returns of(point, number) for each row of an array of points.
+template <class Of>
+py::array for_points(const py::handle& points, const char* subject, Of of) {
+  const PythonPoints p = points_of(points, [subject] { return std::string(subject) + ": points"; });
+  std::vector<double> values;
+  for (std::size_t i = 0; i < p.x.size(); ++i) values.push_back(of(Vec3(p.x[i], p.y[i], p.z[i]), i));
+  const auto count = static_cast<py::ssize_t>(values.size());
+  return owning_array(std::move(values), {count});
+}
+
+py::array rule_weights(const PythonCloud& cloud, const py::dict& rule) {
+  const Json part = json_of(rule, "rule");
+  const auto factory = find_entry(fixtures(), part.value("name", ""), "rule").make();
+  read_parameters(part, factory->settings(), "rule", {"name"});
+  return owning_array(factory->build()->weights(*cloud.shown),
+                      {static_cast<py::ssize_t>(cloud.shown->size())});
+}
+
+py::array signed_distances(const PythonScene& scene, const py::handle& points,
+                           const py::array_t<double, py::array::forcecast>& time_s) {
+  const bool is_one = time_s.ndim() == 0;
+  return for_points(points, "signed_distances", [&](const Vec3& p_W, std::size_t i) {
+    if (!is_one && static_cast<py::ssize_t>(i) >= time_s.size())
+      throw InputError("signed_distances: time_s", "expected one time, or one for each point");
+    return (*scene).signed_distance(p_W, time_s.data()[is_one ? 0 : i]);
+  });
+}
+
+py::list true_objects(const PythonScene& scene, double time_s) {
+  py::list list;
+  for (const PosedMesh& mesh : (*scene).true_meshes(time_s))
+    list.append(py::make_tuple(mesh.name, mesh.X_WO ? py::cast(mesh.X_WO->matrix()) : py::none()));
+  return list;
+}
+
+// Returns the depth, the object and the normal of the surface that each pixel of a camera without errors
+// sees.
+py::dict true_image(const PythonScene& scene, double time_s, const py::dict& given,
+                    const Eigen::MatrixXd& pose) {
+  const AloneInThread alone;
+  const CameraIntrinsics camera = camera_of(given);
+  if (pose.rows() != 4 || pose.cols() != 4) throw InputError("true_image: camera_pose", "expected 4 x 4");
+  RigidTransform X_WC = RigidTransform::Identity();
+  X_WC.matrix() = pose;
+  const RigidTransform X_CW = X_WC.inverse();
+  std::vector<RasterMesh> meshes;
+  for (const PosedMesh& mesh : (*scene).true_meshes(time_s)) {
+    meshes.push_back({mesh.vertices_O, {}, RigidTransform::Identity(), mesh.is_closed});
+    if (mesh.X_WO) meshes.back().triangles = mesh.triangles, meshes.back().X_CO = X_CW * *mesh.X_WO;
+  }
+  RasterImage image = depth_raster(camera, meshes);
+  std::vector<double> normals(3 * camera.pixels(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < image.mesh.size(); ++i) {
+    if (image.mesh[i] < 0) continue;
+    const RasterMesh& mesh = meshes[static_cast<std::size_t>(image.mesh[i])];
+    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(image.triangle[i])];
+    const Vec3& from = mesh.vertices_O[a];
+    const Vec3 n_C =
+        mesh.X_CO.linear() * (mesh.vertices_O[b] - from).cross(mesh.vertices_O[c] - from).normalized();
+    const Vec3 seen_C = n_C.dot(mesh.X_CO * from) > 0 ? Vec3(-n_C) : n_C;
+    std::copy(seen_C.data(), seen_C.data() + 3, &normals[3 * i]);
+  }
+  py::dict made;
+  made["depth"] = as_image(std::move(image.depth.z_m), camera);
+  made["object"] = as_image(std::move(image.mesh), camera);
+  made["normals"] = owning_array(std::move(normals), {camera.height, camera.width, 3});
+  return made;
+}
+
+double truth_uncertainty_m(const PythonScene& scene) {
+  const auto* recorded = dynamic_cast<const RecordedScene*>(&*scene);
+  const bool has_truth = recorded != nullptr && recorded->truth() != nullptr;
+  return has_truth ? recorded->truth()->uncertainty_m() : std::numeric_limits<double>::quiet_NaN();
+}
+
+struct PythonSensor {
+  DepthSensorSettings settings;
+  DepthSensor sensor;
+  explicit PythonSensor(const DepthSensorSettings& given)
+      : settings(given), sensor(given, NoiseKey{}, chosen_python_kernels()) {}
+
+  std::vector<py::array> measured(const Numbers2d& depth, const std::optional<Numbers2d>& cosine,
+                                  const std::vector<int>& frames) const {
+    const AloneInThread alone;
+    const CameraIntrinsics& camera = sensor.intrinsics();
+    const auto view = sensor.view({camera.width, camera.height, pixels_of(depth)},
+                                  cosine ? pixels_of(*cosine) : std::vector<double>(), {});
+    std::vector<py::array> images;
+    for (const int frame : frames) images.push_back(as_image(sensor.measured_depth(view, frame).z_m, camera));
+    return images;
+  }
+  py::dict triangulated() const {
+    if (settings.sensor == DepthSensorKind::simple)
+      throw InputError("sensor = simple", "does not triangulate");
+    const Triangulation t = triangulation(settings);
+    using namespace py::literals;
+    return py::dict("baseline_m"_a = t.baseline_m, "focal_px"_a = t.focal_px, "noise_px"_a = t.noise_px,
+                    "step_px"_a = t.step_px, "window_px"_a = t.window_px);
+  }
+};
+
+}  // namespace
+
+void bind_images(py::module_& module, CloudClass& cloud, SceneClass& scene) {
+  const auto left = py::arg("left"), top = py::arg("top"), width = py::arg("width"),
+             height = py::arg("height");
+  cloud
+      .def_property_readonly(
+          "camera", [](const PythonCloud& c) { return as_dict(layout_of(c).camera); },
+          "width, height, fx, fy, cx, cy, in pixels")
+      .def_property_readonly(
+          "camera_pose", [](const PythonCloud& c) { return Eigen::Matrix4d(layout_of(c).X_WC.matrix()); },
+          "4 x 4: camera frame to world frame")
+      .def_property_readonly(
+          "depth", [](const PythonCloud& c) { return as_image(depth_of(c).z_m, layout_of(c).camera); },
+          "m along the optical axis: rows x columns")
+      .def("window", &window_of, left, top, width, height, "A rectangle of pixels as an image of its own.")
+      .def(
+          "filtered", &filtered, left, top, width, height,
+          "A rectangle of pixels behind the depth pipeline, with settings of depth_pipeline: filtered points "
+          "with normals.")
+      .def(
+          "surface_distances",
+          [](const PythonCloud& c, const py::object& points, double radius_m) {
+            return for_points(points, "surface_distances", [&](const Vec3& p_W, std::size_t) {
+              return distance_to_measured(*c.shown, p_W, radius_m);
+            });
+          },
+          py::arg("points"), py::arg("radius_m"),
+          "Distances of points from the surface that the image shows: from planes through the pixels within "
+          "radius_m.")
+      .def("rule_weights", &rule_weights, py::arg("rule"),
+           "0 to 1 for each point: how a fixture rule, a dict of the section fixtures, selects it.");
+  scene
+      .def("signed_distances", &signed_distances, py::arg("points"), py::arg("time_s"),
+           "signed_distance() of many points, at one time or at one for each.")
+      .def(
+          "true_objects", &true_objects, py::arg("time_s"),
+          "(name, pose) of the meshes that are the true surface; poses are 4 x 4, to the world frame, or None.")
+      .def("true_image", &true_image, py::arg("time_s"), py::arg("camera"), py::arg("camera_pose"),
+           "What a camera without errors sees of true_objects(): images of depth (m), object (-1: none) and "
+           "normals (camera frame).")
+      .def_property_readonly("truth_uncertainty_m", &truth_uncertainty_m, "of a recording; NaN: not stated");
+  py::class_<PythonSensor>(module, "DepthSensor",
+                           "A simulated depth sensor, with the settings of the scenario mesh-scene about it.")
+      .def(py::init([](const py::kwargs& settings) {
+        return PythonSensor(settings_of<DepthSensorSettings>(settings, "sensor"));
+      }))
+      .def_property_readonly("camera", [](const PythonSensor& s) { return as_dict(s.sensor.intrinsics()); })
+      .def_property_readonly("triangulation", &PythonSensor::triangulated)
+      .def(
+          "measured", &PythonSensor::measured, py::arg("depth"), py::arg("cosine") = py::none(),
+          py::arg("frames") = std::vector<int>{0},
+          "The images of these frames, of a scene at rest: an image of true depths (m), and one of the cosines "
+          "between ray and normal (None: 1).");
+}
+
+namespace {
+
+// A renderer of the catalog, and what processes its frames.
+class BuiltRenderer {
+ public:
+  explicit BuiltRenderer(const Experiment& experiment)
+      : renderer_(experiment.build_renderer(chosen_python_kernels())),
+        processing_(experiment.build_processing(chosen_python_kernels())) {}
+
+  void on_frame(const PythonCloud& cloud, double captured_s) {
+    const py::gil_scoped_release without_lock;
+    const AloneInThread alone;
+    Frame frame{next_++, captured_s, captured_s, nullptr};
+    processing_.fill(frame, *cloud.shown, processing_.fixtures.off());
+    processing_.needs.check(frame);
+    renderer_->on_frame(frame);
+  }
+  PythonOutput step(const py::object& given, double time_s) {
+    const DeviceState device =
+        py::isinstance<DeviceState>(given)
+            ? given.cast<DeviceState>()
+            : DeviceState{.position_W = vector_of(given, [] { return "step: device"; })};
+    const py::gil_scoped_release without_lock;
+    const AloneInThread alone;
+    PythonOutput made;
+    made.output = renderer_->step(device, time_s), made.has_proxy = true;
+    return made;
+  }
+
+ private:
+  std::unique_ptr<Renderer> renderer_;
+  FrameProcessing processing_;
+  int next_ = 0;
+};
+
+}  // namespace
+
+void bind_built_renderer(py::module_& module) {
+  py::class_<BuiltRenderer>(module, "BuiltRenderer", "A renderer of the catalog in steps, see renderer().")
+      .def(py::init([](const std::string& subject, const std::optional<std::string>& text,
+                       const std::vector<std::string>& overrides) {
+             return BuiltRenderer(text ? Experiment::from_json(*text, subject, overrides)
+                                       : Experiment::load(subject, overrides));
+           }),
+           py::arg("subject"), py::arg("text"), py::arg("overrides"))
+      .def("on_frame", &BuiltRenderer::on_frame, py::arg("cloud"), py::arg("captured_s"),
+           "A new frame, which the depth pipeline and the fixtures of the experiment process before.")
+      .def("step", &BuiltRenderer::step, py::arg("device"), py::arg("time_s"),
+           "One tick for a Device or a position: an Output.");
+}
+
+}  // namespace remote_touch
