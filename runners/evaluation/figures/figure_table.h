@@ -47,14 +47,3 @@ FIGURE("7.5-guidance", "where guidance leads the hand, over its stiffness, with 
        figure_7_5_guidance, 18)
 FIGURE("7.5-recorded", "the task of 7.5 on a recorded desk: from an organ model to a dragon",
        figure_7_5_recorded, 7)
-FIGURE("sensor-models-recorded",
-       "simulated depth sensors against recordings of real ones: noise, steps of depth, holes at edges",
-       figure_sensor_models_recorded, 2.5)
-FIGURE(
-    "camera-error",
-    "error of the renderer and of the camera on recordings with true objects, over filters of depth images",
-    figure_camera_error, 20, false, 1, true)
-FIGURE("handshake", "a hand that shakes before a depth camera is pressed, and shakes a passive hand (1.1)",
-       figure_handshake, 2.5)
-FIGURE("handshake-human", "the figure handshake with the mesh of a human hand", figure_handshake_human, 2.5)
-FIGURE("turbidity", "two valves in turbid water found by hue: precision and recall", figure_turbidity, 1.4)

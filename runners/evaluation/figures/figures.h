@@ -14,7 +14,6 @@ struct FigureEntry {
   double expected_s;             // time on one thread, for the order of figures and the time left
   bool has_map = false;          // the map needs most of that time
   int quick_coarse = 1;          // value of coarse for a quick figure
-  bool takes_recording = false;  // takes settings of its scenario, such as scenario.path=DIR
 };
 std::span<const FigureEntry> figures();
 

@@ -53,7 +53,6 @@ struct FigureRequest {
   std::string folder;
   int coarse = 1;      // uses every coarse-th value of a map's axes
   bool quick = false;  // uses coarse maps where a map takes minutes
-  std::vector<std::string> overrides;
 };
 
 // Returns each requested figure once, the quickest first.
@@ -61,17 +60,15 @@ std::vector<FigureRun> chosen_figures(const FigureRequest& request) {
   for (const std::string& name : request.names) {
     const auto is_named = [&](const FigureEntry& entry) { return name == "all" || name == entry.name; };
     if (std::none_of(figures().begin(), figures().end(), is_named))
-      throw InputError("figure " + name, "unknown: expected a name from `remote-touch list`");
+      throw InputError("figure " + name,
+                       "unknown: expected a name from `remote-touch list`; scripts/studies makes studies");
   }
   std::vector<FigureRun> chosen;
   for (const FigureEntry& entry : figures()) {
     const auto names_it = [&](const std::string& name) { return name == "all" || name == entry.name; };
     const int coarse = request.quick ? std::max(request.coarse, entry.quick_coarse) : request.coarse;
     if (std::none_of(request.names.begin(), request.names.end(), names_it)) continue;
-    if (!request.overrides.empty() && !entry.takes_recording)
-      throw InputError("figure " + std::string(entry.name) + " --set " + request.overrides.front(),
-                       "this figure has no settings: expected camera-error");
-    chosen.push_back({&entry, coarse, request.overrides});
+    chosen.push_back({&entry, coarse});
   }
   return quickest_first(chosen);
 }
@@ -132,7 +129,7 @@ void make_figures(const CommandLine& line, const std::vector<FigureRun>& runs,
     jobs.emplace_back([&, i] {
       try {
         if (line.stop && *line.stop) throw Interrupted{};
-        FigureContext context(*line.kernels, line.stop, runs[i].coarse, pieces, runs[i].overrides);
+        FigureContext context(*line.kernels, line.stop, runs[i].coarse, pieces);
         Figure figure = make(*runs[i].entry, context);
         const std::lock_guard lock(one_at_a_time);
         finish(i, context, std::move(figure));
@@ -186,7 +183,7 @@ FigureFolder::~FigureFolder() {
 
 void FigureFolder::finish(std::size_t run, const FigureContext& context, Figure figure) {
   context.require_unchanged_inputs();
-  Recipe recipe{"figure", figure.name, runs_[run].overrides};
+  Recipe recipe{"figure", figure.name};
   if (context.made_runs_of_maps() < context.runs_of_maps()) {
     figure.caption += coarse_text(context.made_runs_of_maps(), context.runs_of_maps(), runs_[run].coarse);
     for (Claim& claim : figure.claims)
@@ -252,9 +249,6 @@ void add_figure(Subcommands& commands) {
                    command_figure);
   command->add_option("names", figure->names, "names from `remote-touch list`, or all")->required();
   command->add_option("-o,--output", figure->folder, "the folder to write into")->required();
-  add_set(
-      command, figure->overrides,
-      "scenario.path=DIR: for camera-error, a recording with true objects; also other settings of the scenario");
   command
       ->add_option("--coarse", figure->coarse,
                    "maps: use only every Nth value of each axis; claims about a whole map then stay open")

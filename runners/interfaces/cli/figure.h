@@ -18,8 +18,7 @@ namespace remote_touch {
 
 struct FigureRun {
   const FigureEntry* entry;
-  int coarse = 1;                           // uses every coarse-th value of the axes of its maps
-  std::vector<std::string> overrides = {};  // settings, for a figure that takes a recording
+  int coarse = 1;  // uses every coarse-th value of the axes of its maps
 
   double expected_s() const {
     return entry->has_map ? entry->expected_s / (coarse * coarse) : entry->expected_s;

@@ -97,7 +97,7 @@ Column column_of(const py::handle& tuple) {
   if (py::isinstance<py::list>(values))
     column.values = values.cast<std::vector<std::string>>();
   else if (!take_numbers<double>(values, column) && !take_numbers<std::int32_t>(values, column) &&
-      !take_numbers<std::uint64_t>(values, column))
+           !take_numbers<std::uint64_t>(values, column))
     throw InputError("column " + column.name, "expected float64, int32 or uint64 numbers");
   column.value_names = parts[4].cast<std::vector<std::string>>();
   return column;

@@ -23,15 +23,10 @@ inline constexpr double kContactRadius_m = 0.005;
 // number of threads.
 class FigureContext {
  public:
-  // coarse: uses every coarse-th value of the axes of maps, for a preview; 1: all. overrides: settings of the
-  // user, for a figure that takes them.
+  // coarse: uses every coarse-th value of the axes of maps, for a preview; 1: all.
   FigureContext(const Kernels& kernels, const std::atomic<bool>* stop, int coarse = 1,
-                SideBySide runs = side_by_side, std::vector<std::string> overrides = {})
-      : kernels_(kernels),
-        stop_(stop),
-        coarse_(coarse),
-        runs_(std::move(runs)),
-        overrides_(std::move(overrides)) {}
+                SideBySide runs = side_by_side)
+      : kernels_(kernels), stop_(stop), coarse_(coarse), runs_(std::move(runs)) {}
 
   Trace run(const Experiment& experiment);
   // Records an experiment whose frames are used without a run.
@@ -40,8 +35,6 @@ class FigureContext {
     inputs_.add(experiment.inputs());
   }
   const Kernels& kernels() const { return kernels_; }
-  // Settings "key=value" of the user; empty unless FigureEntry::takes_recording is set.
-  const std::vector<std::string>& overrides() const { return overrides_; }
   // Returns work(i) for each i below count, in parallel. For work that is not a run; uses() records what it
   // reads.
   template <class Work>
@@ -100,7 +93,6 @@ class FigureContext {
   const std::atomic<bool>* stop_;
   int coarse_;
   SideBySide runs_;
-  std::vector<std::string> overrides_;
   std::size_t runs_of_maps_ = 0, made_runs_of_maps_ = 0;
 };
 
