@@ -41,30 +41,6 @@ void bind_slaves(py::module_& theory) {
              "The largest force on a mass that hits a spring.");
 }
 
-// The arguments of a PositionForceLoop with their defaults, for each function of one.
-template <class Of>
-void def_of_loop(py::module_& theory, const char* name, Of of, const char* text) {
-  const PositionForceLoop loop;
-  theory.def(
-      name,
-      [of](double mass_kg, double stiffness_N_per_m, double damping_Ns_per_m, double slave_mass_kg,
-           double slave_natural_frequency_hz, double slave_damping_ratio,
-           double environment_stiffness_N_per_m, double environment_damping_Ns_per_m, double feedback_gain,
-           double round_trip_s) {
-        return of(
-            {mass_kg, stiffness_N_per_m, damping_Ns_per_m, slave_mass_kg, slave_natural_frequency_hz,
-             slave_damping_ratio, environment_stiffness_N_per_m, environment_damping_Ns_per_m, feedback_gain},
-            round_trip_s);
-      },
-      py::kw_only(), py::arg("mass_kg") = loop.mass_kg, py::arg("stiffness_N_per_m") = loop.stiffness_N_per_m,
-      py::arg("damping_Ns_per_m") = loop.damping_Ns_per_m, py::arg("slave_mass_kg") = loop.slave_mass_kg,
-      py::arg("slave_natural_frequency_hz") = loop.slave_natural_frequency_hz,
-      py::arg("slave_damping_ratio") = loop.slave_damping_ratio,
-      py::arg("environment_stiffness_N_per_m") = loop.environment_stiffness_N_per_m,
-      py::arg("environment_damping_Ns_per_m") = loop.environment_damping_Ns_per_m,
-      py::arg("feedback_gain") = loop.feedback_gain, py::arg("round_trip_s") = 0.0, text);
-}
-
 template <class Of>
 void def_of_wall(py::module_& theory, const char* name, Of of, const char* text) {
   const SampledWall wall;
@@ -82,19 +58,26 @@ void def_of_wall(py::module_& theory, const char* name, Of of, const char* text)
 }
 
 void bind_loops(py::module_& theory) {
-  def_of_loop(
-      theory, "delay_onset",
-      [](const PositionForceLoop& loop, double) {
-        const DelayOnset onset = delay_onset(loop);
+  const PositionForceLoop loop;
+  theory.def(
+      "delay_onset",
+      [](double mass_kg, double stiffness_N_per_m, double damping_Ns_per_m, double slave_mass_kg,
+         double slave_natural_frequency_hz, double slave_damping_ratio, double environment_stiffness_N_per_m,
+         double environment_damping_Ns_per_m, double feedback_gain) {
+        const DelayOnset onset =
+            delay_onset({mass_kg, stiffness_N_per_m, damping_Ns_per_m, slave_mass_kg,
+                         slave_natural_frequency_hz, slave_damping_ratio, environment_stiffness_N_per_m,
+                         environment_damping_Ns_per_m, feedback_gain});
         return py::make_tuple(onset.round_trip_s, onset.frequency_hz);
       },
-      "The least round trip (s) for which the loop is not stable, and the frequency (Hz) there.");
-  def_of_loop(
-      theory, "max_environment_stiffness",
-      [](const PositionForceLoop& loop, double round_trip_s) {
-        return max_environment_stiffness(loop, round_trip_s);
-      },
-      "The stiffness (N/m) of the environment up to which the loop is stable with every shorter round trip.");
+      py::kw_only(), py::arg("mass_kg") = loop.mass_kg, py::arg("stiffness_N_per_m") = loop.stiffness_N_per_m,
+      py::arg("damping_Ns_per_m") = loop.damping_Ns_per_m, py::arg("slave_mass_kg") = loop.slave_mass_kg,
+      py::arg("slave_natural_frequency_hz") = loop.slave_natural_frequency_hz,
+      py::arg("slave_damping_ratio") = loop.slave_damping_ratio,
+      py::arg("environment_stiffness_N_per_m") = loop.environment_stiffness_N_per_m,
+      py::arg("environment_damping_Ns_per_m") = loop.environment_damping_Ns_per_m,
+      py::arg("feedback_gain") = loop.feedback_gain,
+      "The least round trip (s) for which a position-force loop is not stable, and the frequency (Hz) there.");
   theory.def("held_round_trip", &held_round_trip, py::arg("round_trip_s"), py::arg("tick_s"),
              py::arg("holds"), "The round trip without holds that has the same phase.");
   def_of_wall(theory, "wall_law_N_per_m", &wall_law_N_per_m,
@@ -125,8 +108,6 @@ void bind_tools(py::module_& theory) {
       },
       py::arg("radius_m"), py::arg("slope_rad"), py::arg("place_m"), stiffness, radius,
       "Force and torque on the hand that holds a ball in a groove.");
-  theory.def("stop_angle_rad", &stop_angle_rad, py::arg("a_m"), py::arg("b_m"), py::arg("w_m"),
-             "The angle at which two corners of a bar touch the sides of a slot.");
   theory.def(
       "bar_in_slot",
       [](double a_m, double b_m, double w_m, double angle_rad, double k, double r) {
@@ -162,20 +143,12 @@ void bind_tools(py::module_& theory) {
 }
 
 void bind_bounds(py::module_& theory) {
-  theory.def("ball_closing", &ball_closing, py::arg("heights"), py::arg("spacing"), py::arg("radius"),
-             "The surface that a ball can touch over a profile.");
   theory.def(
       "critical_acceleration",
       [](double r1_m, double frame_rate_hz) {
         return critical_acceleration({r1_m, frame_rate_hz, 0, 1});
       },
       py::arg("r1_m"), py::arg("frame_rate_hz"), "(4.14): r_1 f_c^2, m/s^2.");
-  theory.def(
-      "printed_thickness", [](double sigma_m) { return printed_thickness().at(sigma_m); }, py::arg("sigma_m"),
-      "(4.23), m.");
-  theory.def(
-      "printed_normal_error", [](double sigma_m) { return printed_normal_error().at(sigma_m); },
-      py::arg("sigma_m"), "(4.24).");
   theory.def(
       "bound_acceleration",
       [](double r1_m, double hz, double v0, int updates, double thickness_m, double normal_error) {

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import PRESS, ROOT, STUDY_PAGE
-from remote_touch import InputError, studies
+from remote_touch import InputError, studies, theory
 from remote_touch.studies import Rows, line, product, study
 
 
@@ -100,6 +100,21 @@ def test_rows():
     assert [(cell.x, cell.y) for cell in product({"x": [1, 2], "y": [3, 4]})] == [(1, 3), (1, 4), (2, 3), (2, 4)]
     with pytest.raises(AttributeError, match="no column 'c': there is a, b"):
         rows.c
+
+
+def test_theory_and_estimates():
+    assert theory.critical_acceleration(0.00499, 30) == pytest.approx(4.491)  # (4.14)
+    acceleration = theory.bound_acceleration(r1_m=0.00499, frame_rate_hz=30, start_velocity_m_per_s=0.1, updates=10,
+                                             thickness_m=0.002, normal_error=0.05)
+    assert 0.00499 + 0.002 == pytest.approx(acceleration / 900 + (0.1 + 9 * acceleration / 30) / 30 * 0.05)  # (4.25)
+    assert theory.exact_interval(0, 10) == pytest.approx((0, 1 - 0.025 ** 0.1))
+    assert theory.estimated_fraction(5, 5)[0] == 0.5 and theory.estimated_quantile(range(1, 100), 0.5)[0] == 50
+    value, low, high = theory.estimated_mean(np.linspace(0, 1, 11))
+    assert value == pytest.approx(0.5) and low < 0.5 < high and low + high == pytest.approx(1)
+    fit = theory.fit_polynomial([0, 1, 2, 3], [1, 3, 5, 7], [0, 1])
+    assert fit.at(10) == pytest.approx(21) and fit.half_width(10) == pytest.approx(0, abs=1e-9)
+    assert theory.isotonic_falling([3, 1, 2], [1, 1, 1]) == [3, 1.5, 1.5] and theory.crossing([0, 1], [1, 0], 0.25) == 0.75
+    assert {"impact_force_N", "delay_onset"} < {*theory.__all__}
 
 
 def refusal(folder, make, **options):
