@@ -7,8 +7,8 @@ import os
 import sys
 
 import numpy as np
-from true_contacts import FARTHEST_M, PIXEL_STEP, Toucher, TruthFrame, contact_errors, contact_points, pressing_experiment, rotated, \
-    touched_points, upper_quantile, windows_around
+from true_contacts import FARTHEST_M, PIXEL_STEP, Toucher, TruthFrame, contact_errors, contact_points, pressing_experiment, \
+    rotated, touched_points, upper_quantile, windows_around
 
 import remote_touch as rt
 from remote_touch.studies import band, dots, line, main, study
@@ -21,8 +21,8 @@ ASSUMED_UNCERTAINTY_M = 0.003  # if nothing is stated
 
 @dataclasses.dataclass(frozen=True)
 class Recording:
-    """uncertainty_m: of its truth, by the description of the recording; its truth.json may state another. objects: the largest number
-    that are touched."""
+    """uncertainty_m: of its truth, by the description of the recording; its truth.json may state another. objects: the largest
+    number that are touched."""
     path: str
     title: str
     uncertainty_m: float
@@ -38,8 +38,8 @@ RENDERERS = (Toucher("proxy", {"name": "proxy"}, PROXY_REST_M), Toucher("tracked
 
 @dataclasses.dataclass(frozen=True)
 class Setting:
-    """What filters depth images before the proxy touches their points: window_px, the width of the spatial filter (7.1), 1 if there is
-    none; sigma_f_m of (7.2); or average of the renderer averaged-proxy, which filters over time."""
+    """What filters depth images before the proxy touches their points: window_px, the width of the spatial filter (7.1), 1 if there
+    is none; sigma_f_m of (7.2); or average of the renderer averaged-proxy, which filters over time."""
     name: str
     window_px: int = 1
     sigma_f_m: float = SIGMA_F_M
@@ -79,8 +79,8 @@ def known_frames(values):
 
 
 def frame_noise_m(values):
-    """The rms change from one frame to the next, divided by the square root of 2: the standard deviation of errors that are independent
-    in each frame."""
+    """The rms change from one frame to the next, divided by the square root of 2: the standard deviation of errors that are
+    independent in each frame."""
     return rms(np.diff(values)) / math.sqrt(2)
 
 
@@ -146,8 +146,8 @@ def judged_objects(s, recording, number, settings):
     frames = min(scene.frame_count, MOST_FRAMES)
     points = touched_points(scene, frames // 2, recording.objects)
     if not points:
-        raise rt.InputError(f"{scenario['path']}: no true object can be touched in frame {frames // 2}: expected a measured surface "
-                            "without holes and edges within 10 mm")
+        raise rt.InputError(f"{scenario['path']}: no true object can be touched in frame {frames // 2}: expected a measured "
+                            "surface without holes and edges within 10 mm")
     captured_s = np.array([scene.captured_s(frame) for frame in range(frames)])
     windows = windows_around(points, scene, frames)
     contacts = all_contact_errors(s, scene, windows, scenario, captured_s)
@@ -158,7 +158,8 @@ def judged_objects(s, recording, number, settings):
         common = ~np.isnan([each.total for each in of_settings]).any(axis=0)
         yield TouchedObject(f"recording_{number}_object_{i + 1}", recording.title + point.name,
                             recording.uncertainty_m if math.isnan(stated_m) else stated_m, captured_s, renderers,
-                            [each.only(common) for each in of_settings], [known_frames(each.total) for each in of_settings], of_points[i])
+                            [each.only(common) for each in of_settings], [known_frames(each.total) for each in of_settings],
+                            of_points[i])
 
 
 def all_contact_errors(s, scene, windows, scenario, captured_s):
@@ -175,9 +176,9 @@ def all_contact_errors(s, scene, windows, scenario, captured_s):
 
 
 def point_errors(scene, objects, frames, radius_m):
-    """The errors of the points and normals that the spatial settings make of every tenth frame, over the pixels that show one of the
-    objects, in every third row and column. A pixel belongs to the object that the camera would see there without errors, and is used
-    if its measured depth is near the true one, and every setting has a point there with a distance to both surfaces."""
+    """The errors of the points and normals that the spatial settings make of every tenth frame, over the pixels that show one of
+    the objects, in every third row and column. A pixel belongs to the object that the camera would see there without errors, and is
+    used if its measured depth is near the true one, and every setting has a point there with a distance to both surfaces."""
     samples = [frame_samples(scene, TruthFrame(scene, number), objects, radius_m) for number in range(0, frames, POINT_FRAME_STEP)]
     shown, values = (np.concatenate(of, axis=-1) for of in zip(*samples))  # values: setting, (measured, true, angle), pixel
     known = ~np.isnan(values[:, :2]).any(axis=(0, 1))
@@ -185,8 +186,8 @@ def point_errors(scene, objects, frames, radius_m):
 
 
 def frame_samples(scene, frame, objects, radius_m):
-    """The object of each pixel of a frame, and for each setting the distances of its point to the measured and the true surface, and
-    the angle between its normal and the true one. Only the rectangle around the pixels is processed."""
+    """The object of each pixel of a frame, and for each setting the distances of its point to the measured and the true surface,
+    and the angle between its normal and the true one. Only the rectangle around the pixels is processed."""
     rows, columns = (at[::PIXEL_STEP, ::PIXEL_STEP].ravel() for at in np.indices(frame.object.shape))
     near = np.abs(frame.depth - frame.exact_depth)[rows, columns] <= FARTHEST_M  # false for NaN
     chosen = near & np.isin(frame.object[rows, columns], objects)
@@ -213,7 +214,8 @@ def angles_deg(a, b):
 
 def add_object(s, of, row):
     """Tables and a row of panels: the errors over the frames for each renderer, and over the window of the filter."""
-    uncertainty_m, frames, windows, averages = of.uncertainty_m, *(f"{of.table}_{what}" for what in ("frames", "windows", "averages"))
+    frames, windows, averages = (f"{of.table}_{what}" for what in ("frames", "windows", "averages"))
+    uncertainty_m = of.uncertainty_m
     count = len(of.captured_s)
     columns = {"frame": (np.arange(count), "1", "frame of the recording"), "time": (of.captured_s, "s", "time of capture"),
                "truth_low": (np.full(count, -uncertainty_m), "m", "uncertainty of the truth, towards the object"),
@@ -221,7 +223,8 @@ def add_object(s, of, row):
     largest_m = max(uncertainty_m, *(np.nanmax(np.abs([errors.renderer, errors.camera]), initial=0) for errors in of.renderers))
     for column, (renderer, errors) in enumerate(zip(RENDERERS, of.renderers)):
         name = renderer.name.replace(" ", "_")
-        columns[f"{name}_renderer"] = errors.renderer, "m", f"{renderer.name}: height of the contact point over the measured surface"
+        columns[f"{name}_renderer"] = (errors.renderer, "m",
+                                       f"{renderer.name}: height of the contact point over the measured surface")
         columns[f"{name}_camera"] = (errors.camera, "m",
                                      f"{renderer.name}: height of the measured surface over the true one, at the contact point")
         s.panel(f"{of.title}: {renderer.name}", "frame", "error (m)", [
@@ -233,7 +236,8 @@ def add_object(s, of, row):
     add_windows(s, of, windows, averages)
     s.panel(f"{of.title}: filters", "filter window (px)", "rms error of proxy (m)", [
         band(windows, "window", "to_true_low", "true surface, uncertainty", "to_true_high"),
-        line(windows, "window", "to_true", "to the true surface"), line(windows, "window", "to_measured", "to the measured surface"),
+        line(windows, "window", "to_true", "to the true surface"),
+        line(windows, "window", "to_measured", "to the measured surface"),
         dots(averages, "window", "to_true", "filters over time, to the true surface"),
         dots(averages, "window", "to_measured", "filters over time, to the measured surface")], at=(row, len(RENDERERS)))
 
@@ -251,7 +255,8 @@ def add_windows(s, of, windows, averages):
         return {"window": ([SETTINGS[i].window_px for i in settings], "1", f"width of the {spatial}filter, pixels; 1: no filter"),
                 "to_measured": ([rms(of.settings[i].renderer) for i in settings], "m",
                                 "rms height of the contact point over the measured surface"),
-                "to_true": ([rms(of.settings[i].total) for i in settings], "m", "rms height of the contact point over the true surface")}
+                "to_true": ([rms(of.settings[i].total) for i in settings], "m",
+                            "rms height of the contact point over the true surface")}
     low_m, high_m = np.transpose([rms_range_m(of.settings[i], of.uncertainty_m) for i in BY_WINDOW])
     s.table(windows, f"{of.title}: the proxy behind spatial filters", {
         **heights(BY_WINDOW), "to_true_low": (low_m, "m", "its smallest value if the truth is moved by up to its uncertainty"),
@@ -260,7 +265,8 @@ def add_windows(s, of, windows, averages):
 
 
 def add_comparisons(s, objects, row):
-    """Tables over all objects: the renderers, the settings, and the best of them; and a row of panels with the errors of all points."""
+    """Tables over all objects: the renderers, the settings, and the best of them; and a row of panels with the errors of all
+    points."""
     of_renderers = [(of, name.name, errors) for of in objects for name, errors in zip(RENDERERS, of.renderers)]
     all_errors = [errors for _, _, errors in of_renderers]
     s.table("renderers", "errors over the frames, by renderer",
@@ -272,12 +278,15 @@ def add_comparisons(s, objects, row):
             camera_rms=([rms(e.camera) for e in all_errors], "m", "rms height of the measured surface over the true one"),
             camera_mean=([mean(e.camera) for e in all_errors], "m", "its mean"),
             total_rms=([rms(e.total) for e in all_errors], "m", "rms height of the contact point over the true surface"),
-            renderer_noise=([frame_noise_m(e.renderer) for e in all_errors], "m", "rms change of the renderer's error in a frame / sqrt(2)"),
-            camera_noise=([frame_noise_m(e.camera) for e in all_errors], "m", "rms change of the camera's error in a frame / sqrt(2)"),
+            renderer_noise=([frame_noise_m(e.renderer) for e in all_errors], "m",
+                            "rms change of the renderer's error in a frame / sqrt(2)"),
+            camera_noise=([frame_noise_m(e.camera) for e in all_errors], "m",
+                          "rms change of the camera's error in a frame / sqrt(2)"),
             uncertainty=([of.uncertainty_m for of, _, _ in of_renderers], "m", "uncertainty of the truth"))
     add_settings(s, objects)
     add_best(s, objects)
-    quantities = {"to_measured": ("m", "rms distance to the measured surface"), "to_true": ("m", "rms distance to the true surface"),
+    quantities = {"to_measured": ("m", "rms distance to the measured surface"),
+                  "to_true": ("m", "rms distance to the true surface"),
                   "normal": ("deg", "median angle between normal and true normal")}
     s.table("points", "all points of the objects, behind spatial filters", {
         "window": ([SETTINGS[i].window_px for i in BY_WINDOW], "1", "width of the filter, pixels; 1: no filter"),
@@ -326,7 +335,8 @@ def add_best(s, objects):
                                           "the same if the truth is farther inwards by its uncertainty"),
               "points_by_measured": (lambda of: of.points_m("to_measured"), "all points of the object, by the measured surface"),
               "points_by_true": (lambda of: of.points_m("to_true"), "all points of the object, by the true surface")}
-    s.table("best", "the spatial filter with the smallest rms error", object=([of.title for of in objects], "1", "recording and object"),
+    s.table("best", "the spatial filter with the smallest rms error",
+            object=([of.title for of in objects], "1", "recording and object"),
             **{name: ([SETTINGS[best_of(value(of))].name for of in objects], "1", text) for name, (value, text) in values.items()})
 
 
@@ -336,8 +346,8 @@ def add_recording_claims(s, objects):
     for of in objects:
         if of.uncertainty_m == 0:
             for what in ("renderer", "camera"):
-                claims.at_most(f"{of.title}: the {what} errs by less than the steps of the stored depth: largest rms error of three "
-                               "renderers", np.max([rms(getattr(errors, what)) for errors in of.renderers]), 0.0006, "m")
+                claims.at_most(f"{of.title}: the {what} errs by less than the steps of the stored depth: largest rms error of "
+                               "three renderers", np.max([rms(getattr(errors, what)) for errors in of.renderers]), 0.0006, "m")
         else:
             claims.at_least(f"{of.title}: the camera errs much more than the renderer: smallest ratio of their rms errors of three "
                             "renderers", np.min([rms(errors.camera) / rms(errors.renderer) for errors in of.renderers]), 5, "ratio")
@@ -345,12 +355,12 @@ def add_recording_claims(s, objects):
     by_measured, by_true = (np.transpose([of.points_m(surface) for of in measured]) for surface in ("to_measured", "to_true"))
     claims.at_most("the best spatial filter brings the points near to the measured surface: largest rms distance of two objects, "
                    "divided by the one without a filter", (by_measured.min(axis=0) / by_measured[0]).max(), 0.3, "ratio")
-    claims.at_least("no spatial filter brings the points nearer to the true surface: smallest rms distance of two objects, divided by "
-                    "the one without a filter", (by_true.min(axis=0) / by_true[0]).min(), 0.95, "ratio")
-    claims.at_most("the default filter is nearly the best by the true surface: largest rms distance of two objects, divided by the one "
-                   "of the best setting", (by_true[DEFAULT] / by_true.min(axis=0)).max(), 1.02, "ratio")
-    claims.at_least("while the camera moves, the filter over time does not bring the contact point nearer to the true surface: smallest "
-                    "rms height of two objects, divided by the one without a filter",
+    claims.at_least("no spatial filter brings the points nearer to the true surface: smallest rms distance of two objects, divided "
+                    "by the one without a filter", (by_true.min(axis=0) / by_true[0]).min(), 0.95, "ratio")
+    claims.at_most("the default filter is nearly the best by the true surface: largest rms distance of two objects, divided by the "
+                   "one of the best setting", (by_true[DEFAULT] / by_true.min(axis=0)).max(), 1.02, "ratio")
+    claims.at_least("while the camera moves, the filter over time does not bring the contact point nearer to the true surface: "
+                    "smallest rms height of two objects, divided by the one without a filter",
                     np.min([rms(of.settings[OVER_TIME[0]].total) / rms(of.settings[0].total) for of in measured]), 0.95, "ratio")
 
 
@@ -358,18 +368,18 @@ def add_known_checks(s, objects):
     checks = s.claims(set_up=True)
     for of in objects:
         for renderer, errors in zip(RENDERERS, of.renderers):
-            checks.at_least(f"{of.title}, {renderer.name}: both errors are known in most frames, of which a hand presses four fifths: "
-                            "fraction of frames", known_frames(errors.total) / len(of.captured_s), 0.5, "fraction")
+            checks.at_least(f"{of.title}, {renderer.name}: both errors are known in most frames, of which a hand presses four "
+                            "fifths: fraction of frames", known_frames(errors.total) / len(of.captured_s), 0.5, "fraction")
 
 
-CAPTION = """with true objects: meshes, and their pose in each frame. A hand holds the middle of an object by its true pose, 10 mm behind
-    the true surface, and comes again every 15 frames. The error of the renderer is the height of the contact point over the measured
-    surface (a plane through the pixels within 6 mm); the error of the camera is the height of the measured surface over the true one at
-    the same point. Their sum is the height over the true surface. Each frame is shown by its last tick; gaps are approaches, and frames
-    in which one of the surfaces is unknown there. Band: the uncertainty of the truth, 3 mm if nothing else is stated. Right: the proxy
-    behind the spatial filter (7.1) of the depth pipeline, over the width of its window with sigma_f = 25 mm, over the frames that all
-    settings know; dots at 1: filters over time without it. Bottom: the same filters, for every point of the objects in every tenth
-    frame."""
+CAPTION = """with true objects: meshes, and their pose in each frame. A hand holds the middle of an object by its true pose, 10 mm
+    behind the true surface, and comes again every 15 frames. The error of the renderer is the height of the contact point over the
+    measured surface (a plane through the pixels within 6 mm); the error of the camera is the height of the measured surface over
+    the true one at the same point. Their sum is the height over the true surface. Each frame is shown by its last tick; gaps are
+    approaches, and frames in which one of the surfaces is unknown there. Band: the uncertainty of the truth, 3 mm if nothing else
+    is stated. Right: the proxy behind the spatial filter (7.1) of the depth pipeline, over the width of its window with sigma_f =
+    25 mm, over the frames that all settings know; dots at 1: filters over time without it. Bottom: the same filters, for every
+    point of the objects in every tenth frame."""
 
 
 def settings_of(assignments):

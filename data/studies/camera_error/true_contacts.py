@@ -24,8 +24,8 @@ HAPTIC_RATE_HZ, SAME_TIME_S = 1000, 5e-7
 
 
 def dot(a, b):
-    """Of vectors with three elements. Here and in moved(), sums have the order of the program, because a tool amplifies the rounding
-    errors of its path."""
+    """Of vectors with three elements. Here and in moved(), sums have the order of the program, because a tool amplifies the
+    rounding errors of its path."""
     x, y, z = np.moveaxis(a * b, -1, 0)
     return x + (y + z)
 
@@ -69,8 +69,8 @@ class TruthFrame:
         return int(np.clip(focal_px * length_m / depth_m, 1, max(self.depth.shape)))
 
     def supported_depth(self, row, column):
-        """The median depth of the rectangle around a pixel that extends by MARGIN_M to each side; NaN if it has a hole or an edge, or
-        reaches the border of the image."""
+        """The median depth of the rectangle around a pixel that extends by MARGIN_M to each side; NaN if it has a hole or an edge,
+        or reaches the border of the image."""
         z = self.depth[row, column]
         if not z > 0:
             return math.nan
@@ -97,8 +97,8 @@ class TruthFrame:
 
 @dataclasses.dataclass
 class TouchedPoint:
-    """A point of a true object, in the middle of the part that one frame shows. The hand comes along outwards: the normal of the mesh
-    where it is flat around the point, else the direction to the camera in that frame."""
+    """A point of a true object, in the middle of the part that one frame shows. The hand comes along outwards: the normal of the
+    mesh where it is flat around the point, else the direction to the camera in that frame."""
     name: str
     index: int  # of the object in Scene.true_objects()
     p_O: np.ndarray
@@ -106,7 +106,8 @@ class TouchedPoint:
 
 
 def middle_of(frame, rows, columns):
-    """The pixel nearest to the middle of these among those that can be touched, flat ones first, and whether it is flat; or None."""
+    """The pixel nearest to the middle of these among those that can be touched, flat ones first, and whether it is flat; or
+    None."""
     points_C = frame.true_points_C(rows, columns)
     facing = -dot(points_C, frame.normals_C[rows, columns]) / np.linalg.norm(points_C, axis=1) >= MIN_FACING
     order = np.argsort((rows - rows.mean())**2 + (columns - columns.mean())**2, kind="stable")
@@ -140,9 +141,9 @@ def touched_points(scene, frame_number, most):
 
 
 class Window:
-    """The pixels around a touched point: the rectangle that shows WINDOW_M around it in all frames. A run that sees only these touches
-    the same points as one that sees the whole frames, at a small part of the time. If the pose of the object is unknown in a frame,
-    that of the last frame with a pose is used."""
+    """The pixels around a touched point: the rectangle that shows WINDOW_M around it in all frames. A run that sees only these
+    touches the same points as one that sees the whole frames, at a small part of the time. If the pose of the object is unknown in
+    a frame, that of the last frame with a pose is used."""
 
     def __init__(self, point, camera, X_WO, X_WC):
         self.point, self.clouds, self.camera_W = point, [], np.array([pose[:3, 3] for pose in X_WC])
@@ -190,9 +191,9 @@ class Toucher:
 
 
 def pressing_experiment(scenario, window, toucher, captured_s):
-    """The experiment of a run over the recording. The hand moves with the true object. It comes to the point from 30 mm outwards within
-    three frames, stays 10 mm behind the true surface for twelve, and comes again. At the end it presses for as long as an approach
-    takes, so that a recording of few frames is touched too."""
+    """The experiment of a run over the recording. The hand moves with the true object. It comes to the point from 30 mm outwards
+    within three frames, stays 10 mm behind the true surface for twelve, and comes again. At the end it presses for as long as an
+    approach takes, so that a recording of few frames is touched too."""
     frames = np.arange(len(captured_s))
     approached = np.append(np.minimum(1, frames % CYCLE / APPROACH), 1)
     at = np.append(frames, frames[-1])

@@ -26,12 +26,12 @@ UP = np.array([0, 1, 0])
 
 CAPTION = """shakes up and down by 3 cm, three times in 2 s, before a simulated Kinect at half of its resolution. First the HIP
     presses 10 mm into the palm, as the newest frame shows it. Between two frames the proxy stays where it is and the hand moves on:
-    this is most of the gap between the proxy's ball and the true hand. Against the hand at the capture of the newest frame the gap is
-    the error of the sensor; with a sensor without noise and rounding it is that of the renderer alone. Below: a simulated hand with
-    mass wants to stay at a position in the palm, and is shaken."""
+    this is most of the gap between the proxy's ball and the true hand. Against the hand at the capture of the newest frame the gap
+    is the error of the sensor; with a sensor without noise and rounding it is that of the renderer alone. Below: a simulated hand
+    with mass wants to stay at a position in the palm, and is shaken."""
 
-# Signed distances from the ball of the proxy to the true surface, positive outside: as it is in a tick, and as it was when the frame
-# in use was captured. NaN in ticks in which the surface does not hold the proxy back.
+# Signed distances from the ball of the proxy to the true surface, positive outside: as it is in a tick, and as it was when the
+# frame in use was captured. NaN in ticks in which the surface does not hold the proxy back.
 Gaps = collections.namedtuple("Gaps", "now at_capture")
 Sinusoid = collections.namedtuple("Sinusoid", "amplitude phase_rad")
 
@@ -67,8 +67,8 @@ class Handshake:
         self.up_m = height_m[1:] - height_m[0]
         ends = np.arange(-1, len(self.time) - 1).clip(0), np.arange(1, len(self.time) + 1).clip(max=len(self.time) - 1)
         self.velocity_m_per_s = np.subtract(*self.up_m[ends[::-1], ]) / np.subtract(*self.time[ends[::-1], ])
-        self.gaps, self.exact_gaps, self.passive_gaps = (
-            ball_gaps(run, scene) for run, scene in zip((self.pressed, self.exact, self.passive), (self.scene, exact_scene, self.scene)))
+        self.gaps, self.passive_gaps = (ball_gaps(run, self.scene) for run in (self.pressed, self.passive))
+        self.exact_gaps = ball_gaps(self.exact, exact_scene)
         self.depth_error = depth_error_at_proxy(self.pressed, self.gaps, self.scene)
         self.sink_m = deepest_sink_m(exact_scene.cloud(0), self.held_m)
         self.touches = ~np.isnan(self.gaps.now)
@@ -138,8 +138,9 @@ def deepest_sink_m(cloud, middle_m):
 
 
 def derived_hand(config):
-    """A passive hand of mass m, a spring k and a damper c on a surface of stiffness K that shakes: amplitude of the hand, divided by
-    that of the surface, K / |K + k - m w^2 + i c w|; amplitude of the force over that of the hand, |k - m w^2 + i c w|; the lag, s."""
+    """A passive hand of mass m, a spring k and a damper c on a surface of stiffness K that shakes: amplitude of the hand, divided
+    by that of the surface, K / |K + k - m w^2 + i c w|; amplitude of the force over that of the hand, |k - m w^2 + i c w|; the lag,
+    s."""
     w, hand, surface = 2 * math.pi * SHAKE_HZ, config["operator"], config["renderer"]["stiffness_N_per_m"]
     own, damping = hand["stiffness_N_per_m"] - hand["mass_kg"] * w * w, hand["damping_Ns_per_m"] * w
     return surface / math.hypot(surface + own, damping), math.hypot(own, damping), math.atan2(damping, surface + own) / w
@@ -213,7 +214,8 @@ def add_panels(s, shake):
         s.panel(title, "time (s)", y_label, [style(of or table, "time", y, label) for style, y, label, of in curves], at=at,
                 x_range=SHOWN_S)
     hand, hip = (line, "hand", "true hand", ""), (dashed, "hip", "HIP", "")
-    over_time("Pressed by a HIP that follows the frames", "displacement (m)", (0, 1), "pressed", hand, hip, (line, "proxy", "proxy", ""))
+    over_time("Pressed by a HIP that follows the frames", "displacement (m)", (0, 1), "pressed", hand, hip,
+              (line, "proxy", "proxy", ""))
     over_time("Gap between the proxy's ball and the hand", "gap (m)", (1, 0), "pressed", (line, "high", "bound", "bounds"),
               (line, "low", "bound", "bounds"), (line, "gap", "to the moving hand", ""),
               (line, "gap_at_capture", "to the hand at capture", ""), (line, "exact_gap", "the same, exact sensor", ""))
@@ -241,8 +243,8 @@ def add_claims(s, shake):
     add_sound_claims(s, "pressed: ", shake.pressed)
     add_sound_claims(s, "passive hand: ", shake.passive)
     claims = s.claims()
-    claims.at_most("the proxy keeps to the moving hand within its way between two frames, the largest error of a depth and the sink "
-                   "between points: largest gap", largest(shake.gaps.now), shake.largest_gap_m(), "m")
+    claims.at_most("the proxy keeps to the moving hand within its way between two frames, the largest error of a depth and the "
+                   "sink between points: largest gap", largest(shake.gaps.now), shake.largest_gap_m(), "m")
     claims.between("most of the gap is the age of the frame: rms gap, divided by v_rms / (3^(1/2) f_c)",
                    rms(shake.gaps.now) / shake.derived_age_gap_m(), 0.85, 1.15, "1")
     claims.at_most("to the hand as the newest frame saw it, the gap is within the largest error of a depth: largest gap",
@@ -251,8 +253,8 @@ def add_claims(s, shake):
                    "newest frame saw it", largest(shake.exact_gaps.at_capture), shake.sink_m, "m")
     ratio, force_N_per_m, _ = derived_hand(shake.passive.config)
     surface, hip, force = shake.passive_motion()
-    claims.between("the shake moves a passive hand: amplitude of the HIP, divided by that of the shaking hand and by the derived ratio",
-                   hip.amplitude / surface.amplitude / ratio, 0.9, 1.1, "1")
+    claims.between("the shake moves a passive hand: amplitude of the HIP, divided by that of the shaking hand and by the derived "
+                   "ratio", hip.amplitude / surface.amplitude / ratio, 0.9, 1.1, "1")
     claims.between("the force on a passive hand follows the shake: amplitude, divided by the derived one",
                    force.amplitude / (force_N_per_m * ratio * surface.amplitude), 0.9, 1.1, "1")
 
@@ -266,8 +268,8 @@ def shaken(s, hand):
     add_claims(s, shake)
 
 
-@study("handshake", "a hand that shakes before a depth camera is pressed, and shakes a passive hand (1.1)", title="Remote handshake",
-       caption="The remote handshake of 1.1. The built-in hand `fork` " + CAPTION)
+@study("handshake", "a hand that shakes before a depth camera is pressed, and shakes a passive hand (1.1)",
+       title="Remote handshake", caption="The remote handshake of 1.1. The built-in hand `fork` " + CAPTION)
 def handshake(s):
     shaken(s, {})
 

@@ -1,8 +1,8 @@
-"""Statistics of the errors of depth images, rows x columns of depths in m, NaN at holes: noise, steps of depth, and holes beside depth
-edges. They use the images alone, so that simulated and real sensors are measured by one code.
+"""Statistics of the errors of depth images, rows x columns of depths in m, NaN at holes: noise, steps of depth, and holes beside
+depth edges. They use the images alone, so that simulated and real sensors are measured by one code.
 
-Sensors that triangulate measure the inverse depth 1 / z: a disparity is focal length times baseline times 1 / z. Therefore noise and
-steps are those of the inverse depth, in 1/m. Times z^2 they are metres of depth.
+Sensors that triangulate measure the inverse depth 1 / z: a disparity is focal length times baseline times 1 / z. Therefore noise
+and steps are those of the inverse depth, in 1/m. Times z^2 they are metres of depth.
 """
 import collections
 import math
@@ -14,8 +14,9 @@ FEWEST_SAMPLES, FEWEST_DEPTHS = 20, 10
 MIN_JUMP_PER_M = 0.1
 LARGEST_STEP = 2  # unit: the median step
 
-# Windows of an image with the planes nearest to them: planes are linear in 1 / z over the pixels. Arrays of rows x columns of windows,
-# NaN for a window with holes: inverse depth in its middle, its change from pixel to pixel, and the rms of the pixels about the plane.
+# Windows of an image with the planes nearest to them: planes are linear in 1 / z over the pixels. Arrays of rows x columns of
+# windows, NaN for a window with holes: inverse depth in its middle, its change from pixel to pixel, and the rms of the pixels about
+# the plane.
 Windows = collections.namedtuple("Windows", "inverse_per_m across_per_m down_per_m rms_per_m")
 
 
@@ -37,7 +38,8 @@ class Measured:
 
     def holes_px(self, is_left_of_near, low_per_m, high_per_m):
         """The widths of the holes at the edges on one side of near surfaces with a jump in a range."""
-        return self.hole_px[(self.is_left_of_near == is_left_of_near) & (low_per_m <= self.jump_per_m) & (self.jump_per_m < high_per_m)]
+        chosen = (low_per_m <= self.jump_per_m) & (self.jump_per_m < high_per_m)
+        return self.hole_px[chosen & (self.is_left_of_near == is_left_of_near)]
 
 
 def upper_quantile(values, share):
@@ -75,8 +77,8 @@ def from_middle():
 
 
 def noise_quantile(depth_m, per_m, near_m, far_m, share):
-    """The noise that the given share of the samples in a range of depth does not exceed, after the mean of their depths. NaN if there
-    are too few samples."""
+    """The noise that the given share of the samples in a range of depth does not exceed, after the mean of their depths. NaN if
+    there are too few samples."""
     chosen = (near_m <= depth_m) & (depth_m < far_m)
     if chosen.sum() < FEWEST_SAMPLES:
         return math.nan, math.nan
@@ -84,8 +86,8 @@ def noise_quantile(depth_m, per_m, near_m, far_m, share):
 
 
 def depth_step_per_m(depths_m, near_m, far_m):
-    """The step of 1 / z between the depths in a range that occur, increasing: the mean over the steps that are at most twice the median
-    step, because depths that no pixel shows leave gaps. NaN if few depths occur."""
+    """The step of 1 / z between the depths in a range that occur, increasing: the mean over the steps that are at most twice the
+    median step, because depths that no pixel shows leave gaps. NaN if few depths occur."""
     depths_m = depths_m[(near_m <= depths_m) & (depths_m < far_m)]
     if len(depths_m) < FEWEST_DEPTHS:
         return math.nan
@@ -94,8 +96,8 @@ def depth_step_per_m(depths_m, near_m, far_m):
 
 
 def depth_edges(image):
-    """Successive measured pixels of a row with a jump of 1 / z of MIN_JUMP_PER_M or more: whether the nearer one is on the right, the
-    jump, and the number of holes between them."""
+    """Successive measured pixels of a row with a jump of 1 / z of MIN_JUMP_PER_M or more: whether the nearer one is on the right,
+    the jump, and the number of holes between them."""
     rows, columns = np.nonzero(image > 0)
     jump_per_m = np.diff(1 / image[rows, columns])
     chosen = (np.diff(rows) == 0) & (np.abs(jump_per_m) >= MIN_JUMP_PER_M)
@@ -103,8 +105,8 @@ def depth_edges(image):
 
 
 def filled(image):
-    """The image with a depth also in its holes: the farther one of the depths that end a hole on the left and on the right in its row,
-    because shadows of a sensor lie on far surfaces. Holes at the border of the image remain."""
+    """The image with a depth also in its holes: the farther one of the depths that end a hole on the left and on the right in its
+    row, because shadows of a sensor lie on far surfaces. Holes at the border of the image remain."""
     columns, width = np.arange(image.shape[1]), image.shape[1]
     last = np.maximum.accumulate(np.where(np.isnan(image), -1, columns), axis=1)
     following = np.minimum.accumulate(np.where(np.isnan(image), width, columns)[:, ::-1], axis=1)[:, ::-1]
@@ -114,8 +116,8 @@ def filled(image):
 
 def planar_scene(windows, camera):
     """The depths of the fitted planes, and the cosines between the rays of the pixels and the planes' normals. The plane
-    1 / z = a u + b v + c has the normal (a fx, b fy, a cx + b cy + c), whose product with the ray ((u - cx) / fx, (v - cy) / fy, 1) is
-    1 / z. There is nothing where no plane was fitted."""
+    1 / z = a u + b v + c has the normal (a fx, b fy, a cx + b cy + c), whose product with the ray ((u - cx) / fx, (v - cy) / fy, 1)
+    is 1 / z. There is nothing where no plane was fitted."""
     rows, columns = windows.inverse_per_m.shape
     inverse, a, b = (of[..., None, None] for of in windows[:3])
     across, down = from_middle()

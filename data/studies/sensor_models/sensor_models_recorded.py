@@ -1,5 +1,5 @@
-"""The models of depth sensors against recordings of such sensors: noise, steps of depth, holes beside depth edges, and errors against
-true objects. Both are measured by one code, depth_measures.py."""
+"""The models of depth sensors against recordings of such sensors: noise, steps of depth, holes beside depth edges, and errors
+against true objects. Both are measured by one code, depth_measures.py."""
 import dataclasses
 import math
 import sys
@@ -27,8 +27,8 @@ SIDES = ("left", "right")  # of near surfaces
 
 @dataclasses.dataclass(frozen=True)
 class Recorded:
-    """A recording of a sensor. bounds_m: bounds of the ranges of distance. Steps of depth are larger than the unit of depth in step_m.
-    Beyond last_jump_per_m there are few edges."""
+    """A recording of a sensor. bounds_m: bounds of the ranges of distance. Steps of depth are larger than the unit of depth in
+    step_m. Beyond last_jump_per_m there are few edges."""
     name: str
     title: str
     experiment: str  # plays a recording; its own path is replaced
@@ -149,8 +149,8 @@ def add_panels(s, compared, column):
     noise, title = compared.table("noise"), compared.shown.title
 
     def over_depth(what, row, y_label, quantity):
-        s.panel(f"{title}: {what}", "depth (m)", y_label,
-                [STYLES[source](noise, "depth", f"{quantity}_{source}", label) for source, label in LABELS.items()], at=(row, column))
+        s.panel(f"{title}: {what}", "depth (m)", y_label, [
+            STYLES[source](noise, "depth", f"{quantity}_{source}", label) for source, label in LABELS.items()], at=(row, column))
 
     def of_sides(what, row, x_label, y_label, table, x):
         # The own focal length does not change holes.
@@ -174,8 +174,9 @@ def cosines(image, camera):
 
 
 def object_errors(image, measured, object):
-    """Median and standard deviation of depth minus true depth, and the share of the pixels with a depth; NaN if none shows the object.
-    Left out of the errors are pixels less than 3 pixels from another object in their row or column, and errors of other surfaces."""
+    """Median and standard deviation of depth minus true depth, and the share of the pixels with a depth; NaN if none shows the
+    object. Left out of the errors are pixels less than 3 pixels from another object in their row or column, and errors of other
+    surfaces."""
     shows = image["object"] == object
     inside = np.zeros_like(shows)
     height, width = np.subtract(shows.shape, 2 * SILHOUETTE_PX)
@@ -225,8 +226,8 @@ def add_truth_claims(s, truth):
         claims.differs(f"the sensor's mean error on the true {name} changes over the frames, that of the model does not: standard "
                        "deviation of the frame's median, simulated / recorded",
                        ratio(lambda errors_m: np.nanstd(errors_m, ddof=1), f"median_{name}"), 0, 0.05, "ratio", "1 (equal)")
-        claims.differs(f"errors on the true {name} are spread less in the model: standard deviation in frame 0, simulated / recorded",
-                       ratio(lambda spread_m: spread_m[0], f"spread_{name}"), 0.23, 0.3, "ratio", "1 (equal)")
+        claims.differs(f"errors on the true {name} are spread less in the model: standard deviation in frame 0, simulated / "
+                       "recorded", ratio(lambda spread_m: spread_m[0], f"spread_{name}"), 0.23, 0.3, "ratio", "1 (equal)")
     claims.differs("the model loses more of the true table, which is seen at 78 to 88 degrees: share of the pixels with a depth, "
                    "simulated / recorded", ratio(np.nanmean, "measured_table"), 0.9, 0.94, "ratio", "1 (equal)")
 
@@ -254,8 +255,8 @@ def shadow_baseline_m(widths, column, focal_px):
 def add_active_stereo_claims(s, compared, noise, widths):
     claims, equal = s.claims("active stereo: "), ("ratio", "1 (equal)")
     simulated, own = noise.time_simulated / noise.time_recorded, noise.time_own_focal / noise.time_recorded
-    claims.differs("steps of depth show that the images were warped from a camera of shorter focal length: 1/32 px / (50 mm x step of "
-                   "1 / z)", compared.own_focal_px, 375, 390, "px", "607")
+    claims.differs("steps of depth show that the images were warped from a camera of shorter focal length: 1/32 px / (50 mm x step "
+                   "of 1 / z)", compared.own_focal_px, 375, 390, "px", "607")
     of_images = "with the focal length of the images the model has too little noise over time: simulated / recorded at "
     claims.differs(of_images + "0.6 to 0.8 m", simulated[2], 0.62, 0.67, *equal)
     claims.differs(of_images + "1 to 1.3 m", simulated[4], 0.57, 0.62, *equal)
@@ -263,8 +264,8 @@ def add_active_stereo_claims(s, compared, noise, widths):
                      noise.time_own_focal, noise.time_recorded, 1.4)
     claims.differs("nearer than 0.45 m the recording, in whole millimetres, has more noise over time than the model with its own "
                    "focal length: simulated / recorded", own[0], 0.38, 0.42, *equal)
-    claims.differs("the sensor has pixels with far more noise over time than the median: 90 % quantile, simulated / recorded at 0.6 "
-                   "to 0.8 m, with its own focal length", noise.loud_own_focal[2] / noise.loud_recorded[2], 0.44, 0.49, *equal)
+    claims.differs("the sensor has pixels with far more noise over time than the median: 90 % quantile, simulated / recorded at "
+                   "0.6 to 0.8 m, with its own focal length", noise.loud_own_focal[2] / noise.loud_recorded[2], 0.44, 0.49, *equal)
     add_range_claims(claims, "the model has the sensor's noise about planes from 0.45 m on", noise.planes_simulated,
                      noise.planes_recorded, 1.35)
     claims.differs("holes left of near surfaces are narrower in the model: median width, simulated / recorded",
@@ -288,24 +289,25 @@ def add_structured_light_claims(s, compared, noise, widths):
                    width_ratio(compared), 1.57, 1.66, "ratio", "1 (equal)")
     claims.differs("the sensor also has holes right of near surfaces: recorded fraction of holes 3 px away",
                    hole_fraction(compared.holes_px("recorded", "right"), BESIDE_PX), 0.94, 0.97, "fraction", "0")
-    claims.differs("holes left of near surfaces widen with the jump of 1 / z less than by the baseline: recorded slope / focal length",
-                   left_m, 0.057, 0.061, "m", "0.075")
-    claims.differs("holes right of near surfaces widen with the jump of 1 / z: recorded slope / focal length", right_m, 0.023, 0.026,
-                   "m", "0")
-    claims.between("holes on both sides together widen with the jump of 1 / z as by the baseline: sum of the recorded slopes / focal "
-                   "length", left_m + right_m, 0.064, 0.087, "m", "0.075")
+    claims.differs("holes left of near surfaces widen with the jump of 1 / z less than by the baseline: recorded slope / focal "
+                   "length", left_m, 0.057, 0.061, "m", "0.075")
+    claims.differs("holes right of near surfaces widen with the jump of 1 / z: recorded slope / focal length", right_m, 0.023,
+                   0.026, "m", "0")
+    claims.between("holes on both sides together widen with the jump of 1 / z as by the baseline: sum of the recorded slopes / "
+                   "focal length", left_m + right_m, 0.064, 0.087, "m", "0.075")
 
 
 @study("sensor-models-recorded", "simulated depth sensors against recordings of real ones: noise, steps of depth, holes at edges",
        title="Simulated depth sensors against real ones", source="the published models", caption="""
-       The models of mesh-scene's sensors, with published numbers only, and recordings of such sensors, measured by one code. Left: a
-       D400 camera, five frames at rest. Right: two frames of a Kinect of 2010. The models see the recorded scenes with filled holes;
-       for noise about planes they see the planes that fit windows of 20 x 20 pixels, and the lower quartile of the windows is shown.
-       Both recordings are warped to the view of a colour camera with another focal length than the sensor's own. The steps of depth
-       show the latter; dashed: the models with noise and steps of that focal length. Depth minus true depth is the median over the
-       pixels of an object; the true poses are uncertain by 3 mm, but equally in all frames. Holes beside an edge begin behind the last
-       pixel of the near surface; their edges have jumps of 0.4 to 0.7 per m. What the models lack: pixels with far more noise than the
-       median, an error that drifts, holes right of near surfaces, and the margin of holes around the shadow of active stereo.""")
+       The models of mesh-scene's sensors, with published numbers only, and recordings of such sensors, measured by one code. Left:
+       a D400 camera, five frames at rest. Right: two frames of a Kinect of 2010. The models see the recorded scenes with filled
+       holes; for noise about planes they see the planes that fit windows of 20 x 20 pixels, and the lower quartile of the windows
+       is shown. Both recordings are warped to the view of a colour camera with another focal length than the sensor's own. The
+       steps of depth show the latter; dashed: the models with noise and steps of that focal length. Depth minus true depth is the
+       median over the pixels of an object; the true poses are uncertain by 3 mm, but equally in all frames. Holes beside an edge
+       begin behind the last pixel of the near surface; their edges have jumps of 0.4 to 0.7 per m. What the models lack: pixels
+       with far more noise than the median, an error that drifts, holes right of near surfaces, and the margin of holes around the
+       shadow of active stereo.""")
 def sensor_models_recorded(s):
     for column, (recorded, add_claims) in enumerate(((ACTIVE_STEREO, add_active_stereo_claims),
                                                      (STRUCTURED_LIGHT, add_structured_light_claims))):
@@ -317,8 +319,8 @@ def sensor_models_recorded(s):
         if recorded is ACTIVE_STEREO:
             add_truth(s, compared)
         counts = [len(compared.holes_px(source, side)) for source in LABELS for side in SIDES]
-        s.claims(set_up=True).at_least(f"{recorded.title}: fractions of holes are those of many edges: smallest number", min(counts),
-                                       200, "edges")
+        s.claims(set_up=True).at_least(f"{recorded.title}: fractions of holes are those of many edges: smallest number",
+                                       min(counts), 200, "edges")
 
 
 if __name__ == "__main__":

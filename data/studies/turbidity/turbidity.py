@@ -35,7 +35,7 @@ def masks(cloud, rules):
 
 def counts(measured, picked, shows):
     """Pixels of a valve with depth that are picked and missed, other pixels that are picked, and its pixels without depth."""
-    return np.array([(picked & shows).sum(), (measured & shows & ~picked).sum(), (picked & ~shows).sum(), (shows & ~measured).sum()])
+    return np.sum([picked & shows, measured & shows & ~picked, picked & ~shows, shows & ~measured], axis=1)
 
 
 def drawn_mask(measured, picked, shows):
@@ -64,14 +64,15 @@ def scores(found, missed, wrong, without_depth):
         wrong=wrong / FRAMES, without_depth=without_depth / FRAMES, picked=found + wrong)
 
 
-@study("turbidity", "two valves in turbid water found by hue: precision and recall", title="Two valves found by hue in turbid water",
-       caption="""A simulated camera looks at a red and a yellow valve, 900 mm away in water whose every channel is attenuated, red most
-       of all, and veiled. First row: what it sees, cut out around the valves. Second row: what the rules of hue pick of it. Red and
-       yellow are right, magenta is a part of a valve that is missed, white is something else that is picked, black has no depth and
-       therefore no point. Third row: recall and precision among the pixels with depth, and the fraction of pixels with depth; the
-       precision of 0 at the end of yellow's curve is of less than a pixel in a frame. Most of a valve is too narrow for the depth
-       camera, which sees nothing within 1 px of an edge. The water is a model with chosen rates, so the turbidity at which a hue is
-       lost holds for that model only. The figure shows which hue is lost first, and how.""")
+@study("turbidity", "two valves in turbid water found by hue: precision and recall",
+       title="Two valves found by hue in turbid water", caption="""
+       A simulated camera looks at a red and a yellow valve, 900 mm away in water whose every channel is attenuated, red
+       most of all, and veiled. First row: what it sees, cut out around the valves. Second row: what the rules of hue pick of it.
+       Red and yellow are right, magenta is a part of a valve that is missed, white is something else that is picked, black has no
+       depth and therefore no point. Third row: recall and precision among the pixels with depth, and the fraction of pixels with
+       depth; the precision of 0 at the end of yellow's curve is of less than a pixel in a frame. Most of a valve is too narrow for
+       the depth camera, which sees nothing within 1 px of an edge. The water is a model with chosen rates, so the turbidity at
+       which a hue is lost holds for that model only. The figure shows which hue is lost first, and how.""")
 def turbidity(s):
     pictures, counted = {}, {name: [] for name in VALVES}
     for level, per_m in enumerate(LEVELS_PER_M):
@@ -113,8 +114,8 @@ def add_pictures(s, pictures, columns):
     rows, across = map(np.ravel, np.mgrid[TOP:BOTTOM, LEFT:RIGHT])
     for column, (level, title) in enumerate(MASKS.items()):
         per_m = f"{LEVELS_PER_M[level]:.1f} per metre"
-        for row, (kind, pixels, text, of) in enumerate(zip(("colours", "mask"), pictures[level], ("what the camera sees", "the masks"),
-                                                           (f"Seen at {per_m}", title))):
+        kinds = ("colours", "what the camera sees", f"Seen at {per_m}"), ("mask", "the masks", title)
+        for row, ((kind, text, of), pixels) in enumerate(zip(kinds, pictures[level])):
             name = f"{kind}_{level}"
             s.table(name, f"{text} at {per_m}", column=(across, "px", "column of the pixel"), row=(rows, "px", "row of the pixel"),
                     colour=(pixels[rows * columns + across], "1", "red * 65536 + green * 256 + blue"))
@@ -144,7 +145,8 @@ def add_claims(s, scored):
                         min(of.precision[of.picked >= ENOUGH_PICKED], default=np.nan), 0.95, "fraction")
         claims.at_most(" is missed at a turbidity of 3 per metre: recall", turbid.recall[0], 0.05, "fraction")
     s.claims().at_most("the yellow valve is missed in water that is no more turbid than for the red one: turbidity at which most "
-                       "pixels are missed, yellow minus red", lost_at_per_m(scored["yellow"]) - lost_at_per_m(scored["red"]), 0, "1/m")
+                       "pixels are missed, yellow minus red", np.subtract(*map(lost_at_per_m, (scored["yellow"], scored["red"]))),
+                       0, "1/m")
 
 
 if __name__ == "__main__":

@@ -126,7 +126,8 @@ py::array for_points(const py::handle& points, const char* subject, Of of) {
 
 py::array rule_weights(const PythonCloud& cloud, const py::dict& rule) {
   const Json part = json_of(rule, "rule");
-  const auto factory = find_entry(fixtures(), part.value("name", ""), "rule").make();
+  const std::string name = rule.contains("name") ? py::str(rule["name"]) : py::str();
+  const auto factory = find_entry(fixtures(), name, "rule").make();
   read_parameters(part, factory->settings(), "rule", {"name"});
   return owning_array(factory->build()->weights(*cloud.shown),
                       {static_cast<py::ssize_t>(cloud.shown->size())});

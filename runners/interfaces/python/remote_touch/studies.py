@@ -356,7 +356,7 @@ def _write_claims(folder, name, claims):
 def make(name, folder, *, coarse=1, quick=False, executor=None, set=(), command=None):
     """Makes a declared study; writes its files into the folder. Returns its Study, with all_claims.
 
-    A study whose recording is missing is written as not run. command: recorded in the file.
+    A study whose recording is missing is written as not run, unless settings named it. command: recorded in the file.
     """
     entry = STUDIES[name]
     coarse = max(_integer("coarse", coarse, 1, 10), entry.quick_coarse if quick else 1)
@@ -365,6 +365,8 @@ def make(name, folder, *, coarse=1, quick=False, executor=None, set=(), command=
     try:
         entry.make(made)
     except MissingInput as missing:
+        if made.overrides:
+            raise  # what is missing is of the user
         made = Study(entry, coarse)
         made.title, made.caption = "Not run", f"Not run: {missing}"
         made.all_claims = [_core.claim_not_run(name, entry.summary, str(missing))]
