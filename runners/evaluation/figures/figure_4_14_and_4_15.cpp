@@ -8,12 +8,12 @@
 #include "analysis/trace/interval_estimates.h"
 #include "core/kernels/isa.h"
 #include "core/points/point_cloud.h"
-#include "runners/evaluation/figures/parts/ball_gaps.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"
 #include "runners/evaluation/figures/parts/fixture_run.h"
 #include "scenarios/simulated/depth_camera.h"
+#include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {
 
@@ -38,50 +38,32 @@ struct Oracle {
   }
 };
 
-struct Contact {
-  double x, y, error, shell;
-};
-
-std::vector<Contact> contacts(const Trace& trace, const Oracle& oracle, double from, double to) {
-  std::vector<Contact> contacts;
+// Returns the contact points with x in [from, to], in the ticks in which the surface holds the HIP back.
+Table contact_table(const Trace& trace, const Oracle& oracle, double from, double to) {
+  std::vector<Vec3> contact;
+  Numbers error, shell;
   for (std::size_t i = 0; i < trace.length(); ++i) {
     const Vec3 p = contact_point(trace, i, kContactRadius_m);
     if (!pressing(trace, i, kContactRadius_m) || p.x() < from || p.x() > to) continue;
-    contacts.push_back(
-        {p.x(), p.y(), p.y() - oracle.at(p.x()), trace.nearest_distance_m[i] - kContactRadius_m});
+    contact.push_back(p);
+    error.push_back(p.y() - oracle.at(p.x()));
+    shell.push_back(trace.nearest_distance_m[i] - kContactRadius_m);
   }
-  return contacts;
-}
-
-double max_magnitude(const std::vector<double>& values) {
-  return max_where(
-      values.size(), [](std::size_t) { return true; }, [&](std::size_t i) { return std::abs(values[i]); });
-}
-
-double rms(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v * v;
-  return values.empty() ? std::nan("") : std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-Table contact_table(const std::vector<Contact>& contacts) {
-  return table_over<Contact>(
-      "contact", "contact point", contacts,
-      {{"x", "m", "position of the contact point", &Contact::x},
-       {"y", "m", "height of the contact point", &Contact::y},
-       {"error", "m", "height over the exact closing with a ball of r_c", &Contact::error},
-       {"shell", "m", "distance of the nearest point less r_c", &Contact::shell}});
+  return {"contact",
+          "contact point",
+          {{"x", "m", "position of the contact point", along(0, contact)},
+           {"y", "m", "height of the contact point", along(1, contact)},
+           {"error", "m", "height over the exact closing with a ball of r_c", error},
+           {"shell", "m", "distance of the nearest point less r_c", shell}}};
 }
 
 Table profile_table(const Oracle& oracle) {
-  TableRows rows;
-  for (std::size_t i = 0; i < oracle.heights.size(); i += 20)
-    rows.push_back({oracle.low + static_cast<double>(i) * kSampling_m, oracle.heights[i], oracle.closing[i]});
-  return table_of("profile", "exact profile and its closing",
-                  {{"x", "m", "position"},
-                   {"surface_y", "m", "true height"},
-                   {"closing_y", "m", "height that a ball of r_c can reach"}},
-                  rows);
+  const auto x = [&](std::size_t i) { return oracle.low + static_cast<double>(i) * kSampling_m; };
+  return every(20, {"profile",
+                    "exact profile and its closing",
+                    {{"x", "m", "position", each_of(oracle.heights.size(), x)},
+                     {"surface_y", "m", "true height", oracle.heights},
+                     {"closing_y", "m", "height that a ball of r_c can reach", oracle.closing}}});
 }
 
 Table surface_table(const PointCloud& cloud) {
@@ -118,15 +100,14 @@ Figure figure_4_14(FigureContext& context) {
   const Trace trace = context.run(experiment);
   constexpr double kFrom = -0.2, kTo = 0.2;  // the ends of the grid have no neighbours on one side
   const Oracle oracle(*scenario, -0.22, 0.22);
-  const std::vector<Contact> contact = contacts(trace, oracle, kFrom, kTo);
-
+  const Table contact = contact_table(trace, oracle, kFrom, kTo);
   Figure figure{
       "4.14", "Sharp corners",
       "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the points as a "
       "surface. Middle: a cross-section of the wave and the contact point. Bottom: a part of it, "
       "with the points and the proxy, a ball of radius r_c. Convex corners are rendered sharp; in a "
       "valley the proxy rests on both flanks."};
-  figure.tables = {contact_table(contact), profile_table(oracle), surface_table(scenario->cloud(0))};
+  figure.tables = {contact, profile_table(oracle), surface_table(scenario->cloud(0))};
   for (Table& table : points_and_ball(*scenario, trace, 0.135)) figure.tables.push_back(std::move(table));
   const Curve points{"points", "x", "y", CurveStyle::dots, "points"};
   const Curve line{"contact", "x", "y", CurveStyle::line, "contact point"};
@@ -141,14 +122,14 @@ Figure figure_4_14(FigureContext& context) {
             {"ball", "x", "y", CurveStyle::circle, "proxy, a ball of radius r_c", kContactRadius_m}},
            {.x_range = {{0.095, 0.175}}, .y_range = {{-0.014, 0.015}}, .equal_aspect = true})};
   const Claims claims(figure);
-  const std::vector<double>& error = numbers(figure.tables[0], "error");
+  const Numbers& error = numbers(contact, "error");
   claims.at_most("the contact point follows the exact closing of the wave with a ball of r_c: rms distance",
                  rms(error), 1e-4, "m", "very well");
   claims.at_most(
       "the contact point follows the exact closing of the wave with a ball of r_c: largest distance",
-      max_magnitude(error), 5e-4, "m");
+      max_of(magnitudes(error)), 5e-4, "m");
   claims.at_most("the nearest point is r_c from the proxy: largest difference",
-                 max_magnitude(numbers(figure.tables[0], "shell")), 2e-5, "m", "1e-5");
+                 max_of(magnitudes(numbers(contact, "shell"))), 2e-5, "m", "1e-5");
   return figure;
 }
 
@@ -218,10 +199,50 @@ namespace {
 constexpr double kSlice_m = 0.0015;      // half width of the slice below the path
 constexpr std::size_t kStride_4_15 = 4;  // ticks, in tables
 
+struct MeshRun {
+  Experiment experiment;
+  Trace trace;
+  std::unique_ptr<Scenario> scenario;
+  PointCloud cloud;  // first frame
+  Numbers gap_m;     // from the proxy's ball to the true surface in each tick; NaN: no contact
+
+  Numbers known_gaps_m() const {
+    return where(gap_m, [this](std::size_t i) { return !std::isnan(gap_m[i]); });
+  }
+};
+
 MeshRun ramp_run(FigureContext& context, const std::vector<std::string>& overrides) {
   Experiment experiment = Experiment::load("fig4.15", overrides);
-  Trace trace = context.run(experiment);
-  return mesh_run(std::move(experiment), std::move(trace), kContactRadius_m, context.kernels());
+  Trace t = context.run(experiment);
+  Numbers gaps_m = each_of(t.length(), [&](std::size_t i) {
+    const bool touches = t.frame_index[i] >= 0 && pressing(t, i, kContactRadius_m);
+    return touches ? t.signed_distance_m[i] - kContactRadius_m : kNoValue;
+  });
+  auto scenario = experiment.build_scenario(context.kernels());
+  PointCloud cloud = scenario->cloud(0);
+  return {std::move(experiment), std::move(t), std::move(scenario), std::move(cloud), std::move(gaps_m)};
+}
+
+// Returns the largest error of a depth along the optical axis, at the largest depth that the proxy has while
+// its gap is known: three standard deviations, the rounding included, and half of a step.
+double largest_error_m(const MeshRun& run) {
+  const RigidTransform X_CW = run.cloud.image->X_WC.inverse();
+  double z_m = 0;
+  for (std::size_t i = 0; i < run.trace.length(); ++i)
+    if (!std::isnan(run.gap_m[i])) z_m = std::max(z_m, (X_CW * run.trace.proxy_position_m[i]).z());
+  const auto number = [&](const char* name) {
+    return run.experiment.value_at_start(std::string("scenario.") + name).get<double>();
+  };
+  DepthSensorSettings settings;
+  settings.sensor = DepthSensorKind::structured_light;
+  settings.camera.focal_px = number("focal_px");
+  settings.baseline_m = number("baseline_m");
+  settings.disparity_focal_px = number("disparity_focal_px");
+  settings.noise_px = number("noise_px");
+  settings.disparity_step_px = number("disparity_step_px");
+  const Triangulation sensor = triangulation(settings);
+  const double per_px = z_m * z_m / (sensor.focal_px * sensor.baseline_m);
+  return 3 * (per_px * sensor.noise_px) + 0.5 * per_px * sensor.step_px;
 }
 
 bool is_in_slice(const PointCloud& cloud, std::size_t i) {
@@ -233,6 +254,26 @@ bool is_in_slice(const PointCloud& cloud, std::size_t i) {
 bool is_below_path(const MeshRun& run, std::size_t i) {
   constexpr double kFacesUp = 0.5;
   return is_in_slice(run.cloud, i) && run.scenario->true_normal(run.cloud.point(i), 0).y() > kFacesUp;
+}
+
+// Returns how deep a ball of r_c sinks between four neighbouring points below the path, at most: r - (r^2 -
+// a^2)^(1/2), where 2 a is the longer diagonal of the four points. Squares with a side above r_c, which have
+// a depth edge, are left out.
+double deepest_sink_m(const MeshRun& run) {
+  constexpr double r = kContactRadius_m;
+  const PointCloud& cloud = run.cloud;
+  const auto width = static_cast<std::size_t>(cloud.image->camera.width);
+  double sink_m = kNoValue;
+  for (std::size_t i = 0; i + width + 1 < cloud.size(); ++i) {
+    if (i % width + 1 == width || !is_below_path(run, i)) continue;
+    const Vec3 a = cloud.point(i), b = cloud.point(i + 1), c = cloud.point(i + width),
+               d = cloud.point(i + width + 1);
+    const double side_m = std::max({(b - a).norm(), (c - a).norm(), (d - b).norm(), (d - c).norm()});
+    if (!(side_m < r) || !d.allFinite()) continue;  // or NaN: a point is missing
+    const double half_m = 0.5 * std::max((d - a).norm(), (c - b).norm());
+    sink_m = std::fmax(sink_m, r - std::sqrt(r * r - half_m * half_m));
+  }
+  return sink_m;
 }
 
 // Returns the height of the true surface over z in the plane of the path, seen from above.
@@ -259,22 +300,17 @@ Table profile_table(const Scenario& scenario) {
 
 Table path_table(const MeshRun& run, const MeshRun& exact) {
   const Trace& t = run.trace;
-  TableRows rows;
-  for (std::size_t i = 0; i < t.length(); i += kStride_4_15) {
-    const Vec3 &hip = t.hip_position_m[i], &proxy = t.proxy_position_m[i];
-    rows.push_back({t.time_s[i], hip.z(), hip.y(), proxy.z(), proxy.y(), run.gaps[i].now_m,
-                    exact.gaps[i].now_m, t.force_N[i].norm()});
-  }
-  return table_of("path", "paths of HIP and proxy, gap of the proxy's ball, and force",
-                  {{"time", "s", "simulated time"},
-                   {"hip_along", "m", "HIP along the path"},
-                   {"hip_up", "m", "height of the HIP"},
-                   {"proxy_along", "m", "proxy along the path"},
-                   {"proxy_up", "m", "height of the proxy"},
-                   {"gap", "m", "from the proxy's ball to the true surface; NaN: no contact"},
-                   {"exact_gap", "m", "the same with a camera without noise and rounding"},
-                   {"force", "N", "magnitude of the force"}},
-                  rows);
+  return every(kStride_4_15,
+               {"path",
+                "paths of HIP and proxy, gap of the proxy's ball, and force",
+                {{"time", "s", "simulated time", t.time_s},
+                 {"hip_along", "m", "HIP along the path", along(2, t.hip_position_m)},
+                 {"hip_up", "m", "height of the HIP", along(1, t.hip_position_m)},
+                 {"proxy_along", "m", "proxy along the path", along(2, t.proxy_position_m)},
+                 {"proxy_up", "m", "height of the proxy", along(1, t.proxy_position_m)},
+                 {"gap", "m", "from the proxy's ball to the true surface; NaN: no contact", run.gap_m},
+                 {"exact_gap", "m", "the same with a camera without noise and rounding", exact.gap_m},
+                 {"force", "N", "magnitude of the force", norms(t.force_N)}}});
 }
 
 Table slice_of_points(const PointCloud& cloud) {
@@ -291,35 +327,30 @@ Table coloured_points(PointCloud cloud) {
 }
 
 double rms_point_distance_m(const MeshRun& run) {
-  double squares = 0, count = 0;
-  for (std::size_t i = 0; i < run.cloud.size(); ++i) {
-    if (!is_below_path(run, i)) continue;
-    const double distance_m = run.scenario->signed_distance(run.cloud.point(i), 0);
-    squares += distance_m * distance_m, ++count;
-  }
-  return count == 0 ? kNoValue : std::sqrt(squares / count);
+  return rms(values_where(
+      run.cloud.size(), [&](std::size_t i) { return is_below_path(run, i); },
+      [&](std::size_t i) { return run.scenario->signed_distance(run.cloud.point(i), 0); }));
 }
 
 void add_claims(Figure& figure, const MeshRun& run, const MeshRun& exact) {
   add_side_claim(figure, "", run.trace);
   add_sound_claims(figure, "", run.trace);
+  const Numbers gaps_m = run.known_gaps_m(), exact_gaps_m = exact.known_gaps_m();
   const Claims claims(figure);
   claims.at_most(
       "the proxy stays on the true surface within the largest error of a depth (three standard "
       "deviations and half a step): largest gap between its ball and the surface",
-      max_gap_m(run.gaps, &BallGap::now_m), error_at_proxy(run).largest_m(), "m");
+      max_of(magnitudes(gaps_m)), largest_error_m(run), "m");
   claims.between(
       "the proxy rests on the points that noise brings nearest to the camera: its rms gap, divided by "
       "the rms distance of the points below the path from the true surface",
-      rms_gap_m(run.gaps, &BallGap::now_m) / rms_point_distance_m(run), 1, 1.5, "1");
+      rms(gaps_m) / rms_point_distance_m(run), 1, 1.5, "1");
   claims.at_most(
       "with a camera without noise and rounding, the ball only sinks between the points: largest gap",
-      max_gap_m(exact.gaps, &BallGap::now_m),
-      deepest_sink_m(exact.cloud, kContactRadius_m, [&](std::size_t i) { return is_below_path(exact, i); }),
-      "m");
+      max_of(magnitudes(exact_gaps_m)), deepest_sink_m(exact), "m");
   claims.at_most(
       "nearly all of the error is the camera's: rms gap without its errors, divided by that with them",
-      rms_gap_m(exact.gaps, &BallGap::now_m) / rms_gap_m(run.gaps, &BallGap::now_m), 0.1, "1");
+      rms(exact_gaps_m) / rms(gaps_m), 0.1, "1");
 }
 
 void add_panels(Figure& figure, double largest_m) {
@@ -350,7 +381,9 @@ void add_panels(Figure& figure, double largest_m) {
 }  // namespace
 
 Figure figure_4_15_meshes(FigureContext& context) {
-  const MeshRun run = ramp_run(context, {}), exact = ramp_run(context, exact_sensor());
+  const MeshRun run = ramp_run(context, {}),
+                exact = ramp_run(context, {"scenario.noise_px=0", "scenario.disparity_step_px=0",
+                                           "scenario.lateral_noise_px=0"});
   Figure figure{"4.15-meshes", "Ramp and box as meshes with colours, simulated Kinect",
                 "A structured-light camera above the scene, on the right, sees a ramp (behind) and a box (in "
                 "front) on a table: meshes with colours, as in Fig 4.15 b. The ramp is a tilted cube, partly "
@@ -359,7 +392,7 @@ Figure figure_4_15_meshes(FigureContext& context) {
                 "with a camera without noise and rounding, which shows the error of the renderer alone."};
   figure.tables = {coloured_points(run.cloud), profile_table(*run.scenario), path_table(run, exact),
                    slice_of_points(run.cloud)};
-  add_panels(figure, error_at_proxy(run).largest_m());
+  add_panels(figure, largest_error_m(run));
   add_claims(figure, run, exact);
   return figure;
 }

@@ -13,21 +13,17 @@ namespace remote_touch {
 namespace {
 
 // Positions along one axis and heights along another, of HIP and proxy, and the force.
-Table path_table(const std::string& name, const Trace& t, int along, int up) {
-  TableRows rows;
-  for (std::size_t i = 0; i < t.length(); ++i)
-    rows.push_back({t.time_s[i], t.proxy_position_m[i][along], t.proxy_position_m[i][up],
-                    t.hip_position_m[i][along], t.hip_position_m[i][up], t.force_N[i].norm(),
-                    t.signed_distance_m[i]});
-  return table_of(name, "paths of HIP and proxy, and the force",
-                  {{"time", "s", "simulated time"},
-                   {"proxy_along", "m", "proxy along the scan"},
-                   {"proxy_up", "m", "proxy across the scan"},
-                   {"hip_along", "m", "HIP along the scan"},
-                   {"hip_up", "m", "HIP across the scan"},
-                   {"force", "N", "magnitude of the force"},
-                   {"signed_distance", "m", "distance of the proxy's centre to the true surface"}},
-                  rows);
+Table path_table(const std::string& name, const Trace& t, int scan, int up) {
+  return {
+      name,
+      "paths of HIP and proxy, and the force",
+      {{"time", "s", "simulated time", t.time_s},
+       {"proxy_along", "m", "proxy along the scan", along(scan, t.proxy_position_m)},
+       {"proxy_up", "m", "proxy across the scan", along(up, t.proxy_position_m)},
+       {"hip_along", "m", "HIP along the scan", along(scan, t.hip_position_m)},
+       {"hip_up", "m", "HIP across the scan", along(up, t.hip_position_m)},
+       {"force", "N", "magnitude of the force", norms(t.force_N)},
+       {"signed_distance", "m", "distance of the proxy's centre to the true surface", t.signed_distance_m}}};
 }
 
 // The first frame's points within a slice around the scan.
@@ -45,13 +41,9 @@ Table slice_table(const std::string& name, const PointCloud& cloud, int along, i
 // Returns the share of the ticks in which the HIP is held back and the true side is known, among all ticks in
 // which it is held back. Nothing is claimed about the other ticks. NaN if the HIP is never held back.
 double known_fraction(const Trace& trace) {
-  std::size_t pressed = 0, known = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    if (!pressing(trace, i, kContactRadius_m)) continue;
-    ++pressed;
-    known += std::isnan(trace.signed_distance_m[i]) ? 0 : 1;
-  }
-  return pressed == 0 ? std::nan("") : static_cast<double>(known) / static_cast<double>(pressed);
+  return mean_where(
+      trace.length(), [&](std::size_t i) { return pressing(trace, i, kContactRadius_m); },
+      [&](std::size_t i) { return std::isnan(trace.signed_distance_m[i]) ? 0 : 1; });
 }
 
 void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
@@ -65,12 +57,9 @@ void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
 
 // Returns the limits of an axis around a path, so that points far away do not shrink the path in the picture.
 std::pair<double, double> around(const Trace& trace, int axis) {
-  double low = trace.hip_position_m[0][axis], high = low;
-  for (std::size_t i = 0; i < trace.length(); ++i) {
-    low = std::min({low, trace.hip_position_m[i][axis], trace.proxy_position_m[i][axis]});
-    high = std::max({high, trace.hip_position_m[i][axis], trace.proxy_position_m[i][axis]});
-  }
-  return {low - 0.03, high + 0.03};
+  Numbers places = along(axis, trace.hip_position_m), proxy = along(axis, trace.proxy_position_m);
+  places.insert(places.end(), proxy.begin(), proxy.end());
+  return {min_of(places) - 0.03, max_of(places) + 0.03};
 }
 
 void add_panels(Figure& figure, const std::string& title, const std::string& table, const std::string& slice,
@@ -111,7 +100,7 @@ Figure figure_4_16(FigureContext& context) {
 namespace {
 
 // The HIP scans over a cloud at rest.
-void add_scan(Figure& figure, FigureContext& context, const char* name, const std::string& table,
+void add_scan(Figure& figure, FigureContext& context, int column, const char* name, const std::string& table,
               const std::string& title) {
   const Experiment experiment = Experiment::load(name);
   const Trace trace = context.run(experiment);
@@ -126,31 +115,24 @@ void add_scan(Figure& figure, FigureContext& context, const char* name, const st
                                {{table, "hip_along", "signed_distance", CurveStyle::line, ""}},
                                {.y_range = {{-0.002, 0.03}}}));
   const std::size_t first = figure.panels.size() - 3;
-  for (std::size_t i = first; i < figure.panels.size(); ++i) figure.panels[i].x_range = around(trace, 0);
+  for (std::size_t i = first; i < figure.panels.size(); ++i) {
+    figure.panels[i].x_range = around(trace, 0);
+    figure.panels[i].grid_position = {i - first, column};
+  }
   figure.panels[first].y_range = around(trace, 2);
   figure.panels[first].equal_aspect = false;  // three columns leave no room for it
   add_claims(figure, title, trace);
 }
 
-// Places the panels from `first` on below each other in a column.
-void place_in_column(Figure& figure, std::size_t first, int column) {
-  for (std::size_t i = first; i < figure.panels.size(); ++i)
-    figure.panels[i].grid_position = {i - first, column};
-}
-
 // The HIP presses at one pixel while the camera moves.
 void add_moving(Figure& figure, FigureContext& context) {
-  const Trace trace = context.run(Experiment::load("fig4.16-moving"));
+  const Trace trace = context.run("fig4.16-moving");
   figure.tables.push_back(path_table("moving", trace, 0, 2));
-  const auto add = [&](const char* title, const char* y_label, const std::vector<Curve>& curves) {
-    figure.panels.push_back(plot(title, "time (s)", y_label, curves));
-  };
-  add("organ model, moving camera", "z (m)",
-      {{"moving", "time", "hip_up", CurveStyle::dashed, "HIP"},
-       {"moving", "time", "proxy_up", CurveStyle::line, "proxy"}});
-  add("Force", "force (N)", {{"moving", "time", "force", CurveStyle::line, ""}});
-  add("Proxy to measured surface", "distance (m)",
-      {{"moving", "time", "signed_distance", CurveStyle::line, ""}});
+  PanelColumn panels{figure, "moving", "time", "time (s)", 2};
+  panels.add("organ model, moving camera", "z (m)",
+             {{"hip_up", CurveStyle::dashed, "HIP"}, {"proxy_up", CurveStyle::line, "proxy"}});
+  panels.add("Force", "force (N)", {{"force"}});
+  panels.add("Proxy to measured surface", "distance (m)", {{"signed_distance"}});
   add_claims(figure, "organ model, moving camera", trace);
 }
 
@@ -165,14 +147,9 @@ Figure figure_4_16_recorded(FigureContext& context) {
                 "in this projection it can lie beside the row's points. Moving camera: the HIP stays 10 "
                 "mm behind the newest frame's surface at one pixel, and lifts off while that pixel sees "
                 "a hole or an edge."};
-  add_scan(figure, context, "fig4.16-recorded", "still", "box and organ model, camera at rest");
-  place_in_column(figure, 0, 0);
-  const std::size_t boxes = figure.panels.size();
-  add_scan(figure, context, "fig4.16-boxes", "boxes", "two boxes on a table, one cloud held");
-  place_in_column(figure, boxes, 1);
-  const std::size_t moving = figure.panels.size();
+  add_scan(figure, context, 0, "fig4.16-recorded", "still", "box and organ model, camera at rest");
+  add_scan(figure, context, 1, "fig4.16-boxes", "boxes", "two boxes on a table, one cloud held");
   add_moving(figure, context);
-  place_in_column(figure, moving, 2);
   return figure;
 }
 

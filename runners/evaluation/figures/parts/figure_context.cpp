@@ -64,4 +64,35 @@ SweepResult FigureContext::checked(const Sweep& sweep, SweepResult result) {
   return result;
 }
 
+std::vector<NamedRun> named_runs(FigureContext& context, const std::vector<NamedExperiment>& experiments) {
+  std::vector<Experiment> loaded;
+  for (const NamedExperiment& one : experiments)
+    loaded.push_back(Experiment::load(one.experiment, one.overrides));
+  std::vector<Trace> traces = context.run(loaded);
+  std::vector<NamedRun> runs;
+  for (std::size_t i = 0; i < loaded.size(); ++i)
+    runs.push_back({experiments[i].name, experiments[i].label, std::move(loaded[i]), std::move(traces[i])});
+  return runs;
+}
+
+std::vector<std::size_t> runs_at(const SweepResult& sweep,
+                                 const std::vector<std::optional<std::size_t>>& places) {
+  std::vector<std::size_t> runs;
+  for (std::size_t run = 0; run < sweep.run_count(); ++run) {
+    const std::vector<std::size_t> at = sweep.axis_indices(sweep.cell_of(run));
+    bool has_places = true;
+    for (std::size_t axis = 0; axis < places.size(); ++axis)
+      has_places = has_places && (!places[axis] || *places[axis] == at[axis]);
+    if (has_places) runs.push_back(run);
+  }
+  return runs;
+}
+
+std::vector<double> measured(const SweepResult& sweep, const std::string& measure,
+                             const std::vector<std::size_t>& runs) {
+  std::vector<double> values;
+  for (const std::size_t run : runs) values.push_back(sweep.measure(measure)[run]);
+  return values;
+}
+
 }  // namespace remote_touch

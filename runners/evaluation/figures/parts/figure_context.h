@@ -1,6 +1,7 @@
 // FigureContext runs the experiments of a figure.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,9 @@ class FigureContext {
       : kernels_(kernels), stop_(stop), coarse_(coarse), runs_(std::move(runs)) {}
 
   Trace run(const Experiment& experiment);
+  Trace run(const std::string& experiment, const std::vector<std::string>& overrides = {}) {
+    return run(Experiment::load(experiment, overrides));
+  }
   // Records an experiment whose frames are used without a run.
   void uses(const Experiment& experiment) {
     note(experiment.to_json());
@@ -95,6 +99,25 @@ class FigureContext {
   SideBySide runs_;
   std::size_t runs_of_maps_ = 0, made_runs_of_maps_ = 0;
 };
+
+// A run of a figure that has several: its name in tables, and a label for readers.
+struct NamedExperiment {
+  std::string name, label, experiment;
+  std::vector<std::string> overrides = {};
+};
+struct NamedRun {
+  std::string name, label;
+  Experiment experiment;
+  Trace trace;
+};
+std::vector<NamedRun> named_runs(FigureContext& context, const std::vector<NamedExperiment>& experiments);
+
+// Returns the runs of a sweep with these places on its axes, in order; an axis without a place may have any.
+std::vector<std::size_t> runs_at(const SweepResult& sweep,
+                                 const std::vector<std::optional<std::size_t>>& places);
+// Returns a measure of these runs.
+std::vector<double> measured(const SweepResult& sweep, const std::string& measure,
+                             const std::vector<std::size_t>& runs);
 
 // The values of a numeric axis of a sweep, and the one that a cell has.
 inline const std::vector<double>& axis_values(const SweepResult& sweep, std::size_t axis) {

@@ -10,6 +10,59 @@
 
 namespace remote_touch {
 
+Numbers norms(const std::vector<Vec3>& vectors) {
+  return each(vectors, [](const Vec3& v) { return v.norm(); });
+}
+
+Numbers norms_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return each_of(a.size(), [&](std::size_t i) { return (a[i] - b[i]).norm(); });
+}
+
+Numbers along(int axis, const std::vector<Vec3>& vectors) {
+  return each(vectors, [&](const Vec3& v) { return v[axis]; });
+}
+
+Numbers minus(Numbers values, const Numbers& others) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] -= others.at(i);
+  return values;
+}
+
+Numbers scaled(double factor, Numbers values) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+Numbers magnitudes(Numbers values) {
+  for (double& value : values) value = std::abs(value);
+  return values;
+}
+
+double rms(const Numbers& values) {
+  return std::sqrt(mean(each(values, [](double value) { return value * value; })));
+}
+
+Numbers at(const std::vector<std::size_t>& rows, const Numbers& values) {
+  return each(rows, [&](std::size_t row) { return values.at(row); });
+}
+
+Table rows_of(Table table, const std::vector<std::size_t>& rows) {
+  for (Column& column : table.columns)
+    std::visit(
+        [&](auto& values) {
+          auto whole = std::move(values);
+          values.clear();
+          for (const std::size_t row : rows) values.push_back(whole.at(row));
+        },
+        column.values);
+  return table;
+}
+
+Table every(std::size_t step, Table table) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < table.columns.at(0).length(); row += step) rows.push_back(row);
+  return rows_of(std::move(table), rows);
+}
+
 void add_rows(Table& table, const std::vector<ColumnName>& columns, const TableRows& rows) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     std::vector<double> values;
@@ -29,6 +82,15 @@ Panel plot(const std::string& title, const std::string& x_label, const std::stri
            std::vector<Curve> curves, const PanelFrame& frame) {
   return {title,         x_label,       y_label, frame.equal_aspect, std::move(curves),
           frame.x_range, frame.y_range, frame.at};
+}
+
+Panel& PanelColumn::add(const std::string& title, const std::string& y_label,
+                        const std::vector<CurveOfY>& curves,
+                        std::optional<std::pair<double, double>> y_range) {
+  Panel panel = plot(title, x_label, y_label, {}, {{{row++, column}}, x_range, y_range});
+  for (const CurveOfY& curve : curves)
+    panel.curves.push_back({table, x, curve.y, curve.style, curve.label, 0, curve.z});
+  return figure.panels.emplace_back(std::move(panel));
 }
 
 void place_in_rows(Figure& figure, std::size_t columns) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -12,6 +13,8 @@
 #include <vector>
 
 #include "analysis/storage/result_file.h"
+#include "analysis/trace/interval_estimates.h"
+#include "core/points/vector.h"
 
 namespace remote_touch {
 
@@ -23,6 +26,52 @@ using TableRows = std::vector<std::vector<double>>;
 void add_rows(Table& table, const std::vector<ColumnName>& columns, const TableRows& rows);
 Table table_of(const std::string& name, const std::string& title, const std::vector<ColumnName>& columns,
                const TableRows& rows);
+
+// Columns of numbers. A recipe states a table as Table{name, title, {{column, units, meaning, numbers}, ...}}
+// and makes the numbers with these: one for each tick of a trace, run of a list or cell of a sweep.
+using Numbers = std::vector<double>;
+
+// Returns value(i) for each i below `count`.
+template <class Value>
+Numbers each_of(std::size_t count, Value&& value) {
+  return values_where(
+      count, [](std::size_t) { return true; }, value);
+}
+// Returns value(element) for each element of a list; `value` may be a member of the element.
+template <class List, class Value>
+Numbers each(const List& list, Value&& value) {
+  return each_of(std::size(list), [&](std::size_t i) { return std::invoke(value, list[i]); });
+}
+// Returns whole numbers, such as counts, as numbers.
+template <class Whole>
+Numbers doubles(const std::vector<Whole>& values) {
+  return {values.begin(), values.end()};
+}
+Numbers norms(const std::vector<Vec3>& vectors);
+Numbers norms_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b);  // of a - b
+Numbers along(int axis, const std::vector<Vec3>& vectors);                      // components: x is 0
+Numbers minus(Numbers values, const Numbers& others);                           // pre: as many others
+Numbers scaled(double factor, Numbers values);
+Numbers magnitudes(Numbers values);
+double rms(const Numbers& values);  // NaN without values
+// Returns the values whose index qualifies: where(distance, is_pressed) before max_of(), mean() or rms().
+template <class Qualifies>
+Numbers where(const Numbers& values, Qualifies&& qualifies) {
+  return values_where(values.size(), qualifies, [&](std::size_t i) { return values[i]; });
+}
+// Returns the values of these rows.
+Numbers at(const std::vector<std::size_t>& rows, const Numbers& values);
+// Returns the number of i below `count` for which holds(i) is true.
+template <class Holds>
+double count_where(std::size_t count, Holds&& holds) {
+  double number = 0;
+  for (std::size_t i = 0; i < count; ++i) number += holds(i) ? 1 : 0;
+  return number;
+}
+
+// Returns these rows of a table, or every step-th row from the first one on.
+Table rows_of(Table table, const std::vector<std::size_t>& rows);
+Table every(std::size_t step, Table table);
 
 // A column that takes its number in each row from an element of a list.
 template <class Element>
@@ -79,6 +128,23 @@ struct PanelFrame {
 };
 Panel plot(const std::string& title, const std::string& x_label, const std::string& y_label,
            std::vector<Curve> curves, const PanelFrame& frame = {});
+// Panels below each other in a column of a figure, each with curves of one table over the same column.
+struct PanelColumn {
+  // The numbers y of the table over its column x; z: as in Curve.
+  struct CurveOfY {
+    std::string y;
+    CurveStyle style = CurveStyle::line;
+    std::string label = {}, z = {};
+  };
+  Figure& figure;
+  std::string table, x, x_label;
+  int column = 0;
+  std::optional<std::pair<double, double>> x_range = {};
+  int row = 0;  // of the next panel
+
+  Panel& add(const std::string& title, const std::string& y_label, const std::vector<CurveOfY>& curves,
+             std::optional<std::pair<double, double>> y_range = {});
+};
 // Places the panels of a figure in rows of so many columns.
 void place_in_rows(Figure& figure, std::size_t columns);
 
