@@ -6,7 +6,6 @@
 #include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/measures.h"
 #include "core/points/vector.h"
-#include "runners/evaluation/figures/parts/box_contacts.h"
 #include "runners/evaluation/figures/parts/figure_context.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/evaluation/figures/parts/figure_pictures.h"
@@ -50,8 +49,8 @@ std::size_t plateau_tick(const Trace& trace) {
   return farthest;
 }
 
-std::int32_t max(const std::vector<std::int32_t>& counts) {
-  return *std::max_element(counts.begin(), counts.end());
+double max(const std::vector<std::int32_t>& counts) {
+  return max_of(doubles(counts));
 }
 
 bool agrees(const Trace& t, std::size_t i) {
@@ -70,59 +69,65 @@ bool any_count(const Trace& t, std::size_t i) {
 // Number of ticks for which holds(i) is true.
 template <class Holds>
 double ticks_with(const Trace& trace, Holds&& holds) {
-  double count = 0;
-  for (std::size_t i = 0; i < trace.length(); ++i) count += holds(i) ? 1 : 0;
-  return count;
+  return count_where(trace.length(), holds);
 }
 
 Table motion_table(const BoxRun& run) {
   const Trace& t = run.trace;
-  TableRows rows;
-  for (std::size_t i = 0; i < t.length(); i += kTableStride_6_3)
-    rows.push_back({t.time_s[i], t.hip_position_m[i].y() - t.hip_position_m[0].y(),
-                    t.proxy_position_m[i].y() - t.hip_position_m[0].y(), device_deg(t, i), tool_deg(t, i),
-                    static_cast<double>(t.contact_count[i]), static_cast<double>(t.active_constraints[i]),
-                    static_cast<double>(t.contact_clusters[i]), t.force_N[i].norm(), t.torque_Nm[i].norm()});
-  const std::vector<ColumnName> columns = {
-      {"time", "s", "simulated time"},
-      {"device_y", "m", "displacement of the device along y from its start"},
-      {"tool_y", "m", "displacement of the tool along y from the same place"},
-      {"device_rotation", "deg", "rotation of the device about y"},
-      {"tool_rotation", "deg", "rotation of the tool about y"},
-      {"points", "1", "points that touch the tool"},
-      {"active", "1", "constraints that hold it"},
-      {"clusters", "1", "10 mm cells of the tool with points that touch"},
-      {"force", "N", "magnitude of the force"},
-      {"torque", "N m", "magnitude of the torque"}};
-  return table_of(run.name, "contact rule " + run.rule + ", points 3 mm apart", columns, rows);
+  const auto each_tick = [&](const auto& value) {
+    return each_of(t.length(), [&](std::size_t i) { return value(t, i); });
+  };
+  const auto from_start_m = [&](const std::vector<Vec3>& p) {
+    return each(p, [&](const Vec3& at) { return at.y() - t.hip_position_m[0].y(); });
+  };
+  return every(
+      kTableStride_6_3,
+      {run.name,
+       "contact rule " + run.rule + ", points 3 mm apart",
+       {{"time", "s", "simulated time", t.time_s},
+        {"device_y", "m", "displacement of the device along y from its start",
+         from_start_m(t.hip_position_m)},
+        {"tool_y", "m", "displacement of the tool along y from the same place",
+         from_start_m(t.proxy_position_m)},
+        {"device_rotation", "deg", "rotation of the device about y", each_tick(device_deg)},
+        {"tool_rotation", "deg", "rotation of the tool about y", each_tick(tool_deg)},
+        {"points", "1", "points that touch the tool", doubles(t.contact_count)},
+        {"active", "1", "constraints that hold it", doubles(t.active_constraints)},
+        {"clusters", "1", "10 mm cells of the tool with points that touch", doubles(t.contact_clusters)},
+        {"force", "N", "magnitude of the force", norms(t.force_N)},
+        {"torque", "N m", "magnitude of the torque", norms(t.torque_Nm)}}});
 }
 
 // Returns a table of all runs, one row for each.
 Table summary_table(const std::vector<BoxRun>& runs) {
   std::vector<std::string> tools, rules;
-  TableRows rows;
-  for (const BoxRun& run : runs) {
-    const Trace& t = run.trace;
-    tools.push_back(run.tool), rules.push_back(run.rule);
-    rows.push_back({run.spacing_mm * 1e-3, tool_deg(t, plateau_tick(t)), double(max(t.contact_count)),
-                    double(max(t.active_constraints)), double(max(t.contact_clusters)),
-                    max_of(t.tool_penetration_m), max_force_N(t),
-                    double(std::count(t.budget_exhausted.begin(), t.budget_exhausted.end(), 1)),
-                    ticks_with(t, [&](std::size_t i) { return agrees(t, i) && any_count(t, i); })});
-  }
-  const std::vector<ColumnName> columns = {{"spacing", "m", "spacing of the points"},
-                                           {"plateau", "deg", "rotation of the tool at 30 deg commanded"},
-                                           {"points", "1", "most points that touch at once"},
-                                           {"active", "1", "most active constraints at once"},
-                                           {"clusters", "1", "most 10 mm cells that touch at once"},
-                                           {"penetration", "m", "deepest point at the end of a tick"},
-                                           {"force", "N", "maximum force"},
-                                           {"exhausted", "1", "ticks that used up their detections"},
-                                           {"unheld", "1", "ticks in which points touch without holding"}};
-  Table table = table_of("runs", "both rules, points 3, 2 and 1 mm apart", columns, rows);
-  table.columns.insert(table.columns.begin(), {{"tool", "1", "tool_mesh of the run", tools, 1, {}},
-                                               {"rule", "1", "contact rule", rules, 1, {}}});
-  return table;
+  for (const BoxRun& run : runs) tools.push_back(run.tool), rules.push_back(run.rule);
+  const auto of_each = [&](const auto& value) {
+    return each(runs, [&](const BoxRun& run) { return value(run.trace); });
+  };
+  using T = const Trace&;
+  return {
+      "runs",
+      "both rules, points 3, 2 and 1 mm apart",
+      {{"tool", "1", "tool_mesh of the run", tools},
+       {"rule", "1", "contact rule", rules},
+       {"spacing", "m", "spacing of the points",
+        each(runs, [](const BoxRun& run) { return run.spacing_mm * 1e-3; })},
+       {"plateau", "deg", "rotation of the tool at 30 deg commanded",
+        of_each([](T t) { return tool_deg(t, plateau_tick(t)); })},
+       {"points", "1", "most points that touch at once", of_each([](T t) { return max(t.contact_count); })},
+       {"active", "1", "most active constraints at once",
+        of_each([](T t) { return max(t.active_constraints); })},
+       {"clusters", "1", "most 10 mm cells that touch at once",
+        of_each([](T t) { return max(t.contact_clusters); })},
+       {"penetration", "m", "deepest point at the end of a tick",
+        of_each([](T t) { return max_of(t.tool_penetration_m); })},
+       {"force", "N", "maximum force", of_each(max_force_N)},
+       {"exhausted", "1", "ticks that used up their detections",
+        of_each([](T t) { return std::ranges::count(t.budget_exhausted, 1); })},
+       {"unheld", "1", "ticks in which points touch without holding", of_each([](T t) {
+          return ticks_with(t, [&](std::size_t i) { return agrees(t, i) && any_count(t, i); });
+        })}}};
 }
 
 std::vector<BoxRun> box_runs(FigureContext& context) {
@@ -269,22 +274,18 @@ void add_floor_claims(Figure& figure, FigureContext& context) {
 }
 
 void add_panels(Figure& figure, const BoxRun& run, int column) {
-  int row = 0;
-  const auto add = [&](const std::string& title, const char* y_label, std::pair<double, double> y_range,
-                       const std::vector<Curve>& curves) {
-    figure.panels.push_back(plot(title, "time (s)", y_label, curves, {{{row++, column}}, {{0, 8}}, y_range}));
-  };
-  const std::string& t = run.name;
-  add("Contact rule " + run.rule, "displacement along y (m)", {-0.065, 0.005},
-      {{t, "time", "device_y", CurveStyle::line, "device"},
-       {t, "time", "tool_y", CurveStyle::dashed, "tool"}});
-  add("", "rotation about y (deg)", {-3, 33},
-      {{t, "time", "device_rotation", CurveStyle::line, "device"},
-       {t, "time", "tool_rotation", CurveStyle::dashed, "tool"}});
-  add("", "count", {0, 16},
-      {{t, "time", "points", CurveStyle::steps, "points that touch"},
-       {t, "time", "clusters", CurveStyle::steps, "10 mm cells that touch"},
-       {t, "time", "active", CurveStyle::steps, "active constraints"}});
+  PanelColumn panels{figure, run.name, "time", "time (s)", column, {{0, 8}}};
+  panels.add("Contact rule " + run.rule, "displacement along y (m)",
+             {{"device_y", CurveStyle::line, "device"}, {"tool_y", CurveStyle::dashed, "tool"}},
+             {{-0.065, 0.005}});
+  panels.add("", "rotation about y (deg)",
+             {{"device_rotation", CurveStyle::line, "device"}, {"tool_rotation", CurveStyle::dashed, "tool"}},
+             {{-3, 33}});
+  panels.add("", "count",
+             {{"points", CurveStyle::steps, "points that touch"},
+              {"clusters", CurveStyle::steps, "10 mm cells that touch"},
+              {"active", CurveStyle::steps, "active constraints"}},
+             {{0, 16}});
 }
 
 void add_pictures(Figure& figure, const FigureContext& context, const BoxRun& run) {
@@ -301,6 +302,50 @@ void add_pictures(Figure& figure, const FigureContext& context, const BoxRun& ru
   above.parts[0].colour = beside.parts[0].colour = 0x4F6F8F;
   figure.panels.push_back(scene_panel("At 30 deg commanded, from above", 3, 0, above));
   figure.panels.push_back(scene_panel("The same from the side", 3, 1, beside));
+}
+
+// Adds the counts over the spacing of the points, for each contact rule: a table, claims, and two panels. The
+// dissertation counts "as many as 6 contact points" (6.3.1) and prints no spacing.
+void add_contacts_over_spacing(Figure& figure, const SweepResult& sweep, int row) {
+  constexpr double kPrintedContacts = 6, kDefault_m = 0.003;
+  constexpr double kKnownAtDefault[] = {12, 8};  // touching points at 3 mm, the same on every processor
+  const Numbers& spacings_m = axis_values(sweep, 0);
+  Panel points = plot("Points that touch", "spacing of the points (m)", "largest count in a run", {},
+                      {.at = {{row, 0}}, .y_range = {{0, 35}}}),
+        others = plot("Counts that depend little on the spacing", points.x_label, points.y_label, {},
+                      {.at = {{row, 1}}, .y_range = {{0, 8}}});
+  for (std::size_t rule = 0; rule < kRules.size(); ++rule) {
+    const std::string label = kRules[rule].second, name = "spacings_" + kRules[rule].first;
+    const auto most = [&](const char* count) { return measured(sweep, count, runs_at(sweep, {{}, rule})); };
+    const Numbers touching = most("max_contact_count");
+    figure.tables.push_back(
+        {name,
+         "contact rule " + label + ": counts over the spacing of the points",
+         {{"spacing", "m", "spacing of the points", spacings_m},
+          {"points", "1", "most points that touch at once", touching},
+          {"active", "1", "most active constraints at once", most("max_active_constraints")},
+          {"clusters", "1", "most 10 mm cells that touch at once", most("max_contact_clusters")},
+          {"printed", "1", "as many as 6 contact points (6.3.1)",
+           Numbers(spacings_m.size(), kPrintedContacts)}}});
+    points.curves.push_back({name, "spacing", "points", CurveStyle::line, label});
+    others.curves.push_back({name, "spacing", "clusters", CurveStyle::line, label + ", 10 mm cells"});
+    others.curves.push_back({name, "spacing", "active", CurveStyle::dashed, label + ", active constraints"});
+    const Claims claims(figure, "contact rule " + label + ": ");
+    const std::string paper = "6, at a spacing that is not printed";
+    const double at_default = max_where(
+        touching.size(), [&](std::size_t i) { return std::abs(spacings_m[i] - kDefault_m) < 1e-9; },
+        [&](std::size_t i) { return touching[i]; });
+    claims.differs("with points 3 mm apart more than 6 touch at once: largest number", at_default,
+                   kKnownAtDefault[rule], kKnownAtDefault[rule], "points", paper);
+    claims.at_least(
+        "at some spacings from 1 to 6 mm, in steps of 0.5 mm, the most points that touch at once are 6: "
+        "number of these spacings",
+        std::ranges::count(touching, kPrintedContacts), 1, "spacings", paper);
+  }
+  points.curves.push_back(
+      {"spacings_voxels", "spacing", "printed", CurveStyle::dashed, "printed: 6 contact points (6.3.1)"});
+  figure.panels.push_back(points);
+  figure.panels.push_back(others);
 }
 
 }  // namespace

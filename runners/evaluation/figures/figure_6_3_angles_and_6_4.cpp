@@ -22,120 +22,99 @@ constexpr double kBlockedDeg = 30;  // the walls hold the tool from this angle o
 
 // The runs of one rule and spacing, over the commanded angle.
 struct Turning {
-  std::string rule;
-  double spacing_m = 0;
-  std::vector<double> commanded_deg, turned_deg, penetration_m, contacts, torque_Nm, exhausted;
+  std::string rule, spacing;
+  Table table;
 
-  std::string name() const {
-    return (rule == "voxels" ? "voxels_" : "look_ahead_") + std::to_string(std::lround(1e3 * spacing_m)) +
-           "mm";
-  }
-  // Returns the minimum and maximum rotation of the tool, over the angles from kBlockedDeg on; NaN if there
-  // are none.
-  std::pair<double, double> stop_deg() const {
-    const auto blocked = [this](std::size_t i) { return commanded_deg[i] >= kBlockedDeg; };
-    const auto turned = [this](std::size_t i) { return turned_deg[i]; };
-    return {min_where(commanded_deg.size(), blocked, turned),
-            max_where(commanded_deg.size(), blocked, turned)};
+  const Numbers& operator[](const char* column) const { return numbers(table, column); }
+  // Returns the rotations of the tool over the angles from kBlockedDeg on.
+  Numbers stops_deg() const {
+    const Numbers &commanded = (*this)["commanded"], &turned = (*this)["turned"];
+    return values_where(
+        turned.size(), [&](std::size_t i) { return commanded[i] >= kBlockedDeg; },
+        [&](std::size_t i) { return turned[i]; });
   }
 };
 
-std::vector<Turning> turnings(const SweepResult& result) {
-  const std::vector<double>& spacings = axis_values(result, 1);
-  std::vector<Turning> list;
-  for (const char* rule : {"look-ahead", "voxels"})
-    for (const double spacing_m : spacings) list.push_back({rule, spacing_m, {}, {}, {}, {}, {}, {}});
-  for (std::size_t run = 0; run < result.run_count(); ++run) {
-    const std::vector<std::size_t> indices = result.axis_indices(result.cell_of(run));
-    Turning& one = list[indices[2] * spacings.size() + indices[1]];
-    const double angle_deg = axis_values(result, 0)[indices[0]];
-    one.commanded_deg.push_back(angle_deg);
-    // The device stays at the commanded angle for as long as the tool needs; the lag is largest there.
-    one.turned_deg.push_back(angle_deg - result.measure("max_tool_lag_angle")[run] / kRadiansPerDegree);
-    one.penetration_m.push_back(result.measure("max_tool_penetration")[run]);
-    one.contacts.push_back(result.measure("max_contact_count")[run]);
-    one.torque_Nm.push_back(result.measure("max_torque")[run]);
-    one.exhausted.push_back(result.measure("exhausted_fraction")[run]);
-  }
-  return list;
-}
-
-std::vector<double> differences(std::vector<double> values, const std::vector<double>& others) {
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] -= others.at(i);
-  return values;
-}
-
-// reference: the run that the others are compared with.
-Table turning_table(const Turning& run, const Turning& reference) {
-  Table table{run.name(), "contact rule " + run.rule + ", points " +
-                              std::to_string(std::lround(1e3 * run.spacing_m)) + " mm apart"};
-  table.add("commanded", "deg", "angle to which the device is turned", run.commanded_deg);
-  table.add("turned", "deg", "angle to which the tool turns at most", run.turned_deg);
-  table.add("contacts", "1", "maximum number of points that touch", run.contacts);
-  table.add("torque", "N m", "maximum torque", run.torque_Nm);
-  table.add("penetration", "m", "maximum depth of a point in the tool at the end of a tick",
-            run.penetration_m);
-  table.add("turned_difference", "deg", "angle of the tool less that of look-ahead, 1 mm",
-            differences(run.turned_deg, reference.turned_deg));
-  table.add("torque_difference", "N m", "torque less that of look-ahead, 1 mm",
-            differences(run.torque_Nm, reference.torque_Nm));
-  return table;
+// reference: the table that this one is compared with; null: itself.
+Turning turning(const SweepResult& sweep, std::size_t rule, std::size_t spacing, const Table* reference) {
+  const std::vector<std::size_t> runs = runs_at(sweep, {{}, spacing, rule});
+  const std::string mm = std::to_string(std::lround(1e3 * axis_values(sweep, 1)[spacing]));
+  const std::string rules[] = {"look-ahead", "voxels"}, names[] = {"look_ahead_", "voxels_"};
+  const Numbers& commanded = axis_values(sweep, 0);
+  // The device stays at the commanded angle for as long as the tool needs; the lag is largest there.
+  const Numbers lag_rad = measured(sweep, "max_tool_lag_angle", runs);
+  Table table{
+      names[rule] + mm + "mm",
+      "contact rule " + rules[rule] + ", points " + mm + " mm apart",
+      {{"commanded", "deg", "angle to which the device is turned", commanded},
+       {"turned", "deg", "angle to which the tool turns at most",
+        each_of(runs.size(), [&](std::size_t i) { return commanded[i] - lag_rad[i] / kRadiansPerDegree; })},
+       {"contacts", "1", "maximum number of points that touch", measured(sweep, "max_contact_count", runs)},
+       {"torque", "N m", "maximum torque", measured(sweep, "max_torque", runs)},
+       {"penetration", "m", "maximum depth of a point in the tool at the end of a tick",
+        measured(sweep, "max_tool_penetration", runs)}}};
+  const auto less = [&](const char* column) {
+    return minus(numbers(table, column), numbers(reference ? *reference : table, column));
+  };
+  table.add("turned_difference", "deg", "angle of the tool less that of look-ahead, 1 mm", less("turned"));
+  table.add("torque_difference", "N m", "torque less that of look-ahead, 1 mm", less("torque"));
+  return {rules[rule], mm + " mm", table};
 }
 
 Panel panel(const std::vector<Turning>& runs, const std::string& title, const std::string& column,
             const std::string& y_label) {
   Panel made{title, "commanded rotation (deg)", y_label};
   for (const Turning& run : runs)
-    made.curves.push_back({run.name(), "commanded", column, CurveStyle::line,
-                           run.rule + ", " + std::to_string(std::lround(1e3 * run.spacing_m)) + " mm"});
+    made.curves.push_back(
+        {run.table.name, "commanded", column, CurveStyle::line, run.rule + ", " + run.spacing});
   return made;
 }
 
-// Returns the largest value(run) over the runs of a rule, or over all runs if `rule` is empty; NaN if there
-// are none.
-template <class Value>
-double max_of_rule(const std::vector<Turning>& runs, const std::string& rule, Value&& value) {
-  return max_where(
-      runs.size(), [&](std::size_t i) { return rule.empty() || runs[i].rule == rule; },
-      [&](std::size_t i) { return value(runs[i]); });
-}
-
-void add_claims(Figure& figure, const std::vector<Turning>& runs) {
-  const auto free_lag = [](const Turning& run) {
+void add_claims(Figure& figure, const std::vector<Turning>& runs, const Numbers& exhausted) {
+  // The largest value(run) over the runs of a rule, or over all runs if `rule` is empty.
+  const auto largest = [&](const std::string& rule, const auto& value) {
     return max_where(
-        run.commanded_deg.size(), [&](std::size_t i) { return run.commanded_deg[i] <= kFreeDeg; },
-        [&](std::size_t i) { return run.commanded_deg[i] - run.turned_deg[i]; });
+        runs.size(), [&](std::size_t i) { return rule.empty() || runs[i].rule == rule; },
+        [&](std::size_t i) { return value(runs[i]); });
   };
-  const auto history = [](const Turning& run) { return run.stop_deg().second - run.stop_deg().first; };
-  const auto stop = [](const Turning& run) { return run.stop_deg().second; };
-  const auto minus_stop = [](const Turning& run) { return -run.stop_deg().second; };
-  const auto depth = [](const Turning& run) { return max_of(run.penetration_m); };
-  const auto exhausted = [](const Turning& run) { return max_of(run.exhausted); };
+  const auto free_lag = [](const Turning& run) {
+    const Numbers &commanded = run["commanded"], &turned = run["turned"];
+    return max_where(
+        turned.size(), [&](std::size_t i) { return commanded[i] <= kFreeDeg; },
+        [&](std::size_t i) { return commanded[i] - turned[i]; });
+  };
+  const auto stop = [](const Turning& run) { return max_of(run.stops_deg()); };
+  const auto minus_stop = [](const Turning& run) { return -max_of(run.stops_deg()); };
+  const auto history = [](const Turning& run) { return max_of(run.stops_deg()) - min_of(run.stops_deg()); };
+  const auto depth = [](const Turning& run) { return max_of(run["penetration"]); };
   const Claims claims(figure);
-  claims.at_most("the tool follows the device up to 10 deg: largest lag", max_of_rule(runs, "", free_lag),
-                 1e-4, "deg");
+  claims.at_most("the tool follows the device up to 10 deg: largest lag", largest("", free_lag), 1e-4, "deg");
   claims.at_most(
       "the tool stops at one angle, however far beyond 30 deg the device turns: largest difference",
-      max_of_rule(runs, "", history), 0.1, "deg");
+      largest("", history), 0.1, "deg");
   claims.at_most(
       "contact rule look-ahead: the tool stops at the same angle with points 1, 2 and 3 mm apart: "
       "largest difference",
-      max_of_rule(runs, "look-ahead", stop) + max_of_rule(runs, "look-ahead", minus_stop), 0.1, "deg");
+      largest("look-ahead", stop) + largest("look-ahead", minus_stop), 0.1, "deg");
   claims.at_most(
       "contact rule look-ahead: no point is in the tool at the end of a tick: depth of the deepest point",
-      max_of_rule(runs, "look-ahead", depth), 1e-4, "m");
+      largest("look-ahead", depth), 1e-4, "m");
   claims.at_most(
       "contact rule voxels: no point is deeper in the tool than a voxel (0.5 mm) at the end of a tick: "
       "depth of the deepest point",
-      max_of_rule(runs, "voxels", depth), 5e-4, "m");
+      largest("voxels", depth), 5e-4, "m");
   claims.at_most("no tick uses up its budget of detections: largest fraction of the ticks of a run",
-                 max_of_rule(runs, "", exhausted), 0, "fraction");
+                 max_of(exhausted), 0, "fraction");
 }
 
 }  // namespace
 
 Figure figure_6_3_angles(FigureContext& context) {
-  const std::vector<Turning> runs = turnings(context.sweep(Sweep::load("fig6.3-angles")));
+  const SweepResult sweep = context.sweep(Sweep::load("fig6.3-angles"));
+  std::vector<Turning> runs;
+  for (const std::size_t rule : {0, 1})
+    for (std::size_t spacing = 0; spacing < axis_values(sweep, 1).size(); ++spacing)
+      runs.push_back(turning(sweep, rule, spacing, runs.empty() ? nullptr : &runs.front().table));
   Figure figure{
       "6.3-angles", "A tool turned in a box, over angle, spacing and rule",
       "The experiment of Fig 6.3 with the device turned by 5 to 50 deg, for points 1 to 3 mm apart and both "
@@ -144,7 +123,7 @@ Figure figure_6_3_angles(FigureContext& context) {
       "little that the panels on the right show their differences from look-ahead with points 1 mm apart. "
       "The voxels rule uses points only, so its stop depends on their spacing; look-ahead treats each point "
       "as a disk. A line style is a spacing, a colour is a rule."};
-  for (const Turning& run : runs) figure.tables.push_back(turning_table(run, runs.front()));
+  for (const Turning& run : runs) figure.tables.push_back(run.table);
   figure.panels = {
       panel(runs, "Rotation of the tool", "turned", "tool rotation (deg)"),
       panel(runs, "Rotation less that of look-ahead, 1 mm", "turned_difference", "difference (deg)"),
@@ -153,7 +132,7 @@ Figure figure_6_3_angles(FigureContext& context) {
       panel(runs, "Contacts", "contacts", "touching points"),
       panel(runs, "Deepest point in the tool", "penetration", "depth (m)")};
   place_in_rows(figure, 2);
-  add_claims(figure, runs);
+  add_claims(figure, runs, sweep.measure("exhausted_fraction"));
   return figure;
 }
 
@@ -199,29 +178,30 @@ std::string table_name(const TouchRun& run) {
   return std::string(run.shown->table) + (is_printed(run) ? "_voxels" : "");
 }
 
+// Distance from the tool to the device in each tick.
+Numbers lags_m(const Trace& t) {
+  return norms_between(t.hip_position_m, t.proxy_position_m);
+}
+
 Table touch_table(const TouchRun& run) {
   const Trace& t = run.trace;
-  TableRows rows;
-  for (std::size_t i = 0; i < t.length(); i += kTableStride_6_4)
-    rows.push_back({t.time_s[i], static_cast<double>(t.frame_index[i]), lag_m(t, i),
-                    lag_rad(t, i) / kRadiansPerDegree, static_cast<double>(t.contact_count[i]),
-                    static_cast<double>(t.active_constraints[i]), static_cast<double>(t.contact_clusters[i]),
-                    t.tool_penetration_m[i], static_cast<double>(t.detections[i]),
-                    static_cast<double>(t.budget_exhausted[i]), t.force_N[i].norm(), t.torque_Nm[i].norm()});
-  const std::vector<ColumnName> columns = {
-      {"time", "s", "simulated time"},
-      {"frame", "1", "frame in use"},
-      {"lag", "m", "from the tool's centre of mass to the device"},
-      {"lag_rotation", "deg", "between their orientations"},
-      {"points", "1", "points that touch the tool"},
-      {"active", "1", "constraints that hold it"},
-      {"clusters", "1", "10 mm cells of the tool with points that touch"},
-      {"penetration", "m", "deepest point in the tool at the end of the tick"},
-      {"detections", "1", "collision detections in the tick"},
-      {"exhausted", "1", "the tick ended before the tool was at rest"},
-      {"force", "N", "magnitude of the force"},
-      {"torque", "N m", "magnitude of the torque"}};
-  return table_of(table_name(run), run.shown->label + (", contact rule " + run.rule), columns, rows);
+  return every(
+      kTableStride_6_4,
+      {table_name(run),
+       run.shown->label + (", contact rule " + run.rule),
+       {{"time", "s", "simulated time", t.time_s},
+        {"frame", "1", "frame in use", doubles(t.frame_index)},
+        {"lag", "m", "from the tool's centre of mass to the device", lags_m(t)},
+        {"lag_rotation", "deg", "between their orientations",
+         each_of(t.length(), [&](std::size_t i) { return lag_rad(t, i) / kRadiansPerDegree; })},
+        {"points", "1", "points that touch the tool", doubles(t.contact_count)},
+        {"active", "1", "constraints that hold it", doubles(t.active_constraints)},
+        {"clusters", "1", "10 mm cells of the tool with points that touch", doubles(t.contact_clusters)},
+        {"penetration", "m", "deepest point in the tool at the end of the tick", t.tool_penetration_m},
+        {"detections", "1", "collision detections in the tick", doubles(t.detections)},
+        {"exhausted", "1", "the tick ended before the tool was at rest", doubles(t.budget_exhausted)},
+        {"force", "N", "magnitude of the force", norms(t.force_N)},
+        {"torque", "N m", "magnitude of the torque", norms(t.torque_Nm)}}});
 }
 
 // Returns every second pixel, in a chequered pattern, of the part of the recording that is shown.
@@ -261,12 +241,11 @@ void add_panels(Figure& figure, const TouchRun& run, int row) {
       {{{row, 2}}, {{0, 3.2}}, {{0, 9}}}));
 }
 
-template <class Holds>
-double fraction_of(const Trace& trace, double from_s, double until_s, Holds&& holds) {
-  double count = 0, all = 0;
-  for (std::size_t i = tick_of(trace, from_s); i < tick_of(trace, until_s); ++i)
-    count += holds(i) ? 1 : 0, ++all;
-  return count / all;
+// Returns the share of the ticks while the tool slides in which it touches.
+double touching_fraction(const Trace& t) {
+  const std::size_t from = tick_of(t, kSlides_s), until = tick_of(t, kLifts_s);
+  return mean_where(
+      until, [&](std::size_t i) { return i >= from; }, [&](std::size_t i) { return t.contact_count[i] > 0; });
 }
 
 // Returns the largest penetration of the tool over the ticks without a new frame; NaN if one of them has no
@@ -280,20 +259,12 @@ double deepest_m(const Trace& trace) {
 // Counts the ticks whose log contradicts itself. No tick may make more detections than the budget, and a tick
 // must report a used-up budget exactly if it is not at rest. It must then have made all its detections.
 double inconsistent_ticks(const TouchRun& run) {
-  const auto renderer = nlohmann::json::parse(run.experiment.to_json()).at("renderer");
-  const int budget = renderer.at("detections_per_tick");
+  const int budget = run.experiment.value_at_start("renderer.detections_per_tick");
   const Trace& t = run.trace;
-  double count = 0;
-  for (std::size_t i = 0; i < t.length(); ++i)
-    count += t.detections[i] > budget || (t.budget_exhausted[i] != 0 && t.detections[i] < budget) ||
-             (t.budget_exhausted[i] != 0) != (t.converged[i] == 0);
-  return count;
-}
-
-double max_lag_m(const Trace& t) {
-  std::vector<double> lags_m;
-  for (std::size_t i = 0; i < t.length(); ++i) lags_m.push_back(lag_m(t, i));
-  return max_of(lags_m);
+  return count_where(t.length(), [&](std::size_t i) {
+    const bool used_up = t.budget_exhausted[i] != 0;
+    return t.detections[i] > budget || (used_up && t.detections[i] < budget) || used_up != !t.converged[i];
+  });
 }
 
 void add_claims(Figure& figure, const TouchRun& run) {
@@ -306,11 +277,10 @@ void add_claims(Figure& figure, const TouchRun& run) {
       deepest_m(t), is_printed(run) ? kDeepestInShell_m : kVoxel_m, "m", "0");
   claims.at_most("the log of used-up budgets fits the detections: ticks in which it does not",
                  inconsistent_ticks(run), 0, "ticks");
-  claims.at_least("the tool touches while it slides: fraction of that time",
-                  fraction_of(t, kSlides_s, kLifts_s, [&](std::size_t i) { return t.contact_count[i] > 0; }),
-                  0.9, "fraction");
-  claims.at_least("the object holds the tool back: largest distance from tool to device", max_lag_m(t), 0.005,
-                  "m");
+  claims.at_least("the tool touches while it slides: fraction of that time", touching_fraction(t), 0.9,
+                  "fraction");
+  claims.at_least("the object holds the tool back: largest distance from tool to device", max_of(lags_m(t)),
+                  0.005, "m");
   claims.at_most("no force remains when the tool was lifted: force at the end",
                  t.force_N[t.length() - 1].norm(), 0, "N", "0");
 }
@@ -318,21 +288,16 @@ void add_claims(Figure& figure, const TouchRun& run) {
 Table summary_table(const std::vector<TouchRun>& runs) {
   std::vector<std::string> names;
   for (const TouchRun& run : runs) names.push_back(table_name(run));
-  const auto max = [](const auto& of) {
-    return static_cast<double>(*std::max_element(of.begin(), of.end()));
-  };
+  const auto max = [](const std::vector<std::int32_t>& counts) { return max_of(doubles(counts)); };
   using R = const TouchRun&;
   return quantity_table<TouchRun>(
       "runs", "what happened in each run", names, runs,
-      {{"ticks", "1", [](R r) { return static_cast<double>(r.trace.length()); }},
+      {{"ticks", "1", [](R r) { return r.trace.length(); }},
        {"most points that touch at once", "1", [&](R r) { return max(r.trace.contact_count); }},
        {"most active constraints at once", "1", [&](R r) { return max(r.trace.active_constraints); }},
        {"deepest point at the end of any tick", "m", [](R r) { return max_of(r.trace.tool_penetration_m); }},
        {"ticks that used up their detections", "1",
-        [](R r) {
-          return static_cast<double>(
-              std::count(r.trace.budget_exhausted.begin(), r.trace.budget_exhausted.end(), 1));
-        }},
+        [](R r) { return std::ranges::count(r.trace.budget_exhausted, 1); }},
        {"points of a frame without a normal, at most", "1",
         [&](R r) { return max(r.trace.disabled_points); }},
        {"maximum force", "N", [](R r) { return max_force_N(r.trace); }},
