@@ -27,138 +27,88 @@ constexpr std::size_t kTableStride_5_8 = 5;  // ticks, in tables
 const std::vector<std::string> kNoise = {"scenario.noise_per_m=0.0012",
                                          "scenario.quantisation_per_m=0.00285"};
 
-// Returns the distance of the proxy to the surface as the newest frame shows it, less r_f + r_c.
-double from_seen_m(const FixtureRun& run, std::size_t i) {
-  return run.scenario->signed_distance(run.trace.proxy_position_m[i], run.frame_captured_s(i)) -
-         run.boundary_m(i);
-}
-
-// Returns the same for the surface as it is in that very tick.
-double from_moving_m(const FixtureRun& run, std::size_t i) {
-  return run.trace.signed_distance_m[i] - run.boundary_m(i);
-}
-
-// Calls visit(i) for the ticks from from_s on and before until_s.
-template <class Visit>
-void each_tick(const FixtureRun& run, double from_s, double until_s, Visit&& visit) {
-  for (std::size_t i = 0; i < run.trace.length(); ++i)
-    if (run.trace.time_s[i] >= from_s && run.trace.time_s[i] < until_s) visit(i);
-}
-
-constexpr double kEnd_s = std::numeric_limits<double>::infinity();
-
-struct Deviation {
-  double rms_m, max_m;
-};
-
-// Deviation over the ticks in touch for which counts() is true.
-template <class Of, class Counts>
-Deviation deviation(const FixtureRun& run, Of&& of, Counts&& counts) {
-  double squares = 0;
-  std::vector<double> sizes;
-  each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
-    if (!counts(i)) return;
-    const double error = of(run, i);
-    squares += error * error, sizes.push_back(std::abs(error));
-  });
-  // Both are NaN if no tick counts; a claim on one of them fails.
-  return {std::sqrt(squares / static_cast<double>(sizes.size())), max_of(sizes)};
-}
-
-struct Summary {
-  Deviation seen, at_update, moving;
-  double min_beyond_fixture_m = 0, min_slave_beyond_fixture_m = 0;
-  double touching_m = 0, held_m = 0, growth_m_per_s = 0;  // mean distances and slope of the phases
-  double max_speed_m_per_s = 0;                           // speed of the surface at the proxy
-};
-
-double mean_distance_m(const FixtureRun& run, double from_s, double until_s) {
-  double sum = 0, count = 0;
-  each_tick(run, from_s, until_s, [&](std::size_t i) { sum += run.trace.signed_distance_m[i], ++count; });
-  return sum / count;
-}
-
-double growth_m_per_s(const FixtureRun& run) {
-  std::vector<double> time_s, distance_m;
-  each_tick(run, kGrows_s, kGrown_s, [&](std::size_t i) {
-    time_s.push_back(run.trace.time_s[i]), distance_m.push_back(run.trace.signed_distance_m[i]);
-  });
-  return fit_polynomial(time_s, distance_m, {0, 1}).coefficients[1];
-}
-
 double surface_height_m(const FixtureRun& run, std::size_t i, double time_s) {
   return run.scenario->surface_height(run.trace.proxy_position_m[i].x(), run.trace.proxy_position_m[i].z(),
                                       time_s);
 }
 
-double max_speed_m_per_s(const FixtureRun& run) {
-  constexpr double kApart_s = 1e-3;
-  std::vector<double> speeds_m_per_s;
-  each_tick(run, kInTouch_s, kEnd_s, [&](std::size_t i) {
-    const double time_s = run.trace.time_s[i];
-    const double rise = surface_height_m(run, i, time_s + kApart_s) - surface_height_m(run, i, time_s);
-    speeds_m_per_s.push_back(std::abs(rise) / kApart_s);
-  });
-  return max_of(speeds_m_per_s);
-}
-
-Summary summary(const FixtureRun& run) {
-  Summary s;
-  const auto always = [](std::size_t) { return true; };
-  s.seen = deviation(run, from_seen_m, always);
-  s.at_update = deviation(run, from_moving_m, [&](std::size_t i) { return run.trace.frame_update(i); });
-  s.moving = deviation(run, from_moving_m, always);
-  std::vector<double> proxy_m, slave_m;  // distances beyond the fixture
-  for (std::size_t i = 0; i < run.trace.length(); ++i) {
-    proxy_m.push_back(run.trace.signed_distance_m[i] - run.radius_m[i]);
-    slave_m.push_back(run.trace.slave_distance_m[i] - run.radius_m[i]);
-  }
-  s.min_beyond_fixture_m = min_of(proxy_m), s.min_slave_beyond_fixture_m = min_of(slave_m);
-  s.touching_m = mean_distance_m(run, kInTouch_s, kGrows_s);
-  s.held_m = mean_distance_m(run, kGrown_s + kSteady_s, kEnd_s);
-  s.growth_m_per_s = growth_m_per_s(run);
-  s.max_speed_m_per_s = max_speed_m_per_s(run);
-  return s;
-}
-
+// Returns the run, tick by tick.
 Table path_table(const std::string& name, const std::string& title, const FixtureRun& run) {
-  const Trace& trace = run.trace;
-  TableRows rows;
-  for (std::size_t i = 0; i < trace.length(); i += kTableStride_5_8) {
-    rows.push_back({trace.time_s[i], trace.hip_position_m[i].y(), trace.proxy_position_m[i].y(),
-                    surface_height_m(run, i, trace.time_s[i]), trace.signed_distance_m[i], run.radius_m[i],
-                    run.boundary_m(i), from_moving_m(run, i), from_seen_m(run, i), trace.force_N[i].norm(),
-                    (trace.hip_position_m[i] - trace.proxy_position_m[i]).norm()});
-  }
-  const std::vector<ColumnName> columns = {
-      {"time", "s", "simulated time"},
-      {"hip_y", "m", "height of the HIP"},
-      {"proxy_y", "m", "height of the proxy's centre"},
-      {"surface_y", "m", "height of the true surface under the proxy"},
-      {"distance", "m", "distance of the proxy's centre to the true surface at that time"},
-      {"radius", "m", "r_f of the frame in use"},
-      {"boundary", "m", "r_f + r_c"},
-      {"deviation", "m", "distance to the surface as it moves, beyond r_f + r_c"},
-      {"deviation_in_frame", "m", "distance to the surface as the frame in use shows it, beyond r_f + r_c"},
-      {"force", "N", "magnitude of the force"},
-      {"hip_distance", "m", "distance between HIP and proxy"}};
-  return table_of(name, title, columns, rows);
+  const Trace& t = run.trace;
+  const auto each_tick = [&](const auto& value) { return each_of(t.length(), value); };
+  const Numbers boundary_m = each_tick([&](std::size_t i) { return run.boundary_m(i); });
+  const auto surface_m = [&](std::size_t i) { return surface_height_m(run, i, t.time_s[i]); };
+  const auto seen_m = [&](std::size_t i) {
+    return run.scenario->signed_distance(t.proxy_position_m[i], run.frame_captured_s(i));
+  };
+  return {
+      name,
+      title,
+      {{"time", "s", "simulated time", t.time_s},
+       {"hip_y", "m", "height of the HIP", along(1, t.hip_position_m)},
+       {"proxy_y", "m", "height of the proxy's centre", along(1, t.proxy_position_m)},
+       {"surface_y", "m", "height of the true surface under the proxy", each_tick(surface_m)},
+       {"distance", "m", "distance of the proxy's centre to the true surface at that time",
+        t.signed_distance_m},
+       {"radius", "m", "r_f of the frame in use", run.radius_m},
+       {"boundary", "m", "r_f + r_c", boundary_m},
+       {"deviation", "m", "distance to the surface as it moves, beyond r_f + r_c",
+        minus(t.signed_distance_m, boundary_m)},
+       {"deviation_in_frame", "m", "distance to the surface as the frame in use shows it, beyond r_f + r_c",
+        minus(each_tick(seen_m), boundary_m)},
+       {"force", "N", "magnitude of the force", norms(t.force_N)},
+       {"hip_distance", "m", "distance between HIP and proxy",
+        norms_between(t.hip_position_m, t.proxy_position_m)}}};
+}
+
+struct Summary {
+  double seen_rms_m, seen_max_m, at_update_rms_m, moving_rms_m, moving_max_m;  // deviations in touch
+  double min_beyond_fixture_m, min_slave_beyond_fixture_m;
+  double touching_m, held_m, growth_m_per_s;  // mean distances and slope of the phases
+  double max_speed_m_per_s;                   // speed of the surface at the proxy
+};
+
+// path: the table of the run. A value is NaN if no tick counts; a claim on it fails.
+Summary summary(const FixtureRun& run, const Table& path) {
+  constexpr double kEnd_s = std::numeric_limits<double>::infinity(), kApart_s = 1e-3;
+  const Trace& t = run.trace;
+  const Numbers &seen_m = numbers(path, "deviation_in_frame"), &moving_m = numbers(path, "deviation"),
+                &distance_m = t.signed_distance_m;
+  const auto phase = [&](double from_s, double until_s) {
+    return [&t, from_s, until_s](std::size_t i) { return t.time_s[i] >= from_s && t.time_s[i] < until_s; };
+  };
+  const auto in_touch = phase(kInTouch_s, kEnd_s), grows = phase(kGrows_s, kGrown_s);
+  const auto updated = [&](std::size_t i) { return in_touch(i) && t.frame_update(i); };
+  const auto speed_m_per_s = [&](std::size_t i) {
+    const double rise_m =
+        surface_height_m(run, i, t.time_s[i] + kApart_s) - surface_height_m(run, i, t.time_s[i]);
+    return std::abs(rise_m) / kApart_s;
+  };
+  return {rms(where(seen_m, in_touch)),
+          max_of(magnitudes(where(seen_m, in_touch))),
+          rms(where(moving_m, updated)),
+          rms(where(moving_m, in_touch)),
+          max_of(magnitudes(where(moving_m, in_touch))),
+          min_of(minus(distance_m, run.radius_m)),
+          min_of(minus(t.slave_distance_m, run.radius_m)),
+          mean(where(distance_m, phase(kInTouch_s, kGrows_s))),
+          mean(where(distance_m, phase(kGrown_s + kSteady_s, kEnd_s))),
+          fit_polynomial(where(t.time_s, grows), where(distance_m, grows), {0, 1}).coefficients[1],
+          max_where(t.length(), in_touch, speed_m_per_s)};
 }
 
 Table deviation_table(const Summary& a, const Summary& b) {
   const std::string beyond = " of distance - r_f - r_c, ";
-  using S = const Summary&;
   return quantity_table<Summary>(
       "deviations",
       "how far the proxy is from where r_f and r_c put it, from 1 s on; smallest distances: in all ticks",
       {"noise_free", "with_noise"}, {a, b},
-      {{"rms" + beyond + "surface as the newest frame shows it, all ticks", "m",
-        [](S s) { return s.seen.rms_m; }},
-       {"largest" + beyond + "the same", "m", [](S s) { return s.seen.max_m; }},
+      {{"rms" + beyond + "surface as the newest frame shows it, all ticks", "m", &Summary::seen_rms_m},
+       {"largest" + beyond + "the same", "m", &Summary::seen_max_m},
        {"rms" + beyond + "surface as it moves, ticks in which a frame came in", "m",
-        [](S s) { return s.at_update.rms_m; }},
-       {"rms" + beyond + "surface as it moves, all ticks", "m", [](S s) { return s.moving.rms_m; }},
-       {"largest" + beyond + "the same", "m", [](S s) { return s.moving.max_m; }},
+        &Summary::at_update_rms_m},
+       {"rms" + beyond + "surface as it moves, all ticks", "m", &Summary::moving_rms_m},
+       {"largest" + beyond + "the same", "m", &Summary::moving_max_m},
        {"smallest distance of the proxy - r_f", "m", &Summary::min_beyond_fixture_m},
        {"smallest distance of the slave's command - r_f", "m", &Summary::min_slave_beyond_fixture_m},
        {"mean distance, r_f = 0", "m", &Summary::touching_m},
@@ -210,15 +160,15 @@ void add_claims(Figure& figure, const Summary& clean, const Summary& noisy, doub
   constexpr double kMean_m = kSinks_m + kPartOfBeat_m;
   claims.at_most(
       "without noise the proxy is r_f + r_c from the surface that the newest frame shows: rms difference",
-      clean.seen.rms_m, kSinks_m, "m", "0");
+      clean.seen_rms_m, kSinks_m, "m", "0");
   claims.at_most(
       "without noise the proxy is r_f + r_c from the moving surface in the ticks in which a frame "
       "arrives: rms difference",
-      clean.at_update.rms_m, kSinks_m + kTick_s * clean.max_speed_m_per_s, "m", "0");
+      clean.at_update_rms_m, kSinks_m + kTick_s * clean.max_speed_m_per_s, "m", "0");
   claims.at_most(
       "between frames the moving surface leaves the proxy by at most its largest speed times the frame "
       "interval: largest distance beyond r_f + r_c",
-      clean.moving.max_m, clean.max_speed_m_per_s * frame_s, "m");
+      clean.moving_max_m, clean.max_speed_m_per_s * frame_s, "m");
   claims.at_least(
       "without noise the moving surface never comes within r_f of the proxy's centre: smallest distance "
       "minus r_f",
@@ -246,7 +196,9 @@ Figure figure_5_8(FigureContext& context) {
   experiments.push_back(Experiment::load("fig5.8"));
   experiments.push_back(Experiment::load("fig5.8", kNoise));
   const std::vector<FixtureRun> runs = run_fixtures(context, experiments);
-  const Summary clean = summary(runs[0]), noisy = summary(runs[1]);
+  const Table noise_free = path_table("noise_free", "every fifth tick, noise-free camera", runs[0]),
+              with_noise = path_table("with_noise", "every fifth tick, with the sensor's noise", runs[1]);
+  const Summary clean = summary(runs[0], noise_free), noisy = summary(runs[1], with_noise);
   Figure figure{
       "5.8", "A fixture that grows on a beating organ, simulated depth camera",
       "Simulated: a depth camera (30 Hz) looks down on three ellipsoids that beat 75 times a minute, in "
@@ -257,8 +209,7 @@ Figure figure_5_8(FigureContext& context) {
       "use. The last panel shows one second, because the distance goes up and down once in a frame (33 ms). "
       "Curves show every fifth tick; measures use all ticks from 1 s on, and the smallest distances "
       "those before, too."};
-  figure.tables = {path_table("noise_free", "every fifth tick, noise-free camera", runs[0]),
-                   path_table("with_noise", "every fifth tick, with the sensor's noise", runs[1]),
+  figure.tables = {every(kTableStride_5_8, noise_free), every(kTableStride_5_8, with_noise),
                    deviation_table(clean, noisy)};
   figure.panels = panels();
   add_claims(figure, clean, noisy, 1 / runs[0].scenario->frame_rate_hz());
