@@ -132,45 +132,38 @@ double wander_m(const Scenario& scenario, const FixtureRule& rule) {
   return max;
 }
 
-Table mask_table(std::size_t k, const std::vector<MaskNumbers>& numbers) {
-  TableRows rows;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const MaskNumbers& n = numbers[i];
-    rows.push_back({static_cast<double>(kSegmentedFrames[i].frame), n.picked, n.in_box / n.picked,
-                    n.max_component / n.picked, n.in_pieces_of_100 / n.picked, n.mean_shift_m,
-                    n.mean_to_point_m});
-  }
-  return table_of(kNames[k], std::string("the mask of the ") + kNames[k],
-                  {{"frame", "1", "frame of the recording"},
-                   {"picked", "1", "pixels that are picked"},
-                   {"in_box", "1", "share of those within the box around the object"},
-                   {"max_component", "1", "share of those in the largest connected piece"},
-                   {"in_pieces_of_100", "1", "share of those in pieces of 100 pixels or more"},
-                   {"mean_shift", "m", "how far what lies outside the box shifts the mean"},
-                   {"mean_to_point", "m", "distance of the mean to the nearest picked point"}},
-                  rows);
+Table mask_table(std::size_t k, const std::vector<MaskNumbers>& masks) {
+  using M = const MaskNumbers&;
+  Table table{kNames[k], std::string("the mask of the ") + kNames[k]};
+  table.add("frame", "1", "frame of the recording", each(kSegmentedFrames, &SegmentedFrame::frame));
+  add_columns<MaskNumbers>(
+      table, masks,
+      {{"picked", "1", "pixels that are picked", &MaskNumbers::picked},
+       {"in_box", "1", "share of those within the box around the object",
+        [](M m) { return m.in_box / m.picked; }},
+       {"max_component", "1", "share of those in the largest connected piece",
+        [](M m) { return m.max_component / m.picked; }},
+       {"in_pieces_of_100", "1", "share of those in pieces of 100 pixels or more",
+        [](M m) { return m.in_pieces_of_100 / m.picked; }},
+       {"mean_shift", "m", "how far what lies outside the box shifts the mean", &MaskNumbers::mean_shift_m},
+       {"mean_to_point", "m", "distance of the mean to the nearest picked point",
+        &MaskNumbers::mean_to_point_m}});
+  return table;
 }
 
-void add_claims(Figure& figure, std::size_t k, const std::vector<MaskNumbers>& numbers, double wander) {
-  const std::string object = kNames[k];
-  const auto empty = [](const MaskNumbers& m) { return !(m.picked > 0); };
-  if (std::any_of(numbers.begin(), numbers.end(), empty)) {
-    Claims(figure, object + ": ").at_least("the mask shows the object in every frame", 0, 1, "1");
+// table: that of the object's masks.
+void add_claims(Figure& figure, std::size_t k, const Table& table, double wander) {
+  const Claims claims(figure, kNames[k] + std::string(": "));
+  if (!(min_of(numbers(table, "picked")) > 0)) {
+    claims.at_least("the mask shows the object in every frame", 0, 1, "1");
     return;
   }
-  const auto min = [&](auto&& of) {
-    double value = std::numeric_limits<double>::infinity();
-    for (const MaskNumbers& n : numbers) value = min_or_nan(value, of(n));
-    return value;
-  };
-  const Claims claims(figure, object + ": ");
   claims.at_least("the mask lies within the object's box: smallest share in a frame",
-                  min([](const MaskNumbers& m) { return m.in_box / m.picked; }), k == 0 ? 0.8 : 0.95,
-                  "fraction");
+                  min_of(numbers(table, "in_box")), k == 0 ? 0.8 : 0.95, "fraction");
   claims.at_least("the mask is mostly one piece: smallest share of the largest piece in a frame",
-                  min([](const MaskNumbers& m) { return m.max_component / m.picked; }), 0.8, "fraction");
+                  min_of(numbers(table, "max_component")), 0.8, "fraction");
   claims.at_most("what lies outside the box hardly shifts the mean of the mask: largest shift",
-                 -min([](const MaskNumbers& m) { return -m.mean_shift_m; }), k == 0 ? 0.02 : 0.005, "m");
+                 max_of(numbers(table, "mean_shift")), k == 0 ? 0.02 : 0.005, "m");
   claims.at_most("the mean of the mask hardly wanders in five frames at rest: largest distance", wander,
                  0.003, "m");
 }
@@ -214,7 +207,7 @@ Figure figure_7_1_recorded(FigureContext& context) {
   }
   for (std::size_t k = 0; k < 2; ++k) {
     figure.tables.push_back(mask_table(k, numbers[k]));
-    add_claims(figure, k, numbers[k], wander_m(*scenario, *rules[k]));
+    add_claims(figure, k, figure.tables.back(), wander_m(*scenario, *rules[k]));
   }
   return figure;
 }
@@ -272,12 +265,10 @@ double min_point_distance_m(const ValveTask& task, const Kernels& kernels) {
 
 // Returns the largest distance of a goal of guidance from the first one; NaN if guidance is never active.
 double goal_wander_m(const Trace& t) {
-  std::vector<Vec3> goals;
-  for (std::size_t i = 0; i < t.length(); ++i)
-    if (t.guidance_active[i]) goals.push_back(t.guidance_goal_m[i]);
-  std::vector<double> distances_m;
-  for (const Vec3& goal : goals) distances_m.push_back((goal - goals.front()).norm());
-  return max_of(distances_m);
+  const auto first = std::ranges::find(t.guidance_active, 1) - t.guidance_active.begin();
+  return max_where(
+      t.length(), [&](std::size_t i) { return t.guidance_active[i] != 0; },
+      [&](std::size_t i) { return (t.guidance_goal_m[i] - t.guidance_goal_m[first]).norm(); });
 }
 
 void add_claims(Figure& figure, const ValveTask& task, const Kernels& kernels) {
@@ -337,10 +328,9 @@ Figure figure_7_5_recorded(FigureContext& context) {
       "real."};
   figure.tables.push_back(task_table(task));
   figure.tables.push_back(sequence_table(task));
-  figure.panels = {plot("Force", "time (s)", "force (N)",
-                        {{task.name, "time", "force", CurveStyle::line, ""}}, {{{0, 0}}}),
-                   plot("Torque", "time (s)", "torque (N m)",
-                        {{task.name, "time", "torque", CurveStyle::line, ""}}, {{{1, 0}}})};
+  PanelColumn panels{figure, task.name, "time", "time (s)"};
+  panels.add("Force", "force (N)", {{"force"}});
+  panels.add("Torque", "torque (N m)", {{"torque"}});
   add_pictures(figure, context.kernels(), task);
   add_claims(figure, task, context.kernels());
   return figure;

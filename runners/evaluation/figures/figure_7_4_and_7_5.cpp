@@ -24,29 +24,6 @@ const char* const kOffCentre =
     "trajectory.poses=[[-0.105,0.075,0.28,0,90,0,0],[-0.105,0.075,0.28,0,90,0,0.5],"
     "[-0.105,0.075,0.10,0,90,0,2],[-0.105,0.075,0.10,0,90,0,1]]";
 
-// Returns the number of pushes: how often the force rises above 0.1 N.
-int pushes(const Trace& t) {
-  int count = 0;
-  for (std::size_t i = 1; i < t.length(); ++i)
-    if (t.force_N[i].norm() > 0.1 && t.force_N[i - 1].norm() <= 0.1) ++count;
-  return count;
-}
-
-// Returns the largest force over the ticks in which no leaf is within the look-ahead of a region; NaN if
-// there are none.
-double max_free_force_N(const Trace& t) {
-  return max_where(
-      t.length(), [&](std::size_t i) { return std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0; },
-      [&](std::size_t i) { return t.force_N[i].norm(); });
-}
-
-double max_torque_Nm(const Trace& t, double from_s, double until_s) {
-  double max = 0;
-  for (std::size_t i = tick_of(t, from_s); i < tick_of(t, until_s); ++i)
-    max = max_or_nan(max, t.torque_Nm[i].norm());
-  return max;
-}
-
 void add_push_claims(Figure& figure, const ValveTask& task, const char* side, double held_s) {
   const Trace& t = task.trace;
   const std::size_t held = tick_of(t, held_s);
@@ -54,8 +31,10 @@ void add_push_claims(Figure& figure, const ValveTask& task, const char* side, do
   const Claims claims(figure), checks(figure, "", &Claim::set_up);
   claims.between("the region of the " + valve + " valve pushes the tool back: force", t.force_N[held].norm(),
                  5, 8, "N", "rises when pushed");
+  const std::size_t before = tick_of(t, held_s - 1), after = tick_of(t, held_s + 1);
+  const auto is_near = [&](std::size_t i) { return i >= before && i < after; };
   claims.at_least("the region of the " + valve + " valve turns the tool back: largest torque",
-                  max_torque_Nm(t, held_s - 1, held_s + 1), 0.01, "N m", "rises when pushed");
+                  max_of(where(norms(t.torque_Nm), is_near)), 0.01, "N m", "rises when pushed");
   checks.between(
       "the device is pushed into the region of the " + valve + " valve: its distance from the tool",
       lag_m(t, held), 0.018, 0.022, "m");
@@ -64,13 +43,18 @@ void add_push_claims(Figure& figure, const ValveTask& task, const char* side, do
 void add_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
   const Claims claims(figure);
-  claims.at_most("no force acts while nothing is within the look-ahead: largest force", max_free_force_N(t),
-                 0, "N", "0");
-  claims.between("the tool is pushed against two regions: times that the force rises from zero", pushes(t), 2,
-                 2, "times", "2");
+  const Numbers force_N = norms(t.force_N);
+  const auto is_free = [&](std::size_t i) {
+    return std::isinf(t.nearest_distance_m[i]) && t.frame_index[i] >= 0;
+  };
+  const auto rises = [&](std::size_t i) { return i > 0 && force_N[i] > 0.1 && force_N[i - 1] <= 0.1; };
+  claims.at_most("no force acts while nothing is within the look-ahead: largest force",
+                 max_of(where(force_N, is_free)), 0, "N", "0");
+  claims.between("the tool is pushed against two regions: times that the force rises from zero",
+                 count_where(t.length(), rises), 2, 2, "times", "2");
   for (const double free_s : {kStart_s, kBetween_s, t.time_s.back()})
     claims.at_most("no force acts in free space: force at " + std::to_string(free_s).substr(0, 4) + " s",
-                   t.force_N[tick_of(t, free_s)].norm(), 0, "N", "0");
+                   force_N[tick_of(t, free_s)], 0, "N", "0");
   add_push_claims(figure, task, "left", kHeldLeft_s);
   add_push_claims(figure, task, "right", kHeldRight_s);
   for (const Valve valve : {Valve::left, Valve::right})
@@ -107,25 +91,18 @@ Panel time_panel(const ValveTask& task, const char* title, const char* column, c
 
 Table summary_table(const std::vector<ValveTask>& tasks) {
   using Task = const ValveTask&;
-  return quantity_table<ValveTask>(
-      "runs", "both runs", {tasks[0].name, tasks[1].name}, tasks,
-      {{"least distance of the mesh to the left valve", "m",
-        [](Task task) { return min_clearance_m(task, Valve::left); }},
-       {"least distance of the mesh to the right valve", "m",
-        [](Task task) { return min_clearance_m(task, Valve::right); }},
-       {"most pairs of leaves that touch", "1",
-        [](Task task) {
-          return *std::max_element(task.trace.contact_count.begin(), task.trace.contact_count.end());
-        }},
-       {"collision detections in a tick, mean", "1",
-        [](Task task) {
-          double sum = 0;
-          for (const int n : task.trace.detections) sum += n;
-          return sum / double(task.trace.length());
-        }},
-       {"ticks that used up their detections", "1", [](Task task) {
-          return std::count(task.trace.budget_exhausted.begin(), task.trace.budget_exhausted.end(), 1);
-        }}});
+  return quantity_table<ValveTask>("runs", "both runs", {tasks[0].name, tasks[1].name}, tasks,
+                                   {{"least distance of the mesh to the left valve", "m",
+                                     [](Task task) { return min_clearance_m(task, Valve::left); }},
+                                    {"least distance of the mesh to the right valve", "m",
+                                     [](Task task) { return min_clearance_m(task, Valve::right); }},
+                                    {"most pairs of leaves that touch", "1",
+                                     [](Task task) { return max_of(doubles(task.trace.contact_count)); }},
+                                    {"collision detections in a tick, mean", "1",
+                                     [](Task task) { return mean(doubles(task.trace.detections)); }},
+                                    {"ticks that used up their detections", "1", [](Task task) {
+                                       return std::ranges::count(task.trace.budget_exhausted, 1);
+                                     }}});
 }
 
 }  // namespace
@@ -177,19 +154,17 @@ std::size_t first_pull(const Trace& t) {
   return static_cast<std::size_t>(first - t.guidance_active.begin());
 }
 
-// Returns the mean magnitude of each torque component about the handle, over the last tenth of a second.
-Vec3 residual_Nm(const Trace& t) {
-  Vec3 sum = Vec3::Zero();
+// Returns the mean of value(i) over the last tenth of a second.
+template <class Value>
+double at_end(const Trace& t, Value&& value) {
   const std::size_t from = tick_of(t, kArrived_s);
-  for (std::size_t i = from; i < t.length(); ++i) sum += about_handle(t, i, t.torque_Nm[i]).cwiseAbs();
-  return sum / double(t.length() - from);
+  return mean_where(
+      t.length(), [&](std::size_t i) { return i >= from; }, value);
 }
 
-double residual_N(const Trace& t) {
-  double sum = 0;
-  const std::size_t from = tick_of(t, kArrived_s);
-  for (std::size_t i = from; i < t.length(); ++i) sum += t.force_N[i].norm();
-  return sum / double(t.length() - from);
+// Returns the mean magnitude of a component of the torque about the handle at the end.
+double residual_Nm(const Trace& t, int axis) {
+  return at_end(t, [&](std::size_t i) { return std::abs(about_handle(t, i, t.torque_Nm[i])[axis]); });
 }
 
 void add_common_claims(Figure& figure, const ValveTask& task) {
@@ -203,9 +178,10 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
   }
   claims.at_least("before guidance the region pushes the tool back from the left valve: force",
                   t.force_N[tick_of(t, kPushed_s)].norm(), 2, "N", "rises");
-  claims.at_most("guidance ends at its goal: force at the end", residual_N(t), 0.2, "N", "decays");
+  claims.at_most("guidance ends at its goal: force at the end",
+                 at_end(t, [&](std::size_t i) { return t.force_N[i].norm(); }), 0.2, "N", "decays");
   claims.at_most("guidance ends at its goal: torque about the handle's y and z at the end",
-                 max_or_nan(residual_Nm(t).y(), residual_Nm(t).z()), kLittle_Nm, "N m");
+                 max_or_nan(residual_Nm(t, 1), residual_Nm(t, 2)), kLittle_Nm, "N m");
   claims.at_least(
       "the tool stays out of the region round the true left valve: smallest distance of its mesh to the "
       "valve",
@@ -220,9 +196,9 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
 void add_roll_claims(Figure& figure, const ValveTask& five, const ValveTask& six) {
   const Claims claims(figure);
   claims.at_least(five.label + ": a torque about the roll axis remains: torque at the end",
-                  residual_Nm(five.trace).x(), 10 * kLittle_Nm, "N m", "never reaches zero");
+                  residual_Nm(five.trace, 0), 10 * kLittle_Nm, "N m", "never reaches zero");
   claims.at_most(six.label + ": no torque about the roll axis remains: torque at the end",
-                 residual_Nm(six.trace).x(), kLittle_Nm, "N m");
+                 residual_Nm(six.trace, 0), kLittle_Nm, "N m");
   claims.between(five.label + ": the task misses one step: number of missed steps",
                  five.trace.sequence_missed.back(), 1, 1, "steps");
   claims.at_most(six.label + ": the task misses no step: number of missed steps",
@@ -231,31 +207,27 @@ void add_roll_claims(Figure& figure, const ValveTask& five, const ValveTask& six
 
 // The run in column 0 has the letters of the pictures.
 void add_panels(Figure& figure, const ValveTask& task, int column) {
-  int row = 0;
-  const auto add = [&](const std::string& title, const char* y_label, std::pair<double, double> y_range,
-                       const std::vector<Curve>& curves) {
-    Panel panel = plot(title, "time (s)", y_label, curves, {.at = {{row, column}}, .y_range = y_range});
-    figure.panels.push_back(column == 0 && row < 2 ? lettered(panel) : panel);
-    ++row;
-  };
-  add(task.label, "force (N)", {0, 8}, {{task.name, "time", "force", CurveStyle::line, ""}});
-  add("", "torque (N m)", {0, 0.2}, {{task.name, "time", "torque", CurveStyle::line, ""}});
-  add("", "torque about the handle's axes (N m)", {-0.2, 0.2},
-      {{task.name, "time", "torque_x", CurveStyle::line, "roll (x)"},
-       {task.name, "time", "torque_y", CurveStyle::line, "y"},
-       {task.name, "time", "torque_z", CurveStyle::line, "z"},
-       {task.name, "time", "exerted_x", CurveStyle::dashed, "exerted about roll"}});
+  PanelColumn panels{figure, task.name, "time", "time (s)", column};
+  panels.add(task.label, "force (N)", {{"force"}}, {{0, 8}});
+  panels.add("", "torque (N m)", {{"torque"}}, {{0, 0.2}});
+  if (column == 0)
+    for (Panel& panel : figure.panels) panel = lettered(panel);
+  panels.add("", "torque about the handle's axes (N m)",
+             {{"torque_x", CurveStyle::line, "roll (x)"},
+              {"torque_y", CurveStyle::line, "y"},
+              {"torque_z", CurveStyle::line, "z"},
+              {"exerted_x", CurveStyle::dashed, "exerted about roll"}},
+             {{-0.2, 0.2}});
 }
 
 Table target_table(const ValveTask& task) {
   const Trace& t = task.trace;
-  TableRows rows;
+  std::vector<std::size_t> ticks;
   for (std::size_t i = first_pull(t); i < t.length(); ++i)
-    if (t.frame_update(i))
-      rows.push_back(
-          {t.time_s[i], t.guidance_goal_m[i].x(), t.guidance_goal_m[i].y(), t.guidance_goal_m[i].z()});
-  return table_of("goals", "where guidance leads to, by each frame",
-                  {{"time", "s", "simulated time"}, {"x", "m", "x"}, {"y", "m", "y"}, {"z", "m", "z"}}, rows);
+    if (t.frame_update(i)) ticks.push_back(i);
+  Table table = position_table("goals", "where guidance leads to, by each frame", t.guidance_goal_m);
+  table.columns.insert(table.columns.begin(), {"time", "s", "simulated time", t.time_s});
+  return rows_of(std::move(table), ticks);
 }
 
 }  // namespace
@@ -295,70 +267,58 @@ Figure figure_7_5(FigureContext& context) {
 
 namespace {
 
-// Results at the end of the task for one device, one entry for each stiffness of guidance.
-struct GuidedEnds {
-  std::string name, label;
-  std::vector<double> stiffness_N_per_m, error_mm, error_deg, clearance_mm;
-};
-
-std::vector<GuidedEnds> guided_ends(const SweepResult& result) {
-  std::vector<GuidedEnds> list = {{"six_motors", "six motors", {}, {}, {}, {}},
-                                  {"five_motors", "no motor about x", {}, {}, {}, {}}};
-  for (std::size_t run = 0; run < result.run_count(); ++run) {
-    const std::vector<std::size_t> indices = result.axis_indices(result.cell_of(run));
-    GuidedEnds& one = list[indices[1]];  // the axis is torque_x: true, false
-    one.stiffness_N_per_m.push_back(axis_values(result, 0)[indices[0]]);
-    one.error_mm.push_back(1e3 * result.measure("guidance_error")[run]);
-    one.error_deg.push_back(result.measure("guidance_error_angle")[run] / kRadiansPerDegree);
-    one.clearance_mm.push_back(1e3 * result.measure("min_clearance")[run]);
-  }
-  return list;
-}
-
-Table guided_table(const GuidedEnds& one) {
-  Table table{one.name, "end of the task, " + one.label};
-  table.add("stiffness", "N/m", "stiffness of guidance", one.stiffness_N_per_m);
-  table.add("error", "mm", "distance of the tool from the goal at the end", one.error_mm);
-  table.add("angle", "deg", "angle between tool and goal at the end", one.error_deg);
-  table.add("clearance", "mm", "minimum gap between the tool and a region", one.clearance_mm);
+// Returns the results at the end of the task for one device, a row for each stiffness of guidance.
+Table guided_table(const SweepResult& sweep, std::size_t motors, const char* name, const std::string& label) {
+  const std::vector<std::size_t> runs = runs_at(sweep, {{}, motors});
+  const auto of = [&](const char* measure) { return measured(sweep, measure, runs); };
+  const auto degrees = [](double rad) { return rad / kRadiansPerDegree; };
+  Table table{name, "end of the task, " + label};
+  table.add("stiffness", "N/m", "stiffness of guidance", axis_values(sweep, 0));
+  table.add("error", "mm", "distance of the tool from the goal at the end",
+            scaled(1e3, of("guidance_error")));
+  table.add("angle", "deg", "angle between tool and goal at the end",
+            each(of("guidance_error_angle"), degrees));
+  table.add("clearance", "mm", "minimum gap between the tool and a region", scaled(1e3, of("min_clearance")));
   return table;
 }
 
-Panel guided_panel(const std::string& title, const std::string& column, const std::string& y_label,
-                   const std::vector<GuidedEnds>& list) {
-  Panel panel{title, "stiffness of guidance (N/m)", y_label};
-  for (const GuidedEnds& one : list)
-    panel.curves.push_back({one.name, "stiffness", column,
-                            one.name == "five_motors" ? CurveStyle::dashed : CurveStyle::line, one.label});
-  return panel;
+Panel guided_panel(const std::string& title, const std::string& column, const std::string& y_label) {
+  return plot(title, "stiffness of guidance (N/m)", y_label,
+              {{"six_motors", "stiffness", column, CurveStyle::line, "six motors"},
+               {"five_motors", "stiffness", column, CurveStyle::dashed, "no motor about x"}});
 }
 
 }  // namespace
 
 Figure figure_7_5_guidance(FigureContext& context) {
-  const std::vector<GuidedEnds> list = guided_ends(context.sweep(Sweep::load("fig7.5-guidance")));
-  const GuidedEnds &six = list[0], &five = list[1];
+  const SweepResult sweep = context.sweep(Sweep::load("fig7.5-guidance"));  // torque_x: true, false
+  const Table six = guided_table(sweep, 0, "six_motors", "six motors"),
+              five = guided_table(sweep, 1, "five_motors", "no motor about x");
+  const Numbers& five_deg = numbers(five, "angle");
+  const auto both = [&](const char* column, const auto& extreme) {
+    return extreme(Numbers{extreme(numbers(six, column)), extreme(numbers(five, column))});
+  };
   Figure figure{
       "7.5-guidance", "Where guidance leads the hand",
       "The task of Fig 7.5 with guidance of 50 to 300 N/m, frames at 10 Hz, a device with six motors and "
       "one without torque about x; simulated. The operator has relaxed at 3.3 s. The position is reached in "
       "both cases. Without the motor an error of the angle remains at every stiffness of guidance."};
-  figure.tables = {guided_table(six), guided_table(five)};
-  figure.panels = {guided_panel("Distance from the goal", "error", "distance (mm)", list),
-                   guided_panel("Angle to the goal", "angle", "angle (deg)", list)};
+  figure.tables = {six, five};
+  figure.panels = {guided_panel("Distance from the goal", "error", "distance (mm)"),
+                   guided_panel("Angle to the goal", "angle", "angle (deg)")};
   const Claims claims(figure);
   claims.at_most("the hand arrives at the goal in all runs: largest distance at the end",
-                 max_or_nan(max_of(six.error_mm), max_of(five.error_mm)), 2, "mm");
+                 both("error", max_of), 2, "mm");
   claims.at_most("six motors: the tool turns to the goal: largest angle to it at the end",
-                 max_of(six.error_deg), 0.1, "deg");
+                 max_of(numbers(six, "angle")), 0.1, "deg");
   claims.at_least("five motors: the tool stays turned away from the goal: smallest angle to it at the end",
-                  min_of(five.error_deg), 20, "deg");
+                  min_of(five_deg), 20, "deg");
   claims.at_most(
       "five motors: the final angle to the goal hardly depends on the stiffness of guidance: largest "
       "difference",
-      max_of(five.error_deg) - min_of(five.error_deg), 1, "deg");
+      max_of(five_deg) - min_of(five_deg), 1, "deg");
   claims.at_least("the tool stays out of the forbidden region: smallest gap of all ticks",
-                  min_or_nan(min_of(six.clearance_mm), min_of(five.clearance_mm)), -0.1, "mm");
+                  both("clearance", min_of), -0.1, "mm");
   return figure;
 }
 

@@ -70,17 +70,20 @@ std::vector<std::size_t> shown_points(const PointCloud& cloud) {
 
 }  // namespace
 
-std::vector<ValveTask> run_tasks(FigureContext& context, const std::vector<NamedTask>& tasks) {
-  std::vector<Experiment> experiments;
-  for (const NamedTask& task : tasks)
-    experiments.push_back(Experiment::load(task.experiment, task.overrides));
-  std::vector<Trace> traces = context.run(experiments);
+Table position_table(const std::string& name, const std::string& title, const std::vector<Vec3>& places) {
+  return {name,
+          title,
+          {{"x", "m", "x", along(0, places)},
+           {"y", "m", "y", along(1, places)},
+           {"z", "m", "z", along(2, places)}}};
+}
+
+std::vector<ValveTask> run_tasks(FigureContext& context, const std::vector<NamedExperiment>& tasks) {
   std::vector<ValveTask> runs;
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    std::shared_ptr<const Scenario> scenario = experiments[i].build_scenario(context.kernels());
-    std::shared_ptr<const VoxelTool> tool = tool_of(experiments[i]);
-    runs.push_back({tasks[i].name, tasks[i].label, std::move(experiments[i]), std::move(traces[i]),
-                    std::dynamic_pointer_cast<const ValveTank>(scenario), std::move(tool)});
+  for (NamedRun& run : named_runs(context, tasks)) {
+    std::shared_ptr<const Scenario> scenario = run.experiment.build_scenario(context.kernels());
+    std::shared_ptr<const VoxelTool> tool = tool_of(run.experiment);
+    runs.push_back({std::move(run), std::dynamic_pointer_cast<const ValveTank>(scenario), std::move(tool)});
   }
   return runs;
 }
@@ -116,53 +119,49 @@ Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W) {
 
 Table task_table(const ValveTask& task) {
   const Trace& t = task.trace;
-  TableRows rows;
-  for (std::size_t i = 0; i < t.length(); i += kEvery) {
-    const Vec3 torque_T = about_handle(t, i, t.torque_Nm[i]),
-               device_T = about_handle(t, i, t.device_torque_Nm[i]);
-    rows.push_back({t.time_s[i], t.force_N[i].norm(), t.torque_Nm[i].norm(), torque_T.x(), torque_T.y(),
-                    torque_T.z(), device_T.x(), t.device_force_N[i].norm(), lag_m(t, i),
-                    (t.intended_position_m[i] - t.hip_position_m[i]).norm(), double(t.contact_count[i]),
-                    double(t.contact_clusters[i]), double(t.active_constraints[i]), t.tool_penetration_m[i],
-                    double(t.detections[i]), double(t.budget_exhausted[i])});
-  }
-  const std::vector<ColumnName> columns = {
-      {"time", "s", "simulated time"},
-      {"force", "N", "norm of the force"},
-      {"torque", "N m", "norm of the torque"},
-      {"torque_x", "N m", "torque about the handle's x, the roll axis"},
-      {"torque_y", "N m", "torque about the handle's y, which the device can exert"},
-      {"torque_z", "N m", "torque about the handle's z, which the device can exert"},
-      {"exerted_x", "N m", "torque that the device exerts about the roll axis"},
-      {"exerted", "N", "norm of the force that the device exerts"},
-      {"lag", "m", "distance from the tool to the device"},
-      {"yielded", "m", "distance from where the operator wants the device to where it is"},
-      {"pairs", "1", "pairs of leaves that touch"},
-      {"leaves", "1", "leaves of the tool that touch"},
-      {"active", "1", "constraints that hold the tool"},
-      {"penetration", "m", "deepest leaf of the tool in a region at the end of the tick"},
-      {"detections", "1", "collision detections in the tick"},
-      {"exhausted", "1", "the tick ended before the tool was at rest"}};
-  return table_of(task.name, task.label, columns, rows);
+  const auto about = [&](int axis, const std::vector<Vec3>& torque_W) {
+    return each_of(t.length(), [&](std::size_t i) { return about_handle(t, i, torque_W[i])[axis]; });
+  };
+  Table table{task.name, task.label};
+  table.add("time", "s", "simulated time", t.time_s);
+  table.add("force", "N", "norm of the force", norms(t.force_N));
+  table.add("torque", "N m", "norm of the torque", norms(t.torque_Nm));
+  table.add("torque_x", "N m", "torque about the handle's x, the roll axis", about(0, t.torque_Nm));
+  table.add("torque_y", "N m", "torque about the handle's y, which the device can exert",
+            about(1, t.torque_Nm));
+  table.add("torque_z", "N m", "torque about the handle's z, which the device can exert",
+            about(2, t.torque_Nm));
+  table.add("exerted_x", "N m", "torque that the device exerts about the roll axis",
+            about(0, t.device_torque_Nm));
+  table.add("exerted", "N", "norm of the force that the device exerts", norms(t.device_force_N));
+  table.add("lag", "m", "distance from the tool to the device",
+            norms_between(t.hip_position_m, t.proxy_position_m));
+  table.add("yielded", "m", "distance from where the operator wants the device to where it is",
+            norms_between(t.intended_position_m, t.hip_position_m));
+  table.add("pairs", "1", "pairs of leaves that touch", doubles(t.contact_count));
+  table.add("leaves", "1", "leaves of the tool that touch", doubles(t.contact_clusters));
+  table.add("active", "1", "constraints that hold the tool", doubles(t.active_constraints));
+  table.add("penetration", "m", "deepest leaf of the tool in a region at the end of the tick",
+            t.tool_penetration_m);
+  table.add("detections", "1", "collision detections in the tick", doubles(t.detections));
+  table.add("exhausted", "1", "the tick ended before the tool was at rest", doubles(t.budget_exhausted));
+  return every(kEvery, std::move(table));
 }
 
 Table moment_table(const std::string& title, const Trace& trace, const std::vector<std::size_t>& ticks) {
-  TableRows rows;
-  Column letters{"letter", "1", "moment of the task", {}, 1, {}};
+  Column letters{"letter", "1", "moment of the task", {}};
   std::vector<std::int32_t> letter;
-  for (const std::size_t tick : ticks) {
-    letters.value_names.emplace_back(1, static_cast<char>('A' + letter.size()));
-    letter.push_back(static_cast<std::int32_t>(letter.size()));
-    rows.push_back({trace.time_s[tick], trace.force_N[tick].norm(), trace.torque_Nm[tick].norm()});
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    letters.value_names.emplace_back(1, static_cast<char>('A' + i));
+    letter.push_back(static_cast<std::int32_t>(i));
   }
   letters.values = letter;
-  Table table = table_of("moments", title,
-                         {{"time", "s", "simulated time"},
-                          {"force", "N", "norm of the force"},
-                          {"torque", "N m", "norm of the torque"}},
-                         rows);
-  table.columns.insert(table.columns.begin(), letters);
-  return table;
+  return {"moments",
+          title,
+          {letters,
+           {"time", "s", "simulated time", at(ticks, trace.time_s)},
+           {"force", "N", "norm of the force", at(ticks, norms(trace.force_N))},
+           {"torque", "N m", "norm of the torque", at(ticks, norms(trace.torque_Nm))}}};
 }
 
 Panel lettered(Panel panel) {
@@ -172,17 +171,16 @@ Panel lettered(Panel panel) {
 }
 
 Table sequence_table(const ValveTask& task) {
-  TableRows rows;
-  for (const SequenceEntry& entry : sequence_log(task.trace))
-    rows.push_back({double(entry.step), entry.began_s, entry.ended_s, entry.missed ? 1.0 : 0.0,
-                    entry.distance_m, entry.angle_rad / kRadiansPerDegree});
-  const std::vector<ColumnName> columns = {{"step", "1", "number of the step"},
-                                           {"began", "s", "when it began"},
-                                           {"ended", "s", "when it ended"},
-                                           {"missed", "1", "whether its deadline ended it"},
-                                           {"distance", "m", "from the tool to the goal when it ended"},
-                                           {"angle", "deg", "between tool and goal when it ended"}};
-  return table_of(task.name + "_steps", "steps of the task: " + task.label, columns, rows);
+  using Entry = const SequenceEntry&;
+  return table_over<SequenceEntry>(
+      task.name + "_steps", "steps of the task: " + task.label, sequence_log(task.trace),
+      {{"step", "1", "number of the step", &SequenceEntry::step},
+       {"began", "s", "when it began", &SequenceEntry::began_s},
+       {"ended", "s", "when it ended", &SequenceEntry::ended_s},
+       {"missed", "1", "whether its deadline ended it", &SequenceEntry::missed},
+       {"distance", "m", "from the tool to the goal when it ended", &SequenceEntry::distance_m},
+       {"angle", "deg", "between tool and goal when it ended",
+        [](Entry entry) { return entry.angle_rad / kRadiansPerDegree; }}});
 }
 
 void add_task_picture_tables(Figure& figure, const FigureContext& context, const ValveTask& task,
@@ -193,10 +191,9 @@ void add_task_picture_tables(Figure& figure, const FigureContext& context, const
   task.experiment.build_fixtures().assign(cloud, 0);
   RegionTree regions;
   regions.assign(cloud);
-  TableRows positions;
-  for (const Vec3& p : boundary(regions.spheres())) positions.push_back({p.x(), p.y(), p.z()});
-  figure.tables.push_back(table_of(task.name + "_regions", "places on the boundary of the forbidden regions",
-                                   {{"x", "m", "x"}, {"y", "m", "y"}, {"z", "m", "z"}}, positions));
+  figure.tables.push_back(position_table(task.name + "_regions",
+                                         "places on the boundary of the forbidden regions",
+                                         boundary(regions.spheres())));
   add_tool_tables(figure, task.name, task.tool->mesh, task.trace, ticks);
 }
 

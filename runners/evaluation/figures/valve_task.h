@@ -11,21 +11,14 @@
 
 namespace remote_touch {
 
-struct ValveTask {
-  std::string name, label;  // name in tables; label for readers
-  Experiment experiment;
-  Trace trace;
-  std::shared_ptr<const ValveTank> tank;
+struct ValveTask : NamedRun {
+  std::shared_ptr<const ValveTank> tank;  // null for other scenarios
   std::shared_ptr<const VoxelTool> tool;
 };
+std::vector<ValveTask> run_tasks(FigureContext& context, const std::vector<NamedExperiment>& tasks);
 
-struct NamedTask {
-  std::string name, label, experiment;
-  std::vector<std::string> overrides = {};
-};
-
-// Runs the tasks in parallel. tank is null for other scenarios.
-std::vector<ValveTask> run_tasks(FigureContext& context, const std::vector<NamedTask>& tasks);
+// Returns a table of places x, y, z.
+Table position_table(const std::string& name, const std::string& title, const std::vector<Vec3>& places);
 
 // Returns the distance from the tool's mesh to the true surface of a valve. It is measured at the vertices
 // and at the centres of the triangles, so it can be too large by a few hundredths of a millimetre. pre: there
