@@ -1,6 +1,7 @@
 // Fig 4.13 again for the tracked sheet, and checks of what this must not cost. Not in the dissertation.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "analysis/trace/contact_measures.h"
 #include "analysis/trace/interval_estimates.h"
@@ -24,23 +25,16 @@ struct Lifts {
   double survived = 1, survived_to_2 = 1, worst_region = 1, well_above = 1;  // smallest over all seeds
 };
 
-double fraction_above(const SweepResult& result, double distance_m) {
-  double sum = 0;
-  for (const double distance : result.measure("end_distance")) sum += distance > distance_m ? 1 : 0;
-  return sum / static_cast<double>(result.run_count());
-}
-
 void add_seed(Lifts& lifts, const SweepResult& result, const Table& map) {
   const auto &sigma = numbers(map, "noise"), &survived = numbers(map, "survived");
-  std::vector<double> to_2;
-  for (std::size_t i = 0; i < sigma.size(); ++i)
-    if (sigma[i] <= 2 + 1e-9) to_2.push_back(survived[i]);
+  const auto is_to_2 = [&](std::size_t i) { return sigma[i] <= 2 + 1e-9; };
+  const auto is_well_above = [](double distance_m) { return distance_m > 0.5 * kContactRadius_m; };
   const Table regions = region_table("regions", map);
   const auto& by_region = numbers(regions, "survived");
   lifts.survived = min_or_nan(lifts.survived, mean(survived));
-  lifts.survived_to_2 = min_or_nan(lifts.survived_to_2, mean(to_2));
+  lifts.survived_to_2 = min_or_nan(lifts.survived_to_2, mean(where(survived, is_to_2)));
   lifts.worst_region = min_or_nan(lifts.worst_region, min_of(by_region));
-  lifts.well_above = min_or_nan(lifts.well_above, fraction_above(result, 0.5 * kContactRadius_m));
+  lifts.well_above = min_or_nan(lifts.well_above, mean(each(result.measure("end_distance"), is_well_above)));
 }
 
 // --- noise under a sliding proxy ---
@@ -81,89 +75,68 @@ Slide slide_of(const Trace& trace) {
 
 constexpr double kSlideNoise[] = {0.05, 0.1, 0.2, 0.4, 0.6, 1, 1.5, 2, 3};  // r_c
 
-// Mean, minimum and maximum over the reported seeds, at each noise strength.
-struct Slides {
-  std::vector<Slide> mean, min, max;
-};
-
-// Applies change(quantity of `to`, quantity of `from`) to each quantity of a slide.
-template <class Change>
-void each_quantity(Slide& to, const Slide& from, Change&& change) {
-  for (double Slide::*quantity :
-       {&Slide::mean, &Slide::sd, &Slide::jump_N, &Slide::lateral, &Slide::lateral_95})
-    change(to.*quantity, from.*quantity);
-}
-
-Slides slides(FigureContext& context, const std::string& renderer) {
+// Returns a row for each noise strength: means over the reported seeds, and the range of three of them.
+Table slide_table(FigureContext& context, const std::string& name, const std::string& renderer) {
+  constexpr std::size_t kSeeds = std::size(kReportedSeeds);
   std::vector<Experiment> runs;
   for (const double sigma : kSlideNoise)
     for (const int number : kReportedSeeds)
       runs.push_back(Experiment::load(
           "fig4.11", {renderer, noise_setting(sigma), seed_setting(number),
                       "trajectory.waypoints=[[0,0.01,0,0],[0,-0.005,0,0.05],[0.02,-0.005,0.01,0.02]]"}));
-  const std::vector<Slide> each = context.measure(runs, slide_of);
-  constexpr std::size_t kSeeds = std::size(kReportedSeeds);
-  Slides over;
-  over.mean.resize(std::size(kSlideNoise));
-  for (std::size_t i = 0; i < each.size(); ++i) {
-    if (i % kSeeds == 0) over.min.push_back(each[i]), over.max.push_back(each[i]);
-    each_quantity(over.mean[i / kSeeds], each[i], [](double& to, double from) { to += from / kSeeds; });
-    each_quantity(over.min.back(), each[i], [](double& to, double from) { to = min_or_nan(to, from); });
-    each_quantity(over.max.back(), each[i], [](double& to, double from) { to = max_or_nan(to, from); });
-  }
-  return over;
-}
-
-// Adds the minimum and the maximum of a quantity over the seeds.
-void add_range(Table& table, const std::string& column, const std::string& unit, const Slides& slides,
-               double Slide::*quantity) {
-  add_columns<Slide>(table, slides.min, {{column + "_min", unit, "minimum of the seeds", quantity}});
-  add_columns<Slide>(table, slides.max, {{column + "_max", unit, "maximum of the seeds", quantity}});
-}
-
-Table slide_table(const std::string& name, const Slides& slides) {
+  const std::vector<Slide> slides = context.measure(runs, slide_of);
+  const auto over_seeds = [&](double Slide::*quantity, const auto& statistic) {
+    return each_of(std::size(kSlideNoise), [&](std::size_t noise) {
+      return statistic(each(std::span(slides).subspan(noise * kSeeds, kSeeds), quantity));
+    });
+  };
+  const auto mean_of = [](const Numbers& of_seeds) {
+    double sum = 0;
+    for (const double value : of_seeds) sum += value / kSeeds;
+    return sum;
+  };
   Table table{name, "a proxy that slides on a flat noisy cloud"};
+  const auto add = [&](const char* column, const char* unit, const char* meaning, double Slide::*quantity) {
+    table.add(column, unit, meaning, over_seeds(quantity, mean_of));
+  };
+  const auto add_range = [&](const std::string& column, const char* unit, double Slide::*quantity) {
+    table.add(column + "_min", unit, "minimum of the seeds", over_seeds(quantity, min_of));
+    table.add(column + "_max", unit, "maximum of the seeds", over_seeds(quantity, max_of));
+  };
   table.add("noise", "r_c", "standard deviation of the noise",
-            {std::begin(kSlideNoise), std::end(kSlideNoise)});
-  add_columns<Slide>(table, slides.mean,
-                     {{"height", "r_c", "mean height above where it rests without noise", &Slide::mean},
-                      {"height_sd", "r_c", "standard deviation of that height", &Slide::sd},
-                      {"force_jump", "N", "rms change of the force at frame updates", &Slide::jump_N},
-                      {"lateral_force", "1",
-                       "mean ratio of the force along the surface to that along its normal", &Slide::lateral},
-                      {"lateral_force_95", "1", "95th percentile of this ratio", &Slide::lateral_95}});
-  add_range(table, "height", "r_c", slides, &Slide::mean);
-  add_range(table, "force_jump", "N", slides, &Slide::jump_N);
-  add_range(table, "lateral_force", "1", slides, &Slide::lateral);
+            Numbers(std::begin(kSlideNoise), std::end(kSlideNoise)));
+  add("height", "r_c", "mean height above where it rests without noise", &Slide::mean);
+  add("height_sd", "r_c", "standard deviation of that height", &Slide::sd);
+  add("force_jump", "N", "rms change of the force at frame updates", &Slide::jump_N);
+  add("lateral_force", "1", "mean ratio of the force along the surface to that along its normal",
+      &Slide::lateral);
+  add("lateral_force_95", "1", "95th percentile of this ratio", &Slide::lateral_95);
+  add_range("height", "r_c", &Slide::mean);
+  add_range("force_jump", "N", &Slide::jump_N);
+  add_range("lateral_force", "1", &Slide::lateral);
   return table;
 }
 
-double max_ratio(const std::vector<Slide>& ours, const std::vector<Slide>& paper, double from, double to,
-                 double Slide::*what) {
+// Returns the largest ratio of a column of two tables over the noise from `from` to `to`.
+double max_ratio(const Table& ours, const Table& paper, double from, double to, const char* column) {
+  const Numbers &over = numbers(ours, column), &under = numbers(paper, column);
   return max_where(
-      ours.size(), [&](std::size_t i) { return kSlideNoise[i] >= from && kSlideNoise[i] <= to; },
-      [&](std::size_t i) { return std::abs(ours[i].*what) / std::abs(paper[i].*what); });
+      over.size(), [&](std::size_t i) { return kSlideNoise[i] >= from && kSlideNoise[i] <= to; },
+      [&](std::size_t i) { return std::abs(over[i]) / std::abs(under[i]); });
 }
 
-double max_height(const std::vector<Slide>& slides) {
-  std::vector<double> heights;
-  for (const Slide& s : slides) heights.push_back(std::abs(s.mean));
-  return max_of(heights);
-}
-
-const Slide& at_noise(const std::vector<Slide>& slides, double sigma) {
-  const auto* const found = std::find(std::begin(kSlideNoise), std::end(kSlideNoise), sigma);
-  return slides[static_cast<std::size_t>(found - std::begin(kSlideNoise))];
+double at_noise(const Table& slides, double sigma, const char* column) {
+  const auto row = std::ranges::find(kSlideNoise, sigma) - std::begin(kSlideNoise);
+  return numbers(slides, column)[static_cast<std::size_t>(row)];
 }
 
 // The force acts along the normal without noise; noise turns the normal that a renderer estimates. The ranges
 // state what was measured: 3.3 standard errors of a mean of three seeds, around the mean of seeds 1 to 40.
-void add_lateral_claims(const Claims& claims, const std::vector<Slide>& ours,
-                        const std::vector<Slide>& paper) {
+void add_lateral_claims(const Claims& claims, const Table& ours, const Table& paper) {
   using Range = std::pair<double, double>;
   const struct {
     const char* who;
-    const std::vector<Slide>& slides;
+    const Table& slides;
     double noise;
     Range mean, most;
   } kMeasured[] = {{"proxy", paper, 0.2, {0.059, 0.087}, {0.105, 0.176}},
@@ -174,25 +147,21 @@ void add_lateral_claims(const Claims& claims, const std::vector<Slide>& ours,
     const std::string run = std::string("while the hand slides over a flat cloud with noise of ") +
                             (noise == 1 ? "r_c" : "0.2 r_c") + ", the force of the " + who +
                             " has a lateral part: ";
-    const Slide& slide = at_noise(slides, noise);
-    claims.between(run + "mean ratio to the normal part", slide.lateral, mean.first, mean.second, "ratio");
-    claims.between(run + "95th percentile of the ratio to the normal part", slide.lateral_95, most.first,
-                   most.second, "ratio");
+    claims.between(run + "mean ratio to the normal part", at_noise(slides, noise, "lateral_force"),
+                   mean.first, mean.second, "ratio");
+    claims.between(run + "95th percentile of the ratio to the normal part",
+                   at_noise(slides, noise, "lateral_force_95"), most.first, most.second, "ratio");
   }
 }
 
 // --- runs without noise, and runs with two sheets ---
 
 double ticks_that_differ(FigureContext& context, const char* experiment) {
-  const Trace paper = context.run(Experiment::load(experiment, {kPaper})),
-              ours = context.run(Experiment::load(experiment, {kTracked}));
-  double count = 0;
-  for (std::size_t i = 0; i < paper.length(); ++i)
-    count += paper.proxy_position_m[i] != ours.proxy_position_m[i] || paper.force_N[i] != ours.force_N[i] ||
-                     paper.normal[i] != ours.normal[i]
-                 ? 1
-                 : 0;
-  return count;
+  const Trace paper = context.run(experiment, {kPaper}), ours = context.run(experiment, {kTracked});
+  return count_where(paper.length(), [&](std::size_t i) {
+    return paper.proxy_position_m[i] != ours.proxy_position_m[i] || paper.force_N[i] != ours.force_N[i] ||
+           paper.normal[i] != ours.normal[i];
+  });
 }
 
 double success_on_two_sheets(FigureContext& context, double sigma) {
@@ -204,8 +173,8 @@ double success_on_two_sheets(FigureContext& context, double sigma) {
   return survived_share(context, runs);
 }
 
-void add_claims(Figure& figure, FigureContext& context, const Lifts& lifts, const std::vector<Slide>& ours,
-                const std::vector<Slide>& paper) {
+void add_claims(Figure& figure, FigureContext& context, const Lifts& lifts, const Table& ours,
+                const Table& paper) {
   const Claims claims(figure), map_claims(figure, "", &Claim::of_map);
   const std::string three = ", least of 3 seeds";
   constexpr double kAll = 1e9;
@@ -234,19 +203,19 @@ void add_claims(Figure& figure, FigureContext& context, const Lifts& lifts, cons
   claims.at_most(
       "noise up to 3 r_c hardly raises the contact point of the tracked sheet over a flat cloud: "
       "largest mean height",
-      max_height(ours), 0.1, "r_c");
+      max_of(magnitudes(numbers(ours, "height"))), 0.1, "r_c");
   claims.at_most(
       "with noise of 0.6 r_c or more the contact point of the tracked sheet moves less than that of the "
       "proxy: largest ratio of the standard deviations of the height",
-      max_ratio(ours, paper, 0.6, kAll, &Slide::sd), 0.5, "ratio", "1");
+      max_ratio(ours, paper, 0.6, kAll, "height_sd"), 0.5, "ratio", "1");
   claims.at_most(
       "with noise up to 0.2 r_c the force of the tracked sheet jumps less at updates than that of the "
       "proxy: largest ratio",
-      max_ratio(ours, paper, 0, 0.2, &Slide::jump_N), 0.5, "ratio", "1");
+      max_ratio(ours, paper, 0, 0.2, "force_jump"), 0.5, "ratio", "1");
   claims.at_most(
       "with noise of 0.6 r_c or more the force of the tracked sheet jumps less at updates than that of "
       "the proxy: largest ratio",
-      max_ratio(ours, paper, 0.6, kAll, &Slide::jump_N), 1.0 / 3, "ratio", "1");
+      max_ratio(ours, paper, 0.6, kAll, "force_jump"), 1.0 / 3, "ratio", "1");
   claims.at_least(
       "with noise of 0.3 r_c the tracked sheet holds the upper of two sheets 3 r_c apart: fraction of "
       "40 runs",
@@ -281,7 +250,8 @@ Figure figure_4_13_tracked(FigureContext& context) {
   }
   const Table paper_map =
       map_table("map_paper", context.sweep(context.map("fig4.13", {seed_setting(kReportedSeeds[0])})));
-  const Slides ours = slides(context, kTracked), paper = slides(context, kPaper);
+  const Table ours = slide_table(context, "slide_tracked", kTracked),
+              paper = slide_table(context, "slide_paper", kPaper);
   Figure figure{
       "4.13-tracked", "Pop-through map of the tracked sheet",
       "The lifts of Fig 4.13 under the proxy of chapter 4 and under the tracked sheet, with the same noise. "
@@ -295,15 +265,15 @@ Figure figure_4_13_tracked(FigureContext& context) {
                    paper_map,
                    survivors("survived_paper", paper_map),
                    bound_table(),
-                   slide_table("slide_tracked", ours),
-                   slide_table("slide_paper", paper)};
+                   ours,
+                   paper};
   figure.panels = {survivor_panel("Proxy of chapter 4", "survived_paper"),
                    survivor_panel("Tracked sheet", "survived"),
                    slide_panel("Height above the flat cloud", "mean height (r_c)", "height"),
                    slide_panel("Force jump at frame updates", "rms (N)", "force_jump"),
                    slide_panel("Force along the surface", "mean ratio to the normal force", "lateral_force")};
   place_in_rows(figure, 2);
-  add_claims(figure, context, lifts, ours.mean, paper.mean);
+  add_claims(figure, context, lifts, ours, paper);
   return figure;
 }
 
