@@ -88,8 +88,7 @@ Panel& PanelColumn::add(const std::string& title, const std::string& y_label,
                         const std::vector<CurveOfY>& curves,
                         std::optional<std::pair<double, double>> y_range) {
   Panel panel = plot(title, x_label, y_label, {}, {{{row++, column}}, x_range, y_range});
-  for (const CurveOfY& curve : curves)
-    panel.curves.push_back({table, x, curve.y, curve.style, curve.label, 0, curve.z});
+  for (const CurveOfY& curve : curves) panel.curves.push_back({table, x, curve.y, curve.style, curve.label});
   return figure.panels.emplace_back(std::move(panel));
 }
 

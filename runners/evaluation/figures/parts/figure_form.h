@@ -130,11 +130,11 @@ Panel plot(const std::string& title, const std::string& x_label, const std::stri
            std::vector<Curve> curves, const PanelFrame& frame = {});
 // Panels below each other in a column of a figure, each with curves of one table over the same column.
 struct PanelColumn {
-  // The numbers y of the table over its column x; z: as in Curve.
+  // The column y of the table over its column x.
   struct CurveOfY {
     std::string y;
     CurveStyle style = CurveStyle::line;
-    std::string label = {}, z = {};
+    std::string label = {};
   };
   Figure& figure;
   std::string table, x, x_label;
