@@ -304,11 +304,6 @@ Sinusoid sinusoid_in(const std::vector<double>& time_s, const std::vector<double
   return {std::hypot(with_cosine, with_sine) / half_count, std::atan2(-with_sine, with_cosine)};
 }
 
-double lag_s(const Sinusoid& first, const Sinusoid& second, double hz) {
-  const double turn_rad = 2 * std::numbers::pi;
-  return std::remainder(first.phase_rad - second.phase_rad, turn_rad) / (turn_rad * hz);
-}
-
 std::int64_t runs_for_level(double level) {
   const double runs = std::ceil(std::log(kLimitTail) / std::log1p(-level) - 1e-12);
   return static_cast<std::int64_t>(std::min(runs, 1e18));  // far beyond the runs of any sweep

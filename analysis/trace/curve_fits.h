@@ -56,8 +56,6 @@ struct Sinusoid {
 // are evenly spaced and cover whole periods.
 Sinusoid sinusoid_in(const std::vector<double>& time_s, const std::vector<double>& values, double hz);
 
-// Returns by how much the second sinusoid lags behind the first, from -1 / (2 hz) to 1 / (2 hz).
-double lag_s(const Sinusoid& first, const Sinusoid& second, double hz);
 
 // The value on an axis at which an event has a given probability, and the difference of two such values.
 

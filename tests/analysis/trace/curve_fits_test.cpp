@@ -128,17 +128,6 @@ TEST(Sinusoid, HasTheAmplitudeOfItsFrequencyAlone) {
   EXPECT_NEAR(part_of(signal(0, 0)).amplitude, 0, 1e-12);
 }
 
-TEST(Sinusoid, LagsByTheDelayOfItsSignal) {
-  const Sinusoid first = part_of(signal(1, 0.05));
-  EXPECT_NEAR(lag_s(first, part_of(signal(2, 0.13)), kHz), 0.08, 1e-12);
-  EXPECT_NEAR(lag_s(part_of(signal(2, 0.13)), first, kHz), -0.08, 1e-12);
-}
-
-TEST(Sinusoid, LagIsLessThanHalfAPeriod) {
-  const Sinusoid first = part_of(signal(1, 0));
-  EXPECT_NEAR(lag_s(first, part_of(signal(1, 0.9 / kHz)), kHz), -0.1 / kHz, 1e-12);
-}
-
 TEST(Sinusoid, WithoutValuesIsNan) {
   EXPECT_TRUE(std::isnan(sinusoid_in({}, {}, kHz).amplitude));
 }

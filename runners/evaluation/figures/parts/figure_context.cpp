@@ -45,17 +45,7 @@ Sweep FigureContext::map(const std::string& name, const std::vector<std::string>
 }
 
 SweepResult FigureContext::sweep(const Sweep& sweep) {
-  return checked(sweep, run_sweep(sweep, {&kernels_, stop_, {}, runs_}));
-}
-
-SweepResult FigureContext::part(const Sweep& sweep, std::vector<std::uint64_t> runs) {
-  SweepResult result = sweep.part(std::move(runs));
-  if (do_pending_runs(sweep, result, {&kernels_, stop_, {}, runs_}) > 0) throw std::bad_alloc();
-  return checked(sweep, std::move(result));
-}
-
-// Notes the result of a sweep. Throws InputError if one of its runs failed.
-SweepResult FigureContext::checked(const Sweep& sweep, SweepResult result) {
+  SweepResult result = run_sweep(sweep, {&kernels_, stop_, {}, runs_});
   note(sweep.to_json());
   inputs_.add(sweep.inputs());
   const auto failed = result.runs_in(RunState::failed);

@@ -63,8 +63,6 @@ class FigureContext {
   std::size_t made_runs_of_maps() const { return made_runs_of_maps_; }
   // Makes every run of a sweep; throws InputError if one failed.
   SweepResult sweep(const Sweep& sweep);
-  // Makes these runs of a sweep, which may keep a tally; throws InputError if one failed.
-  SweepResult part(const Sweep& sweep, std::vector<std::uint64_t> runs);
   // Returns of(trace) for each run of a sweep's plan, in its order.
   template <class Of>
   auto measure(const Sweep& sweep, Of&& of) {
@@ -87,7 +85,6 @@ class FigureContext {
  private:
   // Several threads call it at the same time: of the members it changes only notes_, which has a lock.
   Trace simulated(const Experiment& experiment);
-  SweepResult checked(const Sweep& sweep, SweepResult result);
   void note(const std::string& configuration) { configurations_.push_back(configuration); }
 
   std::vector<std::string> configurations_;

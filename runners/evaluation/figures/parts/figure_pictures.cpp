@@ -30,12 +30,6 @@ std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud
   return picked;
 }
 
-std::vector<char> measured_points(const PointCloud& cloud) {
-  std::vector<char> measured;
-  for (std::size_t i = 0; i < cloud.size(); ++i) measured.push_back(cloud.is_measured(i));
-  return measured;
-}
-
 Table picture_table(const std::string& name, const std::string& title, const PointCloud& cloud,
                     const std::vector<std::uint32_t>& colours, const PictureCrop& crop) {
   const int width = cloud.image->camera.width;
@@ -170,16 +164,12 @@ Panel scene_panel(const std::string& title, int row, int column, Scene scene) {
   return panel;
 }
 
-double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
-  return rotation_vector(a.conjugate() * b).norm();
-}
-
 double lag_m(const Trace& trace, std::size_t tick) {
   return (trace.hip_position_m[tick] - trace.proxy_position_m[tick]).norm();
 }
 
 double lag_rad(const Trace& trace, std::size_t tick) {
-  return angle_between(trace.tool_orientation[tick], trace.hip_orientation[tick]);
+  return rotation_vector(trace.tool_orientation[tick].conjugate() * trace.hip_orientation[tick]).norm();
 }
 
 }  // namespace remote_touch

@@ -21,9 +21,8 @@ struct Trace;
 // Returns each fixture rule of an experiment separately, in order.
 std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment);
 
-// One element a point: 1 if the rule selects the point, or if the point was measured, else 0.
+// One element a point: 1 if the rule selects the point, else 0.
 std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud);
-std::vector<char> measured_points(const PointCloud& cloud);
 
 // Pixels of an image that a picture shows: every step'th of the columns left .. right - 1 and of the rows
 // top .. bottom - 1.
@@ -77,8 +76,6 @@ std::size_t tick_of(const Trace& trace, double time_s);
 
 Panel scene_panel(const std::string& title, int row, int column, Scene scene);
 
-// Angle of the rotation from one orientation to the other, rad.
-double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 // Distance and angle between the tool's and the device's pose in a tick.
 double lag_m(const Trace& trace, std::size_t tick);
 double lag_rad(const Trace& trace, std::size_t tick);

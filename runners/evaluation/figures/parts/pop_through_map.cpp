@@ -44,8 +44,8 @@ Table noise_table(const std::string& name, const std::string& title) {
   return table_of(name, title, {kNoiseColumn}, rows);
 }
 
-Table map_table(const std::string& name, const SweepResult& result, const std::string& measure) {
-  const std::vector<double>& popped = result.measure(measure);
+Table map_table(const std::string& name, const SweepResult& result) {
+  const std::vector<double>& popped = result.measure("popped_through");
   TableRows rows;
   for (std::size_t cell = 0; cell < result.cell_count(); ++cell) {
     const EventCounts lifts = event_counts(result, popped, cell);

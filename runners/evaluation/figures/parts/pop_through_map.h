@@ -34,9 +34,8 @@ double share_of_known(const std::vector<double>& survived);
 inline const ColumnName kNoiseColumn{"noise", "r_c", "standard deviation of the noise"},
     kAccelerationColumn{"acceleration", "r_c/s^2", "acceleration of the lift"};
 // Returns a table with one row for each cell: noise (r_c), acceleration (r_c/s^2), survived (fraction), its
-// exact interval, runs. popped_measure: name of the measure that is 1 for a run that popped through.
-Table map_table(const std::string& name, const SweepResult& result,
-                const std::string& popped_measure = "popped_through");
+// exact interval, runs.
+Table map_table(const std::string& name, const SweepResult& result);
 // Returns the cells in which more than half of the lifts survived.
 Table survivors(const std::string& name, const Table& map);
 
