@@ -65,12 +65,12 @@ void add_unknown_outcome(std::span<const Measure> measures, const Trace& trace, 
 class NoteCounts {
  public:
   void add(const std::vector<Note>& notes);  // the notes of one run
+  void add_run(std::uint64_t bits);          // the same as note_bits()
   void add(const SweepResult& result);       // the notes of its finished runs; pre: run_sweep() has made it
   // Returns a line for each kind: "12 of 210 runs: no contact: no point was touched and no force was felt".
   std::vector<std::string> lines() const;
 
  private:
-  void add_run(std::uint64_t bits);
   mutable std::mutex mutex_;
   std::size_t runs_ = 0;
   std::map<std::size_t, std::size_t> of_kind_;  // key: number of the kind

@@ -277,8 +277,7 @@ class Repro {
     if (entry == figures().end())
       throw InputError(result_.file(), "is figure " + of("figure") + ", which this program does not know");
     const std::vector<FigureRun> runs = {
-        {&*entry, result_.recipe() ? std::max(1, result_.recipe()->coarse) : 1,
-         result_.recipe() ? result_.recipe()->overrides : std::vector<std::string>()}};
+        {&*entry, result_.recipe() ? std::max(1, result_.recipe()->coarse) : 1}};
     std::vector<Column> columns;
     make_figures(
         line_, runs, [](const FigureEntry& made, FigureContext& context) { return made.make(context); },

@@ -103,11 +103,11 @@ Column column_of(const py::handle& tuple) {
   return column;
 }
 
-Vec3 vector_of(const py::handle& value, const Subject& subject, Numbers allowed) {
+Vec3 vector_of(const py::handle& value, const Subject& subject, Allowed allowed) {
   const Doubles numbers = checked_array(value, {3}, subject, "three numbers");
   const double* p = numbers.data();
   const Vec3 vector(p[0], p[1], p[2]);
-  if (allowed == Numbers::finite && !vector.allFinite())
+  if (allowed == Allowed::finite && !vector.allFinite())
     throw InputError(subject(), "a number is not finite: expected three finite numbers");
   return vector;
 }

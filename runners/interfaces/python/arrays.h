@@ -35,9 +35,9 @@ Column column_of(const pybind11::handle& tuple);
 // Returns the subject of an error; called only if there is one: "renderer mine: Mine.step: force_N".
 using Subject = std::function<std::string()>;
 
-// Returns three finite numbers; with Numbers::any they may also be infinite or NaN. Throws InputError.
-enum class Numbers { finite, any };
-Vec3 vector_of(const pybind11::handle& value, const Subject& subject, Numbers allowed = Numbers::finite);
+// Returns three finite numbers; with Allowed::any they may also be infinite or NaN. Throws InputError.
+enum class Allowed { finite, any };
+Vec3 vector_of(const pybind11::handle& value, const Subject& subject, Allowed allowed = Allowed::finite);
 // Returns the quaternion w, x, y, z, normalised. Throws InputError unless its length is 1 within 1e-6.
 Eigen::Quaterniond quaternion_of(const pybind11::handle& value, const Subject& subject);
 pybind11::array_t<double> array_of(const Vec3& vector);

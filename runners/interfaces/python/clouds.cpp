@@ -253,7 +253,7 @@ SceneClass bind_scene(py::module_& module) {
           "signed_distance",
           [](const PythonScene& s, const py::object& p, double time_s) {
             return (*s).signed_distance(vector_of(
-                                            p, [] { return "signed_distance: p"; }, Numbers::any),
+                                            p, [] { return "signed_distance: p"; }, Allowed::any),
                                         time_s);
           },
           py::arg("p"), py::arg("time_s"))

@@ -148,7 +148,7 @@ PythonOutput make_output(const py::object& proxy_m, const py::object& force_N, c
   const auto take = [](const py::object& given, const char* name, Vec3& to) {
     if (!given.is_none())
       to = vector_of(
-          given, [&] { return std::string("Output: ") + name; }, Numbers::any);
+          given, [&] { return std::string("Output: ") + name; }, Allowed::any);
   };
   made.has_proxy = !proxy_m.is_none();
   take(proxy_m, "proxy_m", out.proxy_W), take(force_N, "force_N", out.force_N);

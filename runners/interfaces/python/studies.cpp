@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/result_file.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/experiment/catalog/experiment.h"
@@ -42,11 +43,12 @@ Sweep sweep_of(const std::string& subject, const OptionalText& text, const Texts
 // recording is computed once, however many runs read it.
 class StudyRuns {
  public:
-  // Returns the configuration, the columns of the trace, and the measures of a run.
+  // Returns the configuration, the columns of the trace, the measures, and the notes of a run as bits.
   py::tuple run(const std::string& subject, const OptionalText& text, const Texts& overrides) {
     std::string config;
     Trace trace;
     std::vector<Column> measures_of_run;
+    std::uint64_t notes = 0;
     do_long_work(py::none(), 1, [&](const LongWork& work) {
       const Experiment experiment = experiment_of(subject, text, overrides);
       config = noted(experiment);
@@ -55,12 +57,13 @@ class StudyRuns {
       RunReport report;
       options.report = &report;
       trace = simulate(experiment, options);
-      notes_.add(report.notes);
+      notes = note_bits(report.notes);
+      notes_.add_run(notes);
       for (const auto& [measure, value] : measured_values(measures(), trace))
         measures_of_run.push_back(
             {measure->name, measure->unit, measure->meaning, std::vector<double>{value}});
     });
-    return py::make_tuple(config, to_python(trace.columns()), to_python(std::move(measures_of_run)));
+    return py::make_tuple(config, to_python(trace.columns()), to_python(std::move(measures_of_run)), notes);
   }
   // Returns the configuration of an experiment that is used without a run.
   std::string uses(const std::string& subject, const OptionalText& text, const Texts& overrides) {
@@ -87,6 +90,8 @@ class StudyRuns {
     });
     return to_python(std::move(made));
   }
+  // Adds the notes of a run that was made elsewhere.
+  void add_notes(std::uint64_t bits) { notes_.add_run(bits); }
   Texts note_lines() const { return notes_.lines(); }
   // Returns the attributes of the study's file. Throws InputError if an input has changed since it was read.
   py::list origin(const std::string& configurations, const std::string& command) {
@@ -196,6 +201,7 @@ void bind_studies(py::module_& module) {
       .def("uses_sweep", &StudyRuns::uses_sweep, py::arg("subject"), py::arg("text"), py::arg("overrides"),
            py::arg("coarse"))
       .def("sweep", &StudyRuns::sweep, py::arg("config"))
+      .def("add_notes", &StudyRuns::add_notes, py::arg("bits"))
       .def("note_lines", &StudyRuns::note_lines)
       .def("origin", &StudyRuns::origin, py::arg("configurations"), py::arg("command"));
   py::class_<Claim>(module, "Claim", "A statement with a criterion, compared with a measured number.")
@@ -209,6 +215,12 @@ void bind_studies(py::module_& module) {
       .def_property_readonly("verdict", [](const Claim& one) { return verdict_name(one.verdict); })
       .def("leave_open", &leave_open)
       .def("__str__", &line_of);
+  module.def(
+      "require_result",
+      [](const std::string& file) {
+        require_output(file, {.is_ours = has_result_header, .force_option = "another folder"});
+      },
+      py::arg("file"), "Refuses a file that cannot be written, or that is no result of this program.");
   module.def("claim", &claim, py::arg("kind"), py::arg("figure"), py::arg("text"), py::arg("paper"),
              py::arg("measured"), py::arg("low"), py::arg("high"), py::arg("unit"), "A claim of a figure.");
   module.def("coarse_text", &coarse_text, py::arg("made_runs"), py::arg("runs"), py::arg("coarse"),

@@ -23,12 +23,14 @@ from __future__ import annotations
 import argparse
 import collections
 import concurrent.futures
+import contextlib
 import dataclasses
 import itertools
 import json
 import math
 import os
 import pathlib
+import re
 import shlex
 import sys
 import tempfile
@@ -60,6 +62,9 @@ def study(name, summary, *, title="", caption="", source="the dissertation", qui
     set them as s.title and so on. source: where the values come from that claims compare with. quick_coarse: a quick study uses
     every so-manieth value of the axes of Study.map().
     """
+    if not re.fullmatch(r"[a-z0-9][a-z0-9.-]*", name) or name in _core.list()["figures"]:
+        raise InputError(f"study {name!r}: expected small letters, digits, - and ., and no name of a figure of the program")
+
     def declare(make):
         file = make.__globals__.get("__file__", "")
         known = STUDIES.get(name)
@@ -77,12 +82,13 @@ class Run:
     config: the resolved configuration as a dict. measures: {"max_force": 1.2}. units, value_names: of each column.
     """
 
-    def __init__(self, config, columns, measures):
+    def __init__(self, config, columns, measures, notes):
         self.config = json.loads(config)
         self.columns = {name: values for name, _, _, values, _ in columns}
         self.units = {name: units for name, units, _, _, _ in columns}
         self.value_names = {name: names for name, _, _, _, names in columns if names}
         self.measures = {name: float(values[0]) for name, _, _, values, _ in measures}
+        self.notes = notes  # a bit for each kind
 
     def __getattr__(self, name):
         try:
@@ -95,11 +101,14 @@ class Run:
 
     def norm(self, name):
         """The length of a vector in each tick."""
-        return np.linalg.norm(self.columns[name], axis=1)
+        return np.linalg.norm(getattr(self, name), axis=1)
 
     def is_(self, name, value_name):
         """Whether a column of names, such as state, has this value, in each tick."""
-        return self.columns[name] == self.value_names[name].index(value_name)
+        names = self.value_names.get(name, [])
+        if value_name not in names:
+            raise AttributeError(f"{name} is never {value_name!r}: {f'it is {chr(44).join(names)}' if names else 'its values are numbers'}")
+        return self.columns[name] == names.index(value_name)
 
     def frame_updates(self):
         """The ticks in which the renderer has another frame than in the tick before."""
@@ -119,10 +128,13 @@ class Rows(dict):
         return len(next(iter(self.values()))) if self.keys() else 0
 
     def where(self, **values):
-        """The rows in which these columns have these values: rows.where(delay=0.1)."""
+        """The rows in which these columns have these values, to rounding: rows.where(delay=0.1). There must be one."""
         chosen = np.ones(len(self), dtype=bool)
         for name, value in values.items():
-            chosen &= self[name] == value
+            column = getattr(self, name)
+            chosen &= np.isclose(column, value, rtol=1e-9, atol=0) if column.dtype.kind == "f" else column == value
+        if not chosen.any():
+            raise InputError(f"no row has {', '.join(f'{name} = {value}' for name, value in values.items())}")
         return Rows({name: column[chosen] for name, column in self.items()})
 
 
@@ -151,6 +163,10 @@ def curve(style):
     return make
 
 
+# steps: each value lasts until the next. bars: from 0. circle: of this radius, in units of the axes. squares: filled cells of a
+# map. intervals: bars from y to z, in the colour of the next curve; an infinite end is an arrow. band: the area between y and z.
+# color_map: cells coloured by z. image: pixels of the colour z = 0xRRGGBB. surface: heights z over (x, y), alone in its panel.
+# letters: a line at x with the name of the value of z above.
 line, dots, dashed, steps, bars, circle, squares, intervals, band, color_map, image, surface, letters = map(curve, (
     "line", "dots", "dashed", "steps", "bars", "circle", "squares", "intervals", "band", "map", "image", "surface", "letters"))
 
@@ -196,12 +212,19 @@ class Study:
     """
 
     def __init__(self, entry, coarse=1, executor=None, overrides=()):
-        self.name, self.coarse, self.executor, self.overrides = entry.name, coarse, executor, list(overrides)
+        self.name, self.coarse, self.executor = entry.name, coarse, executor
+        self._overrides, self._takes_settings = [*overrides], False
         self.title, self.caption, self.source = (entry.defaults[name] for name in ("title", "caption", "source"))
         self.folder = pathlib.Path(entry.file).parent  # with the experiments and sweeps of the study
         self.tables, self.panels, self.all_claims = [], [], []
         self.runs_of_maps = self.made_runs_of_maps = 0
         self._core, self._configs = _core.StudyRuns(), []
+
+    @property
+    def overrides(self):
+        """The settings "path=value" of --set. A study that never reads them takes none, and the call is refused."""
+        self._takes_settings = True
+        return self._overrides
 
     # --- runs ---
 
@@ -227,6 +250,8 @@ class Study:
         axes: {"delay": [0, 0.1]}. task(cell): the (experiment, settings) of a cell, which has a member for each axis.
         columns: {"force": function of a run, or of a run and its cell}. Of the configurations the file has the first.
         """
+        if {*axes} & {*columns}:
+            raise InputError(f"study {self.name}: {min({*axes} & {*columns})} is an axis and a column")
         cells = product(axes)
         functions = [_of_run_and_cell(function) for function in columns.values()]
         made = self._side_by_side([task(cell) for cell in cells],
@@ -244,7 +269,12 @@ class Study:
                 return [*threads.map(lambda i: of(Run(*self._core.run(*calls[i])), i), range(len(calls)))]
         for call in calls:
             self._core.uses(*call)
-        return [of(Run(*result), i) for i, result in enumerate(self.executor.map(_run_elsewhere, calls))]
+        made = []
+        for i, result in enumerate(self.executor.map(_run_elsewhere, calls)):
+            run = Run(*result)
+            self._core.add_notes(run.notes)
+            made.append(of(run, i))
+        return made
 
     def sweep(self, sweep, set=None, coarse=1):
         """All runs of a sweep, as the Dataset of remote_touch.sweep(). Raises InputError if a run failed."""
@@ -258,6 +288,8 @@ class Study:
             made = remote_touch.sweep(json.loads(config), output=os.path.join(folder, "sweep.h5"), executor=self.executor).load()
         if "error" in made:
             raise InputError(f"{self.name}: a run of a sweep failed")
+        for bits in made.notes.values.ravel().tolist():
+            self._core.add_notes(bits)
         return made
 
     def map(self, sweep, set=None):
@@ -277,9 +309,13 @@ class Study:
 
     def table(self, name, title, columns=None, /, **named):
         """Adds a table. Each column is name=(values, units, long_name); texts may be values. Returns its Rows."""
+        if not re.fullmatch(r"[\w.-]+", name) or name in (table[0] for table in self.tables):
+            raise InputError(f"study {self.name}: table {name!r}: expected another word for each table")
         rows, listed = Rows(), []
         for column, (values, units, long_name, *names) in {**(columns or {}), **named}.items():
             values = np.asarray(values)
+            if values.ndim != 1 or values.dtype.kind not in "UObiuf":
+                raise InputError(f"study {self.name}: table {name}: {column}: expected a list of numbers or texts")
             rows[column] = values
             if values.dtype.kind in "UO":
                 listed.append((column, units, long_name, [str(value) for value in values], []))
@@ -288,7 +324,8 @@ class Study:
             else:
                 listed.append((column, units, long_name, values.astype(float), []))
         if len({len(values) for values in rows.values()}) > 1:
-            raise InputError(f"study {self.name}: table {name}: its columns differ in length")
+            lengths = ", ".join(f"{column} {len(values)}" for column, values in rows.items())
+            raise InputError(f"study {self.name}: table {name}: its columns differ in length: {lengths}")
         self.tables.append((name, title, listed))
         return rows
 
@@ -317,19 +354,39 @@ class Study:
             for claim in self.all_claims:
                 if claim.of_map:
                     claim.leave_open()
-        folder = pathlib.Path(folder)
+        self._require_columns()
+        folder, entry = pathlib.Path(folder), STUDIES.get(self.name)
         origin = self._core.origin("[" + ", ".join(self._configs) + "]", command)
-        entry = STUDIES.get(self.name)
         _core.write_figure(str(folder / f"fig{self.name}.h5"), self.name, self.title, self.caption, self.tables,
-                           json.dumps(self.panels, default=float), [*origin, ("summary", entry.summary if entry else "")])
+                           json.dumps(self.panels, default=float),
+                           [*origin, ("summary", entry.summary), ("study", f"{os.path.basename(entry.file)}: sha256 {_sha256(entry.file)}")])
+        for suffix in ("png", "svg", "pdf"):  # of an earlier call
+            (folder / f"fig{self.name}.{suffix}").unlink(missing_ok=True)
         _write_claims(folder, self.name, self.all_claims)
         return self._core.note_lines()
+
+
+    def _require_columns(self):
+        """Every curve has its table and columns of numbers."""
+        tables = {name: {column: values for column, _, _, values, _ in columns} for name, _, columns in self.tables}
+        for panel in self.panels:
+            for each in panel["curves"]:
+                for column in filter(None, (each["x"], each["y"], each["z"])):
+                    if isinstance(tables.get(each["table"], {}).get(column, []), list):
+                        raise InputError(f"study {self.name}: panel {panel['title']!r}: a curve asks for {each['table']}/{column}: "
+                                         "expected a column of numbers of one of its tables")
+
+
+def _sha256(file):
+    import hashlib
+    return hashlib.sha256(pathlib.Path(file).read_bytes()).hexdigest() if os.path.isfile(file) else "unknown"
 
 
 def _of_run_and_cell(function):
     """A column may be a function of the run alone."""
     import inspect
-    return function if len(inspect.signature(function).parameters) > 1 else lambda run, cell: function(run)
+    needed = [each for each in inspect.signature(function).parameters.values() if each.default is each.empty]
+    return function if len(needed) > 1 else lambda run, cell: function(run)
 
 
 def _processors():
@@ -360,7 +417,7 @@ def make(name, folder, *, coarse=1, quick=False, executor=None, set=(), command=
     """
     entry = STUDIES[name]
     coarse = max(_integer("coarse", coarse, 1, 10), entry.quick_coarse if quick else 1)
-    os.makedirs(folder, exist_ok=True)
+    _require_folder(pathlib.Path(folder), name)
     made = Study(entry, coarse, executor, set)
     try:
         entry.make(made)
@@ -370,8 +427,34 @@ def make(name, folder, *, coarse=1, quick=False, executor=None, set=(), command=
         made = Study(entry, coarse)
         made.title, made.caption = "Not run", f"Not run: {missing}"
         made.all_claims = [_core.claim_not_run(name, entry.summary, str(missing))]
-    made.notes = made.write(folder, command or f"scripts/studies {shlex.quote(name)}" + (f" --coarse {coarse}" if coarse > 1 else ""))
+    if made._overrides and not made._takes_settings:
+        raise InputError(f"study {name} --set {made._overrides[0]}: this study takes no settings")
+    made.notes = made.write(folder, command or _command(entry, coarse, made._overrides))
     return made
+
+
+def _require_folder(folder, name):
+    """Refuses to replace what is no result, before any run."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: is no folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    _core.require_result(str(folder / f"fig{name}.h5"))
+    claims = folder / "claims.json"
+    if claims.exists() and claims.stat().st_size > 0:
+        try:
+            known = json.loads(claims.read_text())
+        except ValueError:
+            known = None
+        if not (isinstance(known, list) and all(isinstance(claim, dict) and "figure" in claim for claim in known)):
+            raise InputError(f"{claims}: is no list of claims of this program: expected another folder")
+
+
+def _command(entry, coarse, overrides):
+    """The command of a study of the project, or the call of a file of a user."""
+    is_own = pathlib.Path(entry.file).parent.parent.parts[-2:] == ("data", "studies")
+    words = ["scripts/studies" if is_own else f"python3 {os.path.basename(entry.file)}", shlex.quote(entry.name)]
+    words += [f"--coarse {coarse}"] * (coarse > 1) + [f"--set {shlex.quote(each)}" for each in overrides]
+    return " ".join(words)
 
 
 def _options(arguments):
@@ -401,7 +484,7 @@ def _make_all(options):
     with _executor(options.processes) as executor:
         for name in _chosen(options.names):
             made = make(name, options.output, coarse=options.coarse, quick=options.quick, executor=executor, set=options.set)
-            print(f"study {name} -> {options.output / f'fig{name}.h5'}")
+            print(f"study {name} -> {options.output / f'fig{name}.h5'}", flush=True)
             for claim in made.all_claims:
                 print(claim)
                 failed |= claim.verdict == "fail"
@@ -410,12 +493,27 @@ def _make_all(options):
     return not failed
 
 
+@contextlib.contextmanager
 def _executor(processes):
-    import contextlib
-    import multiprocessing
+    """So many worker processes, which Ctrl-C ends; None: threads."""
     if processes is None:
-        return contextlib.nullcontext()
-    return concurrent.futures.ProcessPoolExecutor(processes, mp_context=multiprocessing.get_context("spawn"))
+        yield None
+        return
+    import multiprocessing
+    with concurrent.futures.ProcessPoolExecutor(_integer("processes", processes, 1, 4096), initializer=_leave_interruption,
+                                                mp_context=multiprocessing.get_context("spawn")) as workers:
+        try:
+            yield workers
+        except KeyboardInterrupt:
+            for worker in multiprocessing.active_children():
+                worker.kill()
+            raise
+
+
+def _leave_interruption():
+    """Ctrl-C reaches the workers, too; the process that gives them work ends them."""
+    import signal
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def main(arguments=None):
@@ -433,7 +531,12 @@ def main(arguments=None):
         print(f"studies: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
+        print("studies: interrupted; what was finished is kept", file=sys.stderr)
         return 3
+    except Exception:  # of the code of a study: 1 would say that a claim failed
+        import traceback
+        traceback.print_exc()
+        return 2
     return 0 if held else 1
 
 

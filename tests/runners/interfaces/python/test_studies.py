@@ -60,7 +60,10 @@ def test_an_executor_changes_no_bit(tmp_path):
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as workers:
         _, by_workers, _ = made(tmp_path / "workers", executor=workers)
     _, by_threads, _ = made(tmp_path / "threads")
+        at_height, _, _ = made(tmp_path / "free", declared("test-free", lambda s: s.run(PRESS, {"trajectory.depth_m": -0.01})),
+                               executor=workers)
     assert by_workers.attrs["digest"] == by_threads.attrs["digest"] and by_workers.attrs["config"] == by_threads.attrs["config"]
+    assert any("1 of 1 runs: no contact" in note for note in at_height.notes), "the notes of the workers"
 
 
 SWEEP = {"title": "depth", "experiment": PRESS, "axes": [{"parameter": "trajectory.depth_m", "from": 0.002, "to": 0.01, "count": 5}],
@@ -98,8 +101,11 @@ def test_rows():
     rows = Rows(a=np.array([1, 1, 2]), b=np.array([3, 4, 5]))
     assert rows.where(a=1).b.tolist() == [3, 4] and len(rows) == 3 and len(Rows()) == 0
     assert [(cell.x, cell.y) for cell in product({"x": [1, 2], "y": [3, 4]})] == [(1, 3), (1, 4), (2, 3), (2, 4)]
+    assert Rows(a=0.1 * np.arange(5)).where(a=0.3).a.tolist() == [0.1 * 3]
     with pytest.raises(AttributeError, match="no column 'c': there is a, b"):
         rows.c
+    with pytest.raises(InputError, match="no row has a = 3"):
+        rows.where(a=3)
 
 
 def test_theory_and_estimates():
@@ -124,13 +130,40 @@ def refusal(folder, make, **options):
     return str(error.value)
 
 
+def refusal_with(folder, monkeypatch, **options):
+    monkeypatch.delitem(studies.STUDIES, "test-refused", raising=False)
+    return refusal(folder, lambda s: None, **options)
+
+
+def test_files_of_others_are_not_replaced(tmp_path, monkeypatch):
+    for name, text_ in (("figtest-refused.h5", "hello"), ("claims.json", '{"mine": 1}')):
+        (tmp_path / name).write_text(text_)
+        with pytest.raises(InputError):
+            monkeypatch.delitem(studies.STUDIES, "test-refused", raising=False)
+            made(tmp_path, declared("test-refused", lambda s: None))
+        assert (tmp_path / name).read_text() == text_
+        (tmp_path / name).unlink()
+
+
 def test_refusals(tmp_path, monkeypatch):
     def refuse(make):
         monkeypatch.delitem(studies.STUDIES, "test-refused", raising=False)
         return refusal(tmp_path, make)
     assert "expected an experiment's name" in refuse(lambda s: s.run("no-such-experiment"))
     assert "scenario.noise_sigma_m = -1" in refuse(lambda s: s.run("fig4.12", {"scenario.noise_sigma_m": -1}))
-    assert "differ in length" in refuse(lambda s: s.table("t", "t", a=([1, 2], "1", "a"), b=([1], "1", "b")))
+    point = dict(x=([1.0], "m", "x"), name=(["one"], "1", "name"))
+    assert "asks for t/y: expected a column" in refuse(lambda s: (s.table("t", "t", **point), s.panel("", "", "", [line("t", "x", "y")])))
+    assert "asks for t/name" in refuse(lambda s: (s.table("t", "t", **point), s.panel("", "", "", [line("t", "x", "name")])))
+    assert "asks for u/x" in refuse(lambda s: s.panel("", "", "", [line("u", "x", "x")]))
+    assert "expected another word for each table" in refuse(lambda s: (s.table("t", "t", **point), s.table("t", "t", **point)))
+    assert "expected another word for each table" in refuse(lambda s: s.table("t/u", "t", **point))
+    assert "expected a list of numbers" in refuse(lambda s: s.table("t", "t", x=([[1.0]], "m", "x")))
+    assert "depth is an axis and a column" in refuse(lambda s: s.grid({"depth": [1]}, lambda cell: PRESS, {"depth": len}))
+    assert "takes no settings" in refusal_with(tmp_path, monkeypatch, set=["a=1"])
+    for name in ("", "4.12", "../evil", "A b"):
+        with pytest.raises(InputError, match="expected small letters"):
+            study(name, "")(test_rows)
+    assert "differ in length: a 2, b 1" in refuse(lambda s: s.table("t", "t", a=([1, 2], "1", "a"), b=([1], "1", "b")))
     assert "unknown style of a curve: wave" in refuse(
         lambda s: s.panel("", "", "", [studies.Curve("t", "a", "b", "wave")]))
     with pytest.raises(InputError, match="declared twice"):
@@ -167,6 +200,7 @@ def test_a_file_is_a_program(tmp_path):
     failed = call("-o", "out", "--no-pictures")
     assert failed.returncode == 1 and "FAIL    it is small" in failed.stdout
     assert call("--list").stdout.split()[0] == "mine"
+    assert call("--processes", "0").stderr == "studies: processes = 0: expected 1 to 4096\n"
     wrong = call("yours")
     assert wrong.returncode == 2 and wrong.stderr == "studies: study yours: unknown: expected one of mine\n"
 
