@@ -11,6 +11,7 @@
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"
+#include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/clouds.h"
