@@ -247,8 +247,7 @@ EventLimits event_limits(const SweepGrid& grid, const CellCounts& cells, const L
     note_unknown_values(all[i], row.estimate);
     row.estimate.clusters = clusters_in(cells, streams, groups[i].cells);
     const auto runs_in = [&](std::size_t cell) { return cells.events(cell).runs(); };
-    if (const std::string equal = equal_runs_note(streams, groups[i].cells, runs_in); !equal.empty())
-      row.estimate.add_note(equal);
+    row.estimate.add_note(equal_runs_note(streams, groups[i].cells, runs_in));
     note_shared(row.estimate, all[i].sum().runs(), row.estimate.clusters, "runs");
     estimates.push_back(std::move(row.estimate)), places.push_back(static_cast<std::int32_t>(row.place));
     if (!cells.noted) continue;

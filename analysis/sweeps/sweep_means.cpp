@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "analysis/trace/curve_fits.h"
 #include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/paired_test.h"
 
@@ -104,15 +105,14 @@ Estimate pair_estimate(const ValueClusters& row, bool is_event, PairOf&& pair_of
 
 void note_clusters(Estimate& e, const ValueClusters& row, const SweepResult& result,
                    const CellStreams& streams, const CellGroup& group, const char* what) {
-  const std::string equal_runs = equal_runs_note(streams, group.cells, [&](std::size_t cell) {
+  e.add_note(equal_runs_note(streams, group.cells, [&](std::size_t cell) {
     return event_counts(result, std::get<std::vector<double>>(result.measures[0].values), cell).runs();
-  });
-  if (!equal_runs.empty()) e.add_note(equal_runs);
+  }));
   note_shared(e, row.runs, static_cast<std::int64_t>(row.clusters.size()), what);
 }
 
-const Column& measure_column(const SweepResult& result, const std::string& measure) {
-  return *std::find_if(result.measures.begin(), result.measures.end(),
+const Column& measure_column(const SweepGrid& grid, const std::string& measure) {
+  return *std::find_if(grid.measures.begin(), grid.measures.end(),
                        [&](const Column& column) { return column.name == measure; });
 }
 
@@ -235,13 +235,39 @@ std::string adjust_together(std::vector<Table>& tables) {
   return text;
 }
 
+namespace {
+
+std::vector<std::int64_t> noted_runs(const SweepTally& tally, const std::vector<CellGroup>& groups) {
+  std::vector<std::int64_t> counts;
+  if (tally.note_kinds.empty()) return counts;
+  for (const CellGroup& group : groups) {
+    counts.push_back(0);
+    for (const std::size_t cell : group.cells) counts.back() += remote_touch::noted_runs(tally, cell);
+  }
+  return counts;
+}
+
+// estimate_of: returns the estimate of a group of cells.
+template <class Kept, class EstimateOf>
+Table table_of_means(const Kept& kept, const Column& measure, const std::vector<std::size_t>& by,
+                     const EstimateOf& estimate_of) {
+  const std::vector<CellGroup> groups = cell_groups(kept, by);
+  std::vector<Estimate> estimates;
+  for (const CellGroup& group : groups) estimates.push_back(estimate_of(group));
+  Table table{"mean_" + measure.name, "mean of " + measure.name, axes_of(kept, by, groups)};
+  const std::string what = is_event(measure) ? "fraction: " : "mean: ";
+  add_estimates(table, estimates, {measure.units, what + measure.long_name, kRunsMeaning},
+                noted_runs(kept, groups));
+  return table;
+}
+
+}  // namespace
+
 Table sweep_means(const SweepResult& result, const std::string& measure, const std::vector<std::size_t>& by,
                   const CellStreams& streams) {
   const std::vector<double>& values = result.measure(measure);
   const Column& column = measure_column(result, measure);
-  const std::vector<CellGroup> groups = cell_groups(result, by);
-  std::vector<Estimate> estimates;
-  for (const CellGroup& group : groups) {
+  return table_of_means(result, column, by, [&](const CellGroup& group) {
     const bool by_replicate = streams.share_replicates(group.cells);
     const ValueClusters row(clusters_of(result, streams, group.cells, by_replicate), by_replicate,
                             [&](std::size_t run) { return values[run]; });
@@ -251,13 +277,65 @@ Table sweep_means(const SweepResult& result, const std::string& measure, const s
                                       : mean_estimate(row);
     note_clusters(e, row, result, streams, group, "runs");
     note_unknown(e, row.runs, is_event(column));
-    estimates.push_back(std::move(e));
+    return e;
+  });
+}
+
+namespace {
+
+// The runs of a fixed cell are equal, and count as one.
+Estimate fraction_of(const SweepTally& tally, std::size_t measure, const CellGroup& group,
+                     const CellStreams& streams) {
+  EventCounts all;
+  bool are_fixed = true;
+  for (const std::size_t cell : group.cells) {
+    const EventCounts own = event_counts(tally, measure, cell);
+    all.add(RunsAtValue{0, own, streams.is_fixed(cell)}.of_one_run_if_fixed().counts);
+    are_fixed &= streams.is_fixed(cell) || own.runs() == 0;
   }
-  Table table{"mean_" + measure, "mean of " + measure, axes_of(result, by, groups)};
-  add_estimates(table, estimates,
-                {column.units, (is_event(column) ? "fraction: " : "mean: ") + column.long_name, kRunsMeaning},
-                noted_runs(result, groups));
-  return table;
+  return are_fixed && all.runs() > 0 ? exact_fraction(all) : estimated_fraction(all);
+}
+
+Estimate mean_of(const SweepTally& tally, std::size_t measure, const CellGroup& group,
+                 const CellStreams& streams) {
+  std::vector<StratumMoments> strata;
+  bool are_fixed = true;
+  for (const std::size_t cell : group.cells)
+    if (const CellTally* const own = tally.tally_of(cell)) {
+      const MeasureTally& values = own->measures[measure];
+      const bool is_fixed = streams.is_fixed(cell);
+      const std::int64_t without_value = values.unknown + values.infinite;
+      are_fixed &= is_fixed;
+      strata.push_back({{static_cast<double>(values.values), values.values > 0 ? values.mean() : 0,
+                         values.values > 1 ? values.variance() : 0, 0},
+                        is_fixed,
+                        is_fixed ? std::min<std::int64_t>(without_value, 1) : without_value});
+    }
+  Estimate e = estimated_mean(strata, false);
+  if (are_fixed && !strata.empty()) e.clusters += e.unknown, e.method = kExactMethod;
+  return e;
+}
+
+}  // namespace
+
+Table sweep_means(const SweepTally& tally, const std::string& measure, const std::vector<std::size_t>& by,
+                  const CellStreams& streams) {
+  const Column& column = measure_column(tally, measure);
+  const auto number = static_cast<std::size_t>(&column - tally.measures.data());
+  const auto done = [&](std::size_t cell) {
+    const CellTally* const own = tally.tally_of(cell);
+    return own ? own->done : 0;
+  };
+  return table_of_means(tally, column, by, [&](const CellGroup& group) {
+    Estimate e = is_event(column) ? fraction_of(tally, number, group, streams)
+                                  : mean_of(tally, number, group, streams);
+    std::int64_t runs = 0;
+    for (const std::size_t cell : group.cells)
+      runs += streams.is_fixed(cell) ? std::min<std::int64_t>(done(cell), 1) : done(cell);
+    e.add_note(equal_runs_note(streams, group.cells, done));
+    note_unknown(e, runs, is_event(column));
+    return e;
+  });
 }
 
 Table sweep_differences(const SweepResult& result, const std::string& measure, std::size_t between,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch {
@@ -17,6 +18,10 @@ namespace remote_touch {
 // one stratum if runs are taken together by replicate. streams: of the sweep's cells. pre: the result is
 // whole.
 Table sweep_means(const SweepResult& result, const std::string& measure, const std::vector<std::size_t>& by,
+                  const CellStreams& streams);
+// The same without a correction for skewness: a tally has no third moments. pre: no row pools cells that
+// share random numbers (CellStreams::are_independent()), because a tally does not know which of its runs do.
+Table sweep_means(const SweepTally& tally, const std::string& measure, const std::vector<std::size_t>& by,
                   const CellStreams& streams);
 
 // Returns a table of the differences of the measure at each value of the axis `between` from that at its

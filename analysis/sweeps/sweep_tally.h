@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/sweeps/cell_tally.h"
@@ -45,6 +46,9 @@ class RunRanges {
 
 // The same runs in any order, and in any parts, give an equal tally. The measures of the grid have no values.
 struct SweepTally : SweepGrid {
+  SweepTally() = default;
+  SweepTally(SweepGrid grid, bool with_events) : SweepGrid(std::move(grid)), keeps_events(with_events) {}
+
   bool keeps_events = false;         // keep = "events": the numbers of the runs in which an event happened
   std::vector<std::uint64_t> cells;  // the cells of which there are runs, increasing
   std::vector<CellTally> tallies;    // one for each of these cells
@@ -52,7 +56,8 @@ struct SweepTally : SweepGrid {
 
   bool is_whole() const { return held.count() == run_count(); }
   RunRanges missing() const { return held.missing_in({0, run_count()}); }
-  CellTally over_all_cells() const;  // the sum of the tallies
+  CellTally over_all_cells() const;                     // the sum of the tallies
+  const CellTally* tally_of(std::uint64_t cell) const;  // null if there is no run of the cell
   // The events are the measures for which is_event() is true, if keeps_events.
   TallyLayout layout() const;
 
@@ -75,8 +80,6 @@ struct SweepTally : SweepGrid {
   CellTally& tally_for(const TallyLayout& layout, std::uint64_t run);
 };
 
-// Means of the measures of a tally, and how often its events happened.
-
 // Returns the outcomes of an event in the finished runs of a cell. pre: the measure of that number is an
 // event (is_event()).
 EventCounts event_counts(const SweepTally& tally, std::size_t measure, std::uint64_t cell);
@@ -84,11 +87,5 @@ EventCounts event_counts(const SweepTally& tally, std::size_t measure, std::uint
 // Returns the number of finished runs of a cell with a note. If there are several kinds of notes, it is that
 // of the most frequent kind: a tally does not know how many runs have two kinds.
 std::int64_t noted_runs(const SweepTally& tally, std::uint64_t cell);
-
-// Returns a table as sweep_means() does, but without a correction for skewness: a tally has no third moments.
-// Throws InputError, about the options `by`, if a row would pool cells that share
-// random numbers, because a tally does not know which of its runs do.
-Table tally_means(const SweepTally& tally, std::size_t measure, const std::vector<std::size_t>& by,
-                  const CellStreams& streams);
 
 }  // namespace remote_touch

@@ -98,7 +98,7 @@ struct Estimate {
   // neither "better" nor "worse".
   bool is_skewed = false;
 
-  // Adds a reason to the note, once.
+  // Adds a reason to the note, once; an empty one is left out.
   void add_note(const std::string& reason) {
     if (note.find(reason) == std::string::npos) note += (note.empty() ? "" : "; ") + reason;
   }

@@ -375,8 +375,9 @@ Figure answer_of(const Asked& asked, const std::string& config, const SweepQuest
   throw InputError("the sweep", "has no finished run: expected at least one");
 }
 
-[[noreturn]] void refuse_for_tally(const std::string& what, const std::string& why) {
-  throw InputError(what, why + ": expected a sweep with \"keep\": \"runs\"");
+[[noreturn]] void refuse_for_tally(const std::string& what, const std::string& why,
+                                   const std::string& instead = "") {
+  throw InputError(what, why + ": expected " + instead + "a sweep with \"keep\": \"runs\"");
 }
 
 std::size_t number_of_event(const SweepTally& tally, const LimitQuestion& question) {
@@ -425,7 +426,11 @@ Figure sweep_answer(const SweepTally& tally, const std::string& config, const Sw
     return event_limits(tally, counts, limit, streams);
   };
   const auto means = [&](const std::string& measure, const Axes& by) {
-    return tally_means(tally, number_of_column(tally.measures, measure, "mean"), by, streams);
+    for (const CellGroup& group : cell_groups(tally, by))
+      if (!streams.are_independent(group.cells))
+        refuse_for_tally("by", "a tally does not know which runs of pooled cells share random numbers",
+                         "all axes, or ");
+    return sweep_means(tally, measure, by, streams);
   };
   const std::string event = first_event(tally.measures, [&](std::size_t measure) {
     return std::any_of(tally.tallies.begin(), tally.tallies.end(),

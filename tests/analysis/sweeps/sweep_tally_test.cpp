@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "analysis/sweeps/sweep_means.h"
 #include "tests/analysis/sweeps/example_tally.h"
 #include "tests/support/test_files.h"
 
@@ -171,7 +172,7 @@ TEST(TallyMeans, CountNotesAndRunsWithoutAValue) {
   add(0, 1, 0b011), add(1, 2, 0b001), add(2, INFINITY, 0), add(3, 6, 0b100);
   EXPECT_EQ(noted_runs(tally, 0), 2);
   EXPECT_EQ(noted_runs(tally, 1), 0);
-  const Table table = tally_means(tally, 0, {0, 1}, independent_streams(6));
+  const Table table = sweep_means(tally, "jump", {0, 1}, independent_streams(6));
   EXPECT_EQ(first_of<double>(table, "value"), 3);
   EXPECT_EQ(first_of<std::int32_t>(table, "runs"), 3);
   EXPECT_EQ(first_of<std::int32_t>(table, "unknown"), 1);
