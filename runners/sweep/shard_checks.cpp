@@ -60,30 +60,24 @@ struct ReadShard {
   ShardProgress progress;
   std::string config, title;
   std::size_t runs_of_sweep = 0;
-  bool is_finished = false;
+  bool in_progress = false;
 };
 
 void read_runs_of(const Hdf5Reader& hdf5, ReadShard& read) {
   const StoredSweep outline = read_sweep_outline(hdf5);
-  read.config = attribute(outline.attributes, "config");
   read.runs_of_sweep = outline.result.run_count();
   count_states(hdf5, read.progress);
-  read.is_finished = !outline.in_progress && read.progress.done + read.progress.failed == read.progress.runs;
+  read.in_progress = outline.in_progress;
 }
 
 void read_tally_of(const Hdf5Reader& hdf5, ReadShard& read) {
   const StoredTally stored = read_tally(hdf5);
-  read.config = attribute(stored.attributes, "config");
-  read.runs_of_sweep = static_cast<std::size_t>(stored.tally.run_count());
+  read.runs_of_sweep = stored.tally.run_count();
   ShardProgress& shard = read.progress;
   shard.distrust = distrust_of(stored.attributes);
-  shard.done = count_of(stored.tally, RunState::done),
+  shard.done = count_of(stored.tally, RunState::done);
   shard.failed = count_of(stored.tally, RunState::failed);
-  for (const int index : shard.shards.indices)
-    shard.runs +=
-        Shard{index, shard.shards.count}.cells_of(static_cast<std::size_t>(stored.tally.cell_count())) *
-        static_cast<std::size_t>(stored.tally.replicates);
-  read.is_finished = shard.done + shard.failed == shard.runs;
+  shard.runs = shard.shards.runs_of(stored.tally);
 }
 
 // Returns nothing for a file that is no shard. Throws InputError for a file that cannot be read.
@@ -99,12 +93,12 @@ std::optional<ReadShard> read_shard(const std::filesystem::path& file) {
     read_tally_of(hdf5, read);
   else
     read_runs_of(hdf5, read);
+  read.config = attribute(hdf5.attributes(), "config");
   read.title = parse_json(read.config, file.string() + " config").value("title", std::string());
   read_times(file, shard);
   const bool is_recent = is_being_written(file) || shard.written_s_ago < kRecent_s;
-  shard.state = read.is_finished ? ShardState::finished
-                : is_recent      ? ShardState::running
-                                 : ShardState::stopped;
+  const bool is_finished = !read.in_progress && shard.done + shard.failed == shard.runs;
+  shard.state = is_finished ? ShardState::finished : is_recent ? ShardState::running : ShardState::stopped;
   return read;
 }
 
@@ -318,8 +312,7 @@ Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOption
   Recheck check{0, chosen.size(), tally.cells.size()};
   for (const std::size_t i : chosen) {
     const std::vector<std::uint64_t> runs = held_runs(tally, tally.cells[i]);
-    SweepTally now;
-    static_cast<SweepGrid&>(now) = tally, now.keeps_events = tally.keeps_events;
+    SweepTally now(tally, tally.keeps_events);
     make_again(sweep, runs, options, [&](const SweepResult& made) { add_runs(made, now); });
     check.made += runs.size();
     const std::string how = difference(tally.measures, tally.tallies[i], now.tallies.front());

@@ -11,6 +11,7 @@
 #include "analysis/sweeps/run_spool.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
+#include "core/parameters/parameter.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_parts.h"
 #include "runners/sweep/sweep_session.h"
@@ -96,6 +97,12 @@ RunSpool::PartValues values_in(const SweepResult& part) {
   };
 }
 
+[[noreturn]] void refuse_unfinished(const std::string& file, std::size_t left) {
+  throw InputError(file,
+                   "is not finished (" + std::to_string(left) +
+                       " runs are left): expected a finished shard (repeat its sweep command), or --partial");
+}
+
 // Copies the runs of a file. A finished part is read block by block, an unfinished one as a whole.
 void add_runs(const Hdf5Reader& hdf5, const MergeRequest& request, RunSpool& spool) {
   const std::string& file = hdf5.file();
@@ -110,11 +117,7 @@ void add_runs(const Hdf5Reader& hdf5, const MergeRequest& request, RunSpool& spo
   const StoredSweep stored = read_sweep(hdf5);
   const SweepResult& part = stored.result;
   const std::string damage = damage_text(stored);
-  const std::size_t pending = part.runs_in(RunState::pending).size();
-  if (request.partial == Partial::no)
-    throw InputError(
-        file, "is not finished (" + std::to_string(pending) +
-                  " runs are left): expected a finished shard (repeat its sweep command), or --partial");
+  if (request.partial == Partial::no) refuse_unfinished(file, count_of(part, RunState::pending));
   if (!damage.empty() && request.note) request.note(file + ": " + damage);
   spool.add(file, part.held_count(), values_in(part));
 }
@@ -185,8 +188,8 @@ RunRanges runs_in(RunSpool& spool) {
   return done;
 }
 
-}  // namespace
-
+// Throws KeptFile if the output has runs that the shards do not hold. merged: returns the runs that these
+// hold; only called if the output has runs.
 void require_nothing_more(const MergeRequest& request, const std::function<RunRanges()>& merged) {
   std::error_code unreachable;
   if (!std::filesystem::is_regular_file(request.output, unreachable) ||
@@ -205,7 +208,15 @@ void require_nothing_more(const MergeRequest& request, const std::function<RunRa
       throw KeptFile(request.output, "holds runs that the shards do not: expected another file");
 }
 
-namespace {
+// Writes the merged file by write() and returns its digest.
+template <class Write>
+std::string or_unchanged(const Write& write) {
+  try {
+    return write();
+  } catch (const InputError& error) {
+    throw InputError(error.what() + std::string("; nothing was changed"));
+  }
+}
 
 struct MergedParts {
   TextAttributes attributes;  // of the merged file
@@ -267,17 +278,6 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
 
 namespace {
 
-// Throws InputError for a shard some of whose runs are not made.
-void require_finished(const std::string& file, const ShardSet& shards, const SweepTally& tally) {
-  std::uint64_t cells = 0;
-  for (const int index : shards.indices) cells += Shard{index, shards.count}.cells_of(tally.cell_count());
-  const std::uint64_t runs = cells * static_cast<std::uint64_t>(tally.replicates);
-  if (tally.held.count() < runs)
-    throw InputError(
-        file, "is not finished (" + std::to_string(runs - tally.held.count()) +
-                  " runs are left): expected a finished shard (repeat its sweep command), or --partial");
-}
-
 StoredTally trusted_tally(const Hdf5Reader& hdf5) {
   StoredTally stored = read_tally(hdf5);
   require_trusted(hdf5.file(), stored.attributes);
@@ -290,7 +290,8 @@ SweepTally merge_tallies(const MergeRequest& request) {
   std::optional<SweepTally> merged;
   const MergedParts parts = merge_parts(
       request, trusted_tally, [&](const Hdf5Reader& hdf5, const ShardSet& shards, StoredTally part) {
-        if (request.partial == Partial::no) require_finished(hdf5.file(), shards, part.tally);
+        const std::size_t held = part.tally.held.count(), all = shards.runs_of(part.tally);
+        if (request.partial == Partial::no && held < all) refuse_unfinished(hdf5.file(), all - held);
         if (!merged)
           merged = std::move(part.tally);
         else if (const std::string obstacle = merged->obstacle(part.tally); !obstacle.empty())

@@ -1,4 +1,4 @@
-// Merges the shards of a sweep into one file: those with runs and those with tallies.
+// Merges the shards of a sweep into one file, with its runs or with a tally.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,8 @@
 
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/sweeps/sweep_tally.h"
-#include "analysis/trace/trace.h"
-#include "core/parameters/parameter.h"
 
 namespace remote_touch {
-
-// Merges the shards of a sweep into one file, block by block: their runs may be more than the memory holds.
 
 // yes: shards may be missing or unfinished. The merged file then is a part of the sweep: it states its
 // shards, and can be merged with others unless some of its runs are pending.
@@ -28,37 +24,18 @@ struct MergeRequest {
   std::function<void(const std::string& line)> note = {};
 };
 
-// Calls write(), which writes the merged file, and returns its result. If write() throws InputError, throws
-// InputError with the same text and "; nothing was changed". A merge that fails changes no file.
-template <class Write>
-std::string or_unchanged(const Write& write) {
-  try {
-    return write();
-  } catch (const InputError& error) {
-    throw InputError(error.what() + std::string("; nothing was changed"));
-  }
-}
-
-// Throws KeptFile, with --force too, if the output is a sweep or a tally with runs that the shards do not
-// hold, because it was refined or continued. Throws InputError, unless --force is given, for an output
-// that cannot be read. merged: returns the runs that the shards hold; only called if the output has runs.
-void require_nothing_more(const MergeRequest& request, const std::function<RunRanges()>& merged);
-
 // Called before the file is written, at least once, with the runs in increasing order; each block is a part
-// of the result.
+// of the result, whose runs may be more than the memory holds.
 using EachBlock = std::function<void(const SweepResult& block)>;
 
 // Writes the merged file and returns its digest. A whole sweep has the bytes that one process would have
-// written. pre: the caller holds the lock of the output. Throws InputError, which names the file, for a shard
-// that is missing, given twice, damaged, unfinished or of another sweep, build or recording, and for an
-// output that holds runs that the shards do not.
+// written. A merge that fails changes no file. pre: the caller holds the lock of the output. Throws
+// InputError, which names the file, for a shard that is missing, given twice, damaged, unfinished or of
+// another sweep, build or recording, and, unless forced, for an output that cannot be read. Throws KeptFile,
+// also if forced, for an output that holds runs that the shards do not, because it was refined or continued.
 std::string merge_shards(const MergeRequest& request, const EachBlock& each_block);
-
-// Merges the shards of a sweep that keeps tallies.
-
-// Writes and returns the merged tally, as merge_shards() does. Throws InputError also for a shard some of
-// whose runs are known to be wrong, see require_trusted(). An output that exists is replaced if its runs are
-// all in the shards. The memory holds the whole tally and one shard.
+// The same for a sweep that keeps a tally, which is returned. Throws InputError also for a shard some of
+// whose runs are known to be wrong, see require_trusted(). The memory holds the whole tally and one shard.
 SweepTally merge_tallies(const MergeRequest& request);
 
 }  // namespace remote_touch

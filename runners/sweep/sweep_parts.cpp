@@ -107,6 +107,12 @@ std::string ShardSet::text() const {
   return text + "/" + std::to_string(count);
 }
 
+std::size_t ShardSet::runs_of(const SweepGrid& grid) const {
+  std::size_t cells = 0;
+  for (const int index : indices) cells += Shard{index, count}.cells_of(grid.cell_count());
+  return cells * static_cast<std::size_t>(grid.replicates);
+}
+
 ShardSet parse_shards(const std::string& text, const std::string& source) {
   const std::string what = source + ": shard " + text;
   const std::size_t slash = text.find('/');

@@ -75,6 +75,8 @@ struct ShardSet {
   std::set<int> indices;
   int count = 1;
   std::string text() const;  // "1-3,7/1000"; "2/7" for one shard
+  // The number of runs in these shards of a sweep without refinement.
+  std::size_t runs_of(const SweepGrid& grid) const;
 };
 // Reads what text() returns. Throws InputError, which names the source.
 ShardSet parse_shards(const std::string& text, const std::string& source);
