@@ -148,36 +148,30 @@ int dry_run(const Sweep& sweep, const Work& work, const CommandLine& line, const
   return kDone;
 }
 
-int dry_run_of_runs(const Sweep& sweep, const SweepPlan& plan, const CommandLine& line,
-                    const SweepRequest& request) {
+int dry_run_of_runs(const Sweep& sweep, const SweepResult& left, const SweepPlan& plan,
+                    const CommandLine& line, const SweepRequest& request) {
   const std::string text =
       formatted("%.3g MB while it runs, less when it is finished",
-                1e-6 * static_cast<double>(size_in_progress(plan.result, plan.attributes)));
-  return dry_run(sweep,
-                 {plan.result.runs_in(RunState::pending).size(), plan.result.runs_in(RunState::done).size(),
-                  text, plan.result},
-                 line, request);
+                1e-6 * static_cast<double>(size_in_progress(left, plan.made.attributes)));
+  return dry_run(sweep, {count_of(left, RunState::pending), plan.done(), text, left}, line, request);
 }
 
 // Tries first replicates of cells of the shard.
-int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const TallyPlan& plan, const CommandLine& line,
+int dry_run_of_tally(const Sweep& sweep, const Shard& shard, const SweepPlan& plan, const CommandLine& line,
                      const SweepRequest& request) {
   const SweepGrid outline = sweep.outline();
   const std::size_t cells = shard.cells_of(outline.cell_count());
-  const std::uint64_t done = plan.tally.held.count(), left = plan.own_runs - done;
+  const std::size_t left = plan.total(shard) - plan.done();
   std::vector<std::uint64_t> first_runs;
   for (std::size_t i = 0; left > 0 && i < cells; ++i) first_runs.push_back(outline.run(shard.cell(i), 0));
   const SweepResult of_cells = sweep.part(std::move(first_runs));
-  return dry_run(
-      sweep,
-      {left, done, "a tally of " + std::to_string(cells) + (cells == 1 ? " cell" : " cells"), of_cells}, line,
-      request);
+  const std::string text = "a tally of " + std::to_string(cells) + (cells == 1 ? " cell" : " cells");
+  return dry_run(sweep, {left, plan.done(), text, of_cells}, line, request);
 }
 
 // Does what is left of a session, with progress. Returns false if it was interrupted.
-template <class Session>
 bool run_session(const CommandLine& line, const SweepRequest& request, const std::string& file,
-                 Session& session) {
+                 SweepSession& session) {
   Progress progress(request.sweep, line.quiet);
   try {
     const bool any = session.run(*line.kernels, line.stop, [&](auto done, auto total, auto earlier) {
@@ -189,17 +183,6 @@ bool run_session(const CommandLine& line, const SweepRequest& request, const std
   }
   print_replaced(request.overrides);
   return true;
-}
-
-template <class Session>
-int make_sweep(const CommandLine& line, const SweepRequest& request, const std::string& file,
-               const std::string& config, Session session) {
-  if (!run_session(line, request, file, session)) return print_interrupted(file, session.done());
-  const auto& made = session.result();
-  const int code = print_summary(file, made);
-  print_equal_runs(made, config);
-  if (request.strict) refuse_notes(note_lines(made));
-  return code;
 }
 
 }  // namespace
@@ -215,15 +198,21 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
     throw InputError("--output", "is required; see remote-touch sweep --help");
   if (!file.empty()) require_writable(file);
   const TextAttributes attributes = attributes_of(sweep, request, shard);
-  if (sweep.keep() != Keep::runs)
-    return request.dry_run
-               ? dry_run_of_tally(sweep, shard, tally_plan_in_file(sweep, shard, attributes, file), line,
-                                  request)
-               : make_sweep(line, request, file, sweep.to_json(),
-                            TallySession(sweep, shard, attributes, file));
-  if (request.dry_run)
-    return dry_run_of_runs(sweep, plan_in_file(sweep, shard, attributes, file), line, request);
-  return make_sweep(line, request, file, sweep.to_json(), SweepSession(sweep, shard, attributes, file));
+  if (request.dry_run) {
+    const SweepPlan plan = plan_in_file(sweep, shard, attributes, file);
+    const auto* const left = std::get_if<SweepResult>(&plan.made.kept);
+    return left ? dry_run_of_runs(sweep, *left, plan, line, request)
+                : dry_run_of_tally(sweep, shard, plan, line, request);
+  }
+  SweepSession session(sweep, shard, attributes, file);
+  if (!run_session(line, request, file, session)) return print_interrupted(file, session.done());
+  const auto print = [&](const auto& made) {
+    const int code = print_summary(file, made);
+    print_equal_runs(made, sweep.to_json());
+    if (request.strict) refuse_notes(note_lines(made));
+    return code;
+  };
+  return std::visit(print, session.kept().kept);
 }
 
 int command_merge(const CommandLine& line, const MergeCommand& command) {

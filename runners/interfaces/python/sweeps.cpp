@@ -46,14 +46,11 @@ KeptSweep in_file(const Sweep& sweep, const TextAttributes& origin, const std::s
                   const LongWork& work) {
   require_writable(file);
   const FileTurn turn(FileTurn::For::a_sweep);
-  const auto run = [&](auto session) {
-    session.run(work.kernels, &work.stop, [&](std::size_t done, std::size_t all, std::size_t) {
-      work.progress(static_cast<double>(done) / static_cast<double>(all));
-    });
-    return session.kept();
-  };
-  return sweep.keep() == Keep::runs ? run(SweepSession(sweep, Shard{}, origin, file))
-                                    : run(TallySession(sweep, Shard{}, origin, file));
+  SweepSession session(sweep, Shard{}, origin, file);
+  session.run(work.kernels, &work.stop, [&](std::size_t done, std::size_t all, std::size_t) {
+    work.progress(static_cast<double>(done) / static_cast<double>(all));
+  });
+  return session.kept();
 }
 
 py::dict run_sweep_of(const std::string& subject, const std::optional<std::string>& text,
@@ -261,49 +258,31 @@ struct WorkElsewhere {
   const std::string inputs;
   const py::function& do_round;
 
-  void operator()(
-      SweepResult& result, std::size_t done, std::size_t total,
-      const std::function<void(std::size_t)>& stored,
-      const std::function<void(const std::vector<std::size_t>&, const std::string&)>& forget) const {
+  void operator()(SweepSession& session, SweepResult& runs,
+                  const std::function<void(std::size_t)>& stored) const {
     const py::gil_scoped_acquire lock;
     std::vector<std::uint64_t> pending;
-    for (const std::size_t place : result.runs_in(RunState::pending)) pending.push_back(result.run_at(place));
+    for (const std::size_t place : runs.runs_in(RunState::pending)) pending.push_back(runs.run_at(place));
     const auto count = static_cast<py::ssize_t>(pending.size());
-    do_round(py::bytes(sweep.to_json()), inputs, owning_array(std::move(pending), {count}), done, total,
-             sweep.keep() != Keep::runs,
+    do_round(py::bytes(sweep.to_json()), inputs, owning_array(std::move(pending), {count}), session.done(),
+             session.total(), sweep.keep() != Keep::runs,
              py::cpp_function(
-                 [&](const Array<std::uint64_t>& runs, const Array<std::int32_t>& states,
+                 [&](const Array<std::uint64_t>& numbers, const Array<std::int32_t>& states,
                      const Array<double>& values, const Array<std::uint64_t>& notes,
-                     const Texts& errors) { store(result, stored, runs, states, values, notes, errors); }),
-             py::cpp_function(
-                 [&](const std::vector<std::size_t>& runs, const std::string& why) { forget(runs, why); }));
+                     const Texts& errors) { store(runs, stored, numbers, states, values, notes, errors); }),
+             py::cpp_function([&](const std::vector<std::size_t>& wrong, const std::string& why) {
+               session.forget(wrong, why);
+             }));
   }
 };
 
 KeptSweep done_elsewhere(SweepSession session, const WorkElsewhere& work) {
-  const auto do_runs = [&](SweepResult& result, const std::function<void(std::size_t)>& stored) {
-    const std::size_t done = result.runs_in(RunState::done).size();
-    work(result, done, done + result.runs_in(RunState::pending).size(), stored,
-         [&](const std::vector<std::size_t>& runs, const std::string&) { session.forget(runs); });
+  constexpr double kBatch_s = 30;  // the workers wait for each other at the end of a batch of a tally
+  const auto do_runs = [&](SweepResult& runs, const std::function<void(std::size_t)>& stored) {
+    work(session, runs, stored);
     return std::size_t{0};
   };
-  session.run(do_runs, [](auto...) {});
-  return session.kept();
-}
-
-// A batch of a tally takes half a minute, because the workers wait for each other at its end.
-KeptSweep done_elsewhere(TallySession session, const WorkElsewhere& work) {
-  constexpr double kBatch_s = 30;
-  const auto do_batch = [&](SweepResult& batch) {
-    const auto forget = [&](const std::vector<std::size_t>& runs, const std::string& why) {
-      for (const std::size_t run : runs)
-        if (const auto place = batch.place_of(run)) batch.state[*place] = RunState::pending;
-      if (!why.empty()) session.distrust(why);
-    };
-    work(
-        batch, session.done(), session.own_runs(), [](std::size_t) {}, forget);
-  };
-  session.run(do_batch, kBatch_s, [](auto...) {});
+  session.run(do_runs, kBatch_s, [](auto...) {});
   return session.kept();
 }
 
@@ -319,8 +298,7 @@ py::dict sweep_in_chunks(const std::string& subject, const std::optional<std::st
         provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", work.inputs);
     require_writable(output);
     const FileTurn turn(FileTurn::For::a_sweep);
-    made = sweep.keep() == Keep::runs ? done_elsewhere(SweepSession(sweep, Shard{}, origin, output), work)
-                                      : done_elsewhere(TallySession(sweep, Shard{}, origin, output), work);
+    made = done_elsewhere(SweepSession(sweep, Shard{}, origin, output), work);
   }
   return to_python(std::move(made));
 }

@@ -12,7 +12,7 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_run.h"
-#include "tests/runners/sweep/quick_tallies.h"
+#include "tests/runners/sweep/quick_sweeps.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::shard_checks_test {
@@ -134,9 +134,9 @@ TEST_F(ShardFolder, RefusesSeveralSweepsAndNone) {
 
 // Runs of a sweep that are made again: equal where nothing is wrong; one wrong bit is found and named.
 
-class Rechecks : public QuickTallies {
+class Rechecks : public QuickSweeps {
  protected:
-  Rechecks() : QuickTallies("recheck_test") {}
+  Rechecks() : QuickSweeps("recheck_test") {}
 
   const Sweep sweep_ = quick({"keep=runs", "replicates=10"});
   SweepResult result_ = run_sweep(sweep_, {});

@@ -7,11 +7,9 @@
 
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/tally_file.h"
-#include "core/kernels/isa.h"
-#include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_session.h"
-#include "tests/runners/sweep/quick_tallies.h"
+#include "tests/runners/sweep/quick_sweeps.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::shard_merge_test {
@@ -19,34 +17,22 @@ namespace {
 
 // Merging shards: the bytes of a whole sweep, some shards only, and what is refused.
 
-// A run takes a millisecond.
-constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
-  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1, "duration_s": 0.05},
-  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3},
-           {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 7, "count": 4}],
-  "replicates": 2, "measures": ["max_penetration", "popped_through"]})";
-
-class ShardMerge : public testing::Test {
+class ShardMerge : public QuickSweeps {
  protected:
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
-  // Writes a shard, or with "1/1" the whole sweep. Returns its file.
+  ShardMerge() : QuickSweeps("shard_merge_test") {}
+
+  static Sweep runs(const std::vector<std::string>& overrides) {
+    std::vector<std::string> all = {"keep=runs", "replicates=2", "duration_s=0.05"};
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    return quick(all);
+  }
+  // Writes a shard, or with "1/1" the whole sweep. Returns its file. after: see made().
   std::string shard(const std::string& text, const std::vector<std::string>& overrides = {},
-                    const std::atomic<bool>* stop = nullptr) const {
+                    std::size_t after = ~std::size_t{0}) const {
     std::string name = text + (overrides.empty() ? "" : overrides.front()) + ".h5";
     for (char& c : name)
       if (c == '/') c = 'o';
-    const Sweep sweep = Sweep::from_json(kQuick, "quick.json", overrides);
-    const Shard which = parse_shard(text);
-    TextAttributes attributes = {{"config", sweep.to_json()}, {"version", "1"}};
-    if (which.count > 1) attributes.emplace_back("shard", which.text());
-    SweepSession session(sweep, which, attributes, file(name));
-    refusal([&] {  // Interrupted, if it was stopped
-      try {
-        session.run(kernels_for(best_isa()), stop, [](auto...) {});
-      } catch (const Interrupted&) {
-      }
-    });
-    return file(name);
+    return made(name, runs(overrides), parse_shard(text), after);
   }
   std::string merged(const std::vector<std::string>& shards, Partial partial = Partial::no) {
     const std::string output = file("merged" + std::to_string(++merges_) + ".h5");
@@ -57,7 +43,6 @@ class ShardMerge : public testing::Test {
     return refusal([&] { merged(shards, partial); });
   }
 
-  const TestFolder folder_{"shard_merge_test"};
   int merges_ = 0;
 };
 
@@ -73,11 +58,7 @@ TEST_F(ShardMerge, HasTheBytesOfTheWholeSweep) {
       for (int i = count; i >= 1; --i) shards.push_back(shard(Shard{i, count}.text(), overrides));
       const std::string output = merged(shards);
       // Refinement goes on from the merged first round; the whole sweep has all rounds.
-      if (is_refined) {
-        const Sweep sweep = Sweep::from_json(kQuick, "quick.json", overrides);
-        SweepSession(sweep, {}, {{"config", sweep.to_json()}, {"version", "1"}}, output)
-            .run(kernels_for(best_isa()), nullptr, [](auto...) {});
-      }
+      if (is_refined) made(std::filesystem::path(output).filename(), runs(overrides));
       EXPECT_TRUE(bytes_of(output) == bytes_of(shard("1/1", overrides))) << count;
     }
   }
@@ -98,8 +79,7 @@ TEST_F(ShardMerge, OfSomeShardsIsAPartThatCanBeMergedAgain) {
 }
 
 TEST_F(ShardMerge, TakesAnUnfinishedShardOnlyAsAPart) {
-  const std::atomic<bool> stop{true};
-  const std::string one = shard("1/2"), two = shard("2/2", {}, &stop);
+  const std::string one = shard("1/2"), two = shard("2/2", {}, 0);
   EXPECT_HAS(why({one, two}), "2o2.h5: is not finished (12 runs are left)");
   const StoredSweep early = read_sweep(merged({one, two}, Partial::yes));
   EXPECT_EQ(early.result.runs_in(RunState::done).size(), 12u);
@@ -133,7 +113,7 @@ TEST_F(ShardMerge, NamesAShardThatHoldsOtherRuns) {
   two.result.part->front() = 99;
   write_sweep(file("far.h5"), two.result, two.attributes);
   EXPECT_HAS(why({one, file("far.h5")}), "far.h5: damaged (");
-  const SweepResult few = Sweep::from_json(kQuick, "quick.json").plan({2, 4});
+  const SweepResult few = runs({}).plan({2, 4});
   write_sweep(file("few.h5"), few, two.attributes);
   EXPECT_HAS(why({one, file("few.h5")}), "no part holds run 6");
 }
@@ -147,9 +127,9 @@ TEST_F(ShardMerge, LeavesNoOtherFile) {
 // Shards of a tally: merged they are the bytes of the whole; what is missing, doubled or unfinished is
 // refused.
 
-class TallyMerges : public QuickTallies {
+class TallyMerges : public QuickSweeps {
  protected:
-  TallyMerges() : QuickTallies("tally_merge_test") {}
+  TallyMerges() : QuickSweeps("tally_merge_test") {}
 };
 
 TEST_F(TallyMerges, HaveTheBytesOfTheWhole) {
@@ -186,8 +166,8 @@ TEST_F(TallyMerges, RefuseAShardWithWrongRuns) {
                     whole = file("w.h5");
   {
     const Sweep sweep = quick();
-    TallySession session(sweep, {2, 2}, attributes_of(sweep, {2, 2}), two);
-    session.distrust("run 7 differs");
+    SweepSession session(sweep, {2, 2}, attributes_of(sweep, {2, 2}), two);
+    session.forget({}, "run 7 differs");
   }
   for (const Partial partial : {Partial::no, Partial::yes})
     EXPECT_HAS(refusal([&] {

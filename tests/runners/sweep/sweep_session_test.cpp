@@ -9,14 +9,14 @@
 #include "analysis/sweeps/sweep_means.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_run.h"
-#include "tests/runners/sweep/quick_tallies.h"
+#include "tests/runners/sweep/quick_sweeps.h"
 
 namespace remote_touch::sweep_session_test {
 namespace {
 
-class TallySessions : public QuickTallies {
+class TallySessions : public QuickSweeps {
  protected:
-  TallySessions() : QuickTallies("tally_session_test") {}
+  TallySessions() : QuickSweeps("tally_session_test") {}
 };
 
 TEST_F(TallySessions, HaveTheSumsOfTheRuns) {
@@ -60,7 +60,7 @@ TEST_F(TallySessions, AreRefusedWhereTheyDoNotFit) {
   EXPECT_HAS(why([] { quick({"keep=all"}); }), R"(keep = "all": expected runs, tally or events)");
   EXPECT_HAS(why([] { quick({"refine.budget=100"}); }), "refinement needs the values of all runs");
   const Sweep longer = quick({"replicates=6"});
-  EXPECT_HAS(why([&] { tally_plan_in_file(longer, {}, attributes_of(longer, {}), file("t.h5")); }),
+  EXPECT_HAS(why([&] { plan_in_file(longer, {}, attributes_of(longer, {}), file("t.h5")); }),
              "t.h5: is of another configuration, first in replicates 5 against 6");
   folder_.write("junk.h5", "junk");
   EXPECT_HAS(why([&] { made("junk.h5", quick()); }), "junk.h5: not a readable HDF5 file");

@@ -453,8 +453,8 @@ TEST(NamedInputs, AnUnfinishedSweepKeepsThoseOfDoneRuns) {
   EXPECT_TRUE(planned(x + "\n" + y).in_progress);
   const SweepPlan mended = planned(x + "\n" + y + "2");
   EXPECT_FALSE(mended.in_progress || mended.is_finished);  // the file has to be written anew
-  EXPECT_EQ(attribute(mended.attributes, "input_digests"), x + "\n" + y + "2");
-  EXPECT_EQ(mended.result.state[0], RunState::done);
+  EXPECT_EQ(attribute(mended.made.attributes, "input_digests"), x + "\n" + y + "2");
+  EXPECT_EQ(std::get<SweepResult>(mended.made.kept).state[0], RunState::done);
   EXPECT_HAS(refusal([&] { planned(x + "3\n" + y); }), "map.h5: has runs on another recording x (2 file(s)");
   EXPECT_HAS(refusal([&] { planned(""); }), "now absent");
 }

@@ -1,4 +1,4 @@
-// A small sweep that keeps a tally, made into files.
+// A small sweep, made into files. It keeps a tally, or with the override keep=runs its runs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,9 +15,9 @@
 
 namespace remote_touch {
 
-class QuickTallies : public testing::Test {
+class QuickSweeps : public testing::Test {
  protected:
-  explicit QuickTallies(const std::string& folder) : folder_(folder) {}
+  explicit QuickSweeps(const std::string& folder) : folder_(folder) {}
 
   // A run takes a millisecond.
   static constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12", "keep": "events",
@@ -34,11 +34,11 @@ class QuickTallies : public testing::Test {
     if (shard.count > 1) attributes.emplace_back("shard", shard.text());
     return attributes;
   }
-  // Makes the tally. Returns its file. after: the number of finished runs at which it is interrupted.
+  // Makes the file and returns it. after: the number of finished runs at which it is interrupted.
   std::string made(const std::string& name, const Sweep& sweep, const Shard& shard = {},
                    std::size_t after = ~std::size_t{0}) const {
-    TallySession session(sweep, shard, attributes_of(sweep, shard), file(name));
-    std::atomic<bool> stop{false};
+    SweepSession session(sweep, shard, attributes_of(sweep, shard), file(name));
+    std::atomic<bool> stop{after == 0};
     try {
       session.run(kernels_for(best_isa()), &stop, [&](std::size_t done, std::size_t, std::size_t) {
         if (done >= after) stop = true;
