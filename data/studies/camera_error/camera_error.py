@@ -397,7 +397,7 @@ def settings_of(assignments):
 
 
 @study("camera-error", "error of the renderer and of the camera on recordings with true objects, over filters of depth images",
-       title="Error of the renderer and error of the camera", caption="Two recordings " + CAPTION)
+       title="Error of the renderer and error of the camera", caption="Two recordings " + CAPTION, takes_settings=True)
 def camera_error(s):
     """Takes settings of the recording; scenario.path makes the study of one recording of the user."""
     settings, recordings = settings_of(s.overrides), RECORDINGS

@@ -149,8 +149,8 @@ def draw_energies(s, over, title, x_label, axis, cases):
 
 # --- the figure ---
 
-@study("device-width", "the same with a tool, its rotation, another hand, other frame rates and noise, and the energy that frame "
-       "updates give the hand",
+@study("device-width", "up to which stiffness a rendered plane is stable with a tool, in rotation, with other hands, frame rates and "
+       "noise, and the energy that frame updates give the hand",
        title="Stable stiffness and energy of a rendered plane", source="the theory of sampled walls", caption="""
        (a) to (f): the largest stiffness at which no oscillation grows (dots) and the limit of a linear wall (line), with a tool of
        six degrees of freedom along the normal and in rotation, and with the proxy over the hand and the frame rate. (f): with a

@@ -225,11 +225,11 @@ def add_panels(s, shake):
 
 
 def add_sound_claims(s, where, run):
-    judged = (run.frame_index >= 0) & ~np.isnan(run.signed_distance)
+    judged = run.frame_index >= 0
     has_force = np.isfinite(run.force).all(axis=1) & run.force.any(axis=1)
     claims = s.claims(where)
     claims.at_most("the proxy is never on the wrong side of the surface: fraction of ticks in which it is",
-                   np.mean(run.signed_distance[judged] < 0), 0, "fraction", "none")
+                   np.mean(~(run.signed_distance[judged] >= 0)), 0, "fraction", "none")
     claims.at_most("all numbers are finite: fraction of ticks with one that is not", run.measures["non_finite_fraction"], 0,
                    "fraction", "none")
     claims.at_most("the HIP is never held back without force: fraction of ticks in which it is", np.mean(~has_force[pressing(run)]),

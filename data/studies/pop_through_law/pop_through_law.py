@@ -135,6 +135,8 @@ def pop_through_law(s):
     claim(s, lifts, law, of_three)
     checks = s.claims(set_up=True)
     checks.between("the tally has every run of the sweep: runs", lifts.tally.runs.values.sum(), 1e7, 1e7, "runs")
+    checks.at_least("the law is fitted to most limits: share of the limits that are known", np.isfinite(lifts.limit[:, SPEED]).mean(),
+                    0.8, "fraction")
     checks.at_most("3000 runs of three cells are made again and counted: cells with another count", different_cells(s, lifts), 0,
                    "cells")
 

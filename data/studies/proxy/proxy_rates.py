@@ -39,7 +39,7 @@ class PrintedFit:
     def in_band(self, values):
         """The number of noise strengths from r_c on at which the values lie in what the printed digits allow."""
         inside = np.abs(values - self.at(NOISE_M)) <= np.polyval(self.half_digits, NOISE_M)
-        return (inside & COMPARED).sum(axis=-1)
+        return np.where(np.isnan(values[..., COMPARED]).any(axis=-1), np.nan, (inside & COMPARED).sum(axis=-1))
 
 
 H = PrintedFit((5.5e4, -6.7e3, 63, 1, -4.1e-5), (0.05e4, 0.05e3, 0.5, 0.05, 0.05e-5))  # (4.23), m

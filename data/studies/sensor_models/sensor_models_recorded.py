@@ -184,9 +184,10 @@ def object_errors(image, measured, object):
     inside[middle, middle] = np.all([shows[middle, d:d + width] & shows[d:d + height, middle] for d in shifts], axis=0)
     errors_m = (measured - image["depth"])[inside]
     errors_m = errors_m[np.abs(errors_m) < OTHER_SURFACE_M]
+    share = np.mean(~np.isnan(measured[shows])) if shows.any() else math.nan
     if not len(errors_m):
-        return 3 * (math.nan,)
-    return upper_median(errors_m), np.std(errors_m, ddof=1), np.mean(~np.isnan(measured[shows]))
+        return math.nan, math.nan, share
+    return upper_median(errors_m), np.std(errors_m, ddof=1), share
 
 
 def add_truth(s, compared):

@@ -39,12 +39,13 @@ class Carried:
     def limits(self, rule):
         """For each setting: the strength up to which every run is carried (NaN: none), the next one, at which a run is lost, and
         that from which on all runs are lost (infinite: none)."""
-        lost, carried, _ = np.moveaxis(self.counts(rule), 2, 0)
+        lost, carried, unknown = np.moveaxis(self.counts(rule), 2, 0)
         all_lost = (lost > 0) & (carried == 0)
         from_here_on = np.logical_and.accumulate(all_lost[:, ::-1], axis=1)[:, ::-1]
         below, above = np.append(np.nan, self.strengths), np.append(self.strengths, np.inf)
-        first = first_true(lost > 0)
-        return below[first], above[first], above[first_true(from_here_on)]
+        first, first_unknown = first_true(lost > 0), first_true(unknown > 0)
+        first_lost = np.where(first_unknown < first, np.nan, above[first])  # an unknown run may be a lost one
+        return below[np.minimum(first, first_unknown)], first_lost, above[first_true(from_here_on)]
 
 
 def first_true(rows):
@@ -53,9 +54,9 @@ def first_true(rows):
 
 
 def rows_apart(rows, carried, lost, low, high):
-    """The number of rows in which a limit is not between two columns: a run is lost below `low`, or carried above `high`, or `low`
-    or `high` is NaN. `carried` is NaN where nothing is carried."""
-    return np.sum(np.isnan(rows[low] + rows[high]) | (rows[lost] < rows[low]) | (rows[carried] > rows[high]))
+    """The number of rows in which a limit is not between two columns: a run is lost below `low`, or carried above `high`, or a
+    limit is NaN. `carried` is NaN where nothing is carried."""
+    return np.sum(np.isnan(rows[low] + rows[high] + rows[lost]) | (rows[lost] < rows[low]) | (rows[carried] > rows[high]))
 
 
 def draw_limits(s, table, title, setting, settings, units, derived, x_label, y_label, samples=61, **frame):

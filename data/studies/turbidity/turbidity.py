@@ -125,7 +125,7 @@ def add_pictures(s, pictures, columns):
 
 def lost_at_per_m(of):
     """The lowest level at which most of a valve is missed; infinite if there is none."""
-    return min(of.turbidity[of.recall < 0.5], default=np.inf)
+    return min(of.turbidity[~(of.recall >= 0.5)], default=np.inf)
 
 
 def add_claims(s, scored):

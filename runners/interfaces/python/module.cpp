@@ -194,6 +194,16 @@ void bind_classes(py::module_& module) {
                                if (!o.has_proxy) return py::none();
                                return array_of(o.output.proxy_W);
                              })
+      .def_property_readonly("torque_Nm",
+                             [](const PythonOutput& o) -> py::object {
+                               if (!o.torque_Nm) return py::none();
+                               return array_of(*o.torque_Nm);
+                             })
+      .def_property_readonly("tool_orientation",
+                             [](const PythonOutput& o) -> py::object {
+                               if (!o.tool_orientation) return py::none();
+                               return array_of(*o.tool_orientation);
+                             })
       .def_property_readonly("normal", [](const PythonOutput& o) { return array_of(o.output.normal_W); })
       .def_property_readonly("state", [](const PythonOutput& o) {
         return std::array{"free", "contact", "entrenched"}[static_cast<std::size_t>(o.output.state)];

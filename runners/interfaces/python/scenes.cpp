@@ -2,7 +2,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "core/dissertation/depth/depth_pipeline.h"
@@ -26,7 +28,7 @@ namespace py = pybind11;
 namespace {
 
 Json json_of(const py::handle& settings, const std::string& subject) {
-  return parse_json(py::str(py::module_::import("json").attr("dumps")(settings)), subject);
+  return parse_json(py::str(py::module_::import("remote_touch.calls").attr("_json")(settings)), subject);
 }
 
 // Settings from the named arguments of a call in Python.
@@ -45,14 +47,19 @@ py::dict as_dict(const CameraIntrinsics& c) {
                   "cy"_a = c.cy);
 }
 
+// The members of a dict as of Cloud.camera.
 CameraIntrinsics camera_of(const py::dict& given) {
-  const auto number = [&](const char* name) { return given[name].cast<double>(); };
-  return {given["width"].cast<int>(),
-          given["height"].cast<int>(),
-          number("fx"),
-          number("fy"),
-          number("cx"),
-          number("cy")};
+  const auto number = [&](const char* name) {
+    try {
+      if (given.contains(name)) return given[name].cast<double>();
+    } catch (const py::cast_error&) {
+    }
+    throw InputError("camera", std::string("expected a number ") + name);
+  };
+  const double width = number("width"), height = number("height"), fx = number("fx"), fy = number("fy");
+  if (!(width >= 1 && width <= 4096 && height >= 1 && height <= 4096 && fx > 0 && fy > 0))
+    throw InputError("camera", "expected 1 to 4096 columns and rows, and fx and fy above 0");
+  return {static_cast<int>(width), static_cast<int>(height), fx, fy, number("cx"), number("cy")};
 }
 
 template <class Number>
@@ -129,16 +136,19 @@ py::array rule_weights(const PythonCloud& cloud, const py::dict& rule) {
   const std::string name = rule.contains("name") ? py::str(rule["name"]) : py::str();
   const auto factory = find_entry(fixtures(), name, "rule").make();
   read_parameters(part, factory->settings(), "rule", {"name"});
+  if (const std::string problem = factory->validate(); !problem.empty()) throw InputError("rule." + problem);
   return owning_array(factory->build()->weights(*cloud.shown),
                       {static_cast<py::ssize_t>(cloud.shown->size())});
 }
 
-py::array signed_distances(const PythonScene& scene, const py::handle& points,
-                           const py::array_t<double, py::array::forcecast>& time_s) {
+py::array signed_distances(const PythonScene& scene, const py::handle& points, const Numbers2d& time_s) {
   const bool is_one = time_s.ndim() == 0;
+  const bool fits =
+      is_one || (time_s.ndim() == 1 && time_s.size() == static_cast<py::ssize_t>(py::len(points)));
+  if (!fits ||
+      !std::all_of(time_s.data(), time_s.data() + time_s.size(), [](double t) { return std::isfinite(t); }))
+    throw InputError("signed_distances: time_s", "expected one finite time, or one for each point");
   return for_points(points, "signed_distances", [&](const Vec3& p_W, std::size_t i) {
-    if (!is_one && static_cast<py::ssize_t>(i) >= time_s.size())
-      throw InputError("signed_distances: time_s", "expected one time, or one for each point");
     return (*scene).signed_distance(p_W, time_s.data()[is_one ? 0 : i]);
   });
 }
@@ -156,7 +166,8 @@ py::dict true_image(const PythonScene& scene, double time_s, const py::dict& giv
                     const Eigen::MatrixXd& pose) {
   const AloneInThread alone;
   const CameraIntrinsics camera = camera_of(given);
-  if (pose.rows() != 4 || pose.cols() != 4) throw InputError("true_image: camera_pose", "expected 4 x 4");
+  if (pose.rows() != 4 || pose.cols() != 4 || !pose.allFinite())
+    throw InputError("true_image: camera_pose", "expected 4 x 4 finite numbers");
   RigidTransform X_WC = RigidTransform::Identity();
   X_WC.matrix() = pose;
   const RigidTransform X_CW = X_WC.inverse();
@@ -200,6 +211,11 @@ struct PythonSensor {
                                   const std::vector<int>& frames) const {
     const AloneInThread alone;
     const CameraIntrinsics& camera = sensor.intrinsics();
+    const auto is_image = [&](const Numbers2d& image) {
+      return image.ndim() == 2 && image.shape(0) == camera.height && image.shape(1) == camera.width;
+    };
+    if (!is_image(depth) || (cosine && !is_image(*cosine)))
+      throw InputError("measured", "expected images of " + size_text(camera) + ": rows x columns");
     const auto view = sensor.view({camera.width, camera.height, pixels_of(depth)},
                                   cosine ? pixels_of(*cosine) : std::vector<double>(), {});
     std::vector<py::array> images;
@@ -239,6 +255,8 @@ void bind_images(py::module_& module, CloudClass& cloud, SceneClass& scene) {
       .def(
           "surface_distances",
           [](const PythonCloud& c, const py::object& points, double radius_m) {
+            if (!(radius_m > 0 && std::isfinite(radius_m)))
+              throw InputError("surface_distances: radius_m", "expected a finite number above 0");
             return for_points(points, "surface_distances", [&](const Vec3& p_W, std::size_t) {
               return distance_to_measured(*c.shown, p_W, radius_m);
             });
@@ -282,8 +300,10 @@ class BuiltRenderer {
         processing_(experiment.build_processing(chosen_python_kernels())) {}
 
   void on_frame(const PythonCloud& cloud, double captured_s) {
+    require_finite(captured_s, "on_frame: captured_s");
     const py::gil_scoped_release without_lock;
-    const AloneInThread alone;
+    const AloneInThread one_thread;
+    const auto alone = only_user();
     Frame frame{next_++, captured_s, captured_s, nullptr};
     processing_.fill(frame, *cloud.shown, processing_.fixtures.off());
     processing_.needs.check(frame);
@@ -294,14 +314,32 @@ class BuiltRenderer {
         py::isinstance<DeviceState>(given)
             ? given.cast<DeviceState>()
             : DeviceState{.position_W = vector_of(given, [] { return "step: device"; })};
+    require_finite(time_s, "step: time_s");
     const py::gil_scoped_release without_lock;
-    const AloneInThread alone;
+    const AloneInThread one_thread;
+    const auto alone = only_user();
     PythonOutput made;
     made.output = renderer_->step(device, time_s), made.has_proxy = true;
+    if (made.output.tool) {
+      made.torque_Nm = made.output.tool->torque_Nm;
+      made.tool_orientation = made.output.tool->orientation_W;
+    }
     return made;
   }
 
  private:
+  static void require_finite(double value, const char* name) {
+    if (!std::isfinite(value)) throw InputError(name, "expected a finite number");
+  }
+  // A renderer in Python may call itself, so this does not wait.
+  std::unique_lock<std::mutex> only_user() {
+    std::unique_lock lock(*mutex_, std::try_to_lock);
+    if (!lock.owns_lock())
+      throw InputError("renderer", "another thread uses it: expected one renderer for each thread");
+    return lock;
+  }
+
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
   std::unique_ptr<Renderer> renderer_;
   FrameProcessing processing_;
   int next_ = 0;

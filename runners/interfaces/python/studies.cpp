@@ -130,6 +130,8 @@ std::optional<std::pair<double, double>> pair_of(const Json& json, const char* n
 ScenePart part_of(const Json& json) {
   ScenePart part;
   const auto kind = json.at("kind").get<std::string>();
+  if (kind != "points" && kind != "segments" && kind != "solid")
+    throw std::invalid_argument("unknown kind of a part: " + kind);
   part.kind = kind == "points"     ? ScenePart::Kind::points
               : kind == "segments" ? ScenePart::Kind::segments
                                    : ScenePart::Kind::solid;
@@ -182,14 +184,15 @@ std::string write(const std::string& file, const std::string& name, const std::s
   return write_figure(file, figure, origin);
 }
 
-// Returns the claim with its verdict. kind: at most, at least, between, differs or not run. low: the limit,
-// or the reason.
+// Returns the claim with its verdict. kind: at most, at least, between or differs. low: the limit of the
+// first two.
 Claim claim(const std::string& kind, const std::string& figure, const std::string& text,
             const std::string& paper, double measured, double low, double high, const std::string& unit) {
   if (kind == "at most") return claim_at_most(figure, text, paper, measured, low, unit);
   if (kind == "at least") return claim_at_least(figure, text, paper, measured, low, unit);
   if (kind == "between") return claim_between(figure, text, paper, measured, low, high, unit);
-  return claim_differs(figure, text, paper, measured, low, high, unit);
+  if (kind == "differs") return claim_differs(figure, text, paper, measured, low, high, unit);
+  throw InputError("claim " + kind, "unknown: expected at most, at least, between or differs");
 }
 
 }  // namespace

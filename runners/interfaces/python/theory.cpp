@@ -1,27 +1,41 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "analysis/theory/haptic_loops.h"
 #include "analysis/theory/surface_contacts.h"
 #include "analysis/trace/curve_fits.h"
 #include "analysis/trace/interval_estimates.h"
+#include "core/parameters/parameter.h"
 #include "runners/interfaces/python/bindings.h"
 
 namespace remote_touch {
 
-// The closed forms of analysis/theory, and the estimates and fits of analysis/trace. The headers there state
+// The closed forms of analysis/theory, and estimates of analysis/trace. The headers there state
 // formulas and preconditions; a structure is passed by the names of its members.
 
 namespace py = pybind11;
 
 namespace {
 
+void require(bool holds, const char* function, const char* expected) {
+  if (!holds) throw InputError(std::string("theory.") + function, std::string("expected ") + expected);
+}
+
+template <class... Numbers>
+bool finite(Numbers... numbers) {
+  return (std::isfinite(numbers) && ...);
+}
+
 void bind_slaves(py::module_& theory) {
   theory.def(
       "following_error_m",
       [](double amplitude_m, double hz, double natural_frequency_hz, double age_s) {
+        require(finite(amplitude_m, hz, age_s) && finite(natural_frequency_hz) && natural_frequency_hz > 0,
+                "following_error_m", "finite numbers and a natural frequency above 0");
         return following_error_m({amplitude_m, hz, natural_frequency_hz, age_s});
       },
       py::kw_only(), py::arg("amplitude_m"), py::arg("hz"), py::arg("natural_frequency_hz"), py::arg("age_s"),
@@ -29,6 +43,9 @@ void bind_slaves(py::module_& theory) {
   theory.def(
       "first_impact",
       [](double speed_m_per_s, double way_m, double gap_m, double natural_frequency_hz) -> py::object {
+        require(finite(speed_m_per_s, way_m, gap_m, natural_frequency_hz) && speed_m_per_s > 0 &&
+                    natural_frequency_hz > 0 && way_m + gap_m > 0,
+                "first_impact", "finite numbers; a speed, a natural frequency and way + gap above 0");
         const auto impact = first_impact({speed_m_per_s, way_m, gap_m, natural_frequency_hz});
         if (!impact) return py::none();
         return py::make_tuple(impact->time_s, impact->speed_m_per_s);
@@ -46,8 +63,13 @@ void def_of_wall(py::module_& theory, const char* name, Of of, const char* text)
   const SampledWall wall;
   theory.def(
       name,
-      [of](double mass_kg, double damping_Ns_per_m, double wall_damping_Ns_per_m, double spring_share,
-           int delay_ticks, int velocity_ticks, double tick_s) {
+      [of, name](double mass_kg, double damping_Ns_per_m, double wall_damping_Ns_per_m, double spring_share,
+                 int delay_ticks, int velocity_ticks, double tick_s) {
+        require(finite(mass_kg, damping_Ns_per_m, wall_damping_Ns_per_m, spring_share, tick_s) &&
+                    mass_kg > 0 && tick_s > 0 && damping_Ns_per_m + wall_damping_Ns_per_m > 0 &&
+                    velocity_ticks >= 1 && velocity_ticks <= 1000 && delay_ticks >= 0 && delay_ticks <= 1000,
+                name,
+                "mass, tick and damping above 0, 1 to 1000 ticks of the velocity and 0 to 1000 of delay");
         return of({mass_kg, damping_Ns_per_m, wall_damping_Ns_per_m, spring_share, delay_ticks,
                    velocity_ticks, tick_s});
       },
@@ -64,6 +86,12 @@ void bind_loops(py::module_& theory) {
       [](double mass_kg, double stiffness_N_per_m, double damping_Ns_per_m, double slave_mass_kg,
          double slave_natural_frequency_hz, double slave_damping_ratio, double environment_stiffness_N_per_m,
          double environment_damping_Ns_per_m, double feedback_gain) {
+        require(finite(mass_kg, stiffness_N_per_m, damping_Ns_per_m, slave_mass_kg,
+                       slave_natural_frequency_hz, slave_damping_ratio, environment_stiffness_N_per_m,
+                       environment_damping_Ns_per_m, feedback_gain) &&
+                    mass_kg > 0 && slave_mass_kg > 0 && slave_natural_frequency_hz > 0 &&
+                    slave_damping_ratio > 0,
+                "delay_onset", "finite numbers; masses, natural frequency and damping ratio above 0");
         const DelayOnset onset =
             delay_onset({mass_kg, stiffness_N_per_m, damping_Ns_per_m, slave_mass_kg,
                          slave_natural_frequency_hz, slave_damping_ratio, environment_stiffness_N_per_m,
@@ -97,6 +125,7 @@ void bind_tools(py::module_& theory) {
   theory.def(
       "block_on_line",
       [](double a_m, double b_m, double height_m, double angle_rad, double k, double r) {
+        require(finite(a_m, b_m, height_m, angle_rad, k, r), "block_on_line", "finite numbers");
         return as_tuple(block_on_line(a_m, b_m, {k, r}, height_m, angle_rad));
       },
       py::arg("a_m"), py::arg("b_m"), py::arg("height_m"), py::arg("angle_rad"), stiffness, radius,
@@ -104,6 +133,8 @@ void bind_tools(py::module_& theory) {
   theory.def(
       "ball_in_groove",
       [](double radius_m, double slope_rad, const Eigen::Vector2d& place_m, double k, double r) {
+        require(finite(radius_m, slope_rad, place_m.x(), place_m.y(), k, r), "ball_in_groove",
+                "finite numbers");
         return as_tuple(ball_in_groove(radius_m, slope_rad, {k, r}, place_m));
       },
       py::arg("radius_m"), py::arg("slope_rad"), py::arg("place_m"), stiffness, radius,
@@ -111,6 +142,7 @@ void bind_tools(py::module_& theory) {
   theory.def(
       "bar_in_slot",
       [](double a_m, double b_m, double w_m, double angle_rad, double k, double r) {
+        require(finite(a_m, b_m, w_m, angle_rad, k, r), "bar_in_slot", "finite numbers");
         return as_tuple(bar_in_slot(a_m, b_m, w_m, {k, r}, angle_rad));
       },
       py::arg("a_m"), py::arg("b_m"), py::arg("w_m"), py::arg("angle_rad"), stiffness, radius,
@@ -133,6 +165,8 @@ void bind_tools(py::module_& theory) {
   theory.def(
       "noisy_jump_m",
       [](double thickness_m, const std::vector<std::pair<double, double>>& points, double sigma_m) {
+        require(!points.empty() && finite(thickness_m, sigma_m), "noisy_jump_m",
+                "finite numbers and a point");
         std::vector<NoisyPoint> noisy;
         for (const auto& [height_m, probability] : points) noisy.push_back({height_m, probability});
         return noisy_jump_m(thickness_m, noisy, sigma_m);
@@ -169,35 +203,22 @@ void bind_estimates(py::module_& theory) {
   theory.def(
       "estimated_fraction",
       [](std::int64_t events, std::int64_t without, std::int64_t unknown) {
+        require(events >= 0 && without >= 0 && unknown >= 0, "estimated_fraction", "counts of 0 or more");
         return as_tuple(estimated_fraction(EventCounts{events, without, unknown}));
       },
       py::arg("events"), py::arg("without"), py::arg("unknown") = 0,
       "Fraction of runs with an event and its 95 % interval: value, low, high.");
   theory.def(
-      "estimated_quantile",
-      [](const std::vector<double>& values, double q) { return as_tuple(estimated_quantile(values, q)); },
-      py::arg("values"), py::arg("q"), "Quantile and its 95 % interval: value, low, high.");
-  theory.def("exact_interval", &exact_interval, py::arg("events"), py::arg("runs"),
-             "The exact 95 % interval of a fraction.");
-  theory.def(
-      "fit_polynomial",
-      [](const std::vector<double>& x, const std::vector<double>& y, const std::vector<int>& powers) {
-        return fit_polynomial(x, y, powers);
+      "exact_interval",
+      [](double events, double runs) {
+        require(finite(runs) && events >= 0 && events <= runs, "exact_interval", "0 <= events <= runs");
+        return exact_interval(events, runs);
       },
-      py::arg("x"), py::arg("y"), py::arg("powers"), "Least squares with chosen powers.");
-  py::class_<PolynomialFit>(theory, "PolynomialFit", "A fitted curve.")
-      .def_readonly("powers", &PolynomialFit::powers)
-      .def_readonly("coefficients", &PolynomialFit::coefficients)
-      .def_readonly("residual_rms", &PolynomialFit::residual_rms)
-      .def("at", &PolynomialFit::at, py::arg("x"))
-      .def("half_width", &PolynomialFit::half_width, py::arg("x"));
-  theory.def("isotonic_falling", &isotonic_falling, py::arg("values"), py::arg("weights"),
-             "The decreasing values nearest to the given ones.");
-  theory.def("crossing", &crossing, py::arg("x"), py::arg("falling"), py::arg("level"),
-             "The x at which a decreasing curve crosses the level.");
+      py::arg("events"), py::arg("runs"), "The exact 95 % interval of a fraction.");
   theory.def(
       "sinusoid_in",
       [](const std::vector<double>& time_s, const std::vector<double>& values, double hz) {
+        require(time_s.size() == values.size(), "sinusoid_in", "as many times as values");
         const Sinusoid wave = sinusoid_in(time_s, values, hz);
         return py::make_tuple(wave.amplitude, wave.phase_rad);
       },
@@ -207,7 +228,7 @@ void bind_estimates(py::module_& theory) {
 }  // namespace
 
 void bind_theory(py::module_& module) {
-  py::module_ theory = module.def_submodule("theory", "Closed forms, estimates and fits.");
+  py::module_ theory = module.def_submodule("theory", "Closed forms and estimates.");
   bind_slaves(theory);
   bind_loops(theory);
   bind_tools(theory);

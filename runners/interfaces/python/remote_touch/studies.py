@@ -34,6 +34,7 @@ import re
 import shlex
 import sys
 import tempfile
+import traceback
 
 import numpy as np
 
@@ -53,14 +54,16 @@ class Entry:
     defaults: dict
     quick_coarse: int  # value of coarse for a quick study
     file: str
+    takes_settings: bool = False
 
 
-def study(name, summary, *, title="", caption="", source="the dissertation", quick_coarse=1):
+def study(name, summary, *, title="", caption="", source="the dissertation", quick_coarse=1,
+          takes_settings=False):
     """Declares the function below as a study. It receives a Study, and calls its methods.
 
     name: a word for files and commands. summary: one line for lists. title, caption, source: of the figure; the function may
     set them as s.title and so on. source: where the values come from that claims compare with. quick_coarse: a quick study uses
-    every so-manieth value of the axes of Study.map().
+    every nth value of the axes of Study.map(); this is n. takes_settings: it reads s.overrides, the settings of the caller.
     """
     if not re.fullmatch(r"[a-z0-9][a-z0-9.-]*", name) or name in _core.list()["figures"]:
         raise InputError(f"study {name!r}: expected small letters, digits, - and ., and no name of a figure of the program")
@@ -71,7 +74,7 @@ def study(name, summary, *, title="", caption="", source="the dissertation", qui
         if known and (known.file, known.make.__name__) != (file, make.__name__):
             raise InputError(f"study {name}: declared twice, in {known.file} and in {file}")
         STUDIES[name] = Entry(name, summary, make, {"title": title, "caption": " ".join(caption.split()), "source": source},
-                              quick_coarse, file)
+                              quick_coarse, file, takes_settings)
         return make
     return declare
 
@@ -208,23 +211,17 @@ class Study:
     """What a study function receives: it makes runs, and collects tables, panels and claims.
 
     coarse: map() uses every coarse-th value of the axes. executor: any concurrent.futures.Executor makes the runs; None:
-    threads of this process. The numbers depend on neither.
+    threads of this process. The numbers depend on neither. overrides: the settings "path=value" of the caller.
     """
 
     def __init__(self, entry, coarse=1, executor=None, overrides=()):
         self.name, self.coarse, self.executor = entry.name, coarse, executor
-        self._overrides, self._takes_settings = [*overrides], False
+        self.overrides = [*overrides]
         self.title, self.caption, self.source = (entry.defaults[name] for name in ("title", "caption", "source"))
         self.folder = pathlib.Path(entry.file).parent  # with the experiments and sweeps of the study
         self.tables, self.panels, self.all_claims = [], [], []
         self.runs_of_maps = self.made_runs_of_maps = 0
         self._core, self._configs = _core.StudyRuns(), []
-
-    @property
-    def overrides(self):
-        """The settings "path=value" of --set. A study that never reads them takes none, and the call is refused."""
-        self._takes_settings = True
-        return self._overrides
 
     # --- runs ---
 
@@ -313,8 +310,11 @@ class Study:
             raise InputError(f"study {self.name}: table {name!r}: expected another word for each table")
         rows, listed = Rows(), []
         for column, (values, units, long_name, *names) in {**(columns or {}), **named}.items():
-            values = np.asarray(values)
-            if values.ndim != 1 or values.dtype.kind not in "UObiuf":
+            values = np.ma.filled(np.asanyarray(values), np.nan) if np.ma.isMaskedArray(values) else np.asarray(values)
+            if hasattr(Rows, column):
+                raise InputError(f"study {self.name}: table {name}: {column}: expected another name of a column")
+            if values.ndim != 1 or values.dtype.kind not in "UObiuf" or \
+                    values.dtype.kind == "O" and not all(isinstance(value, str) for value in values):
                 raise InputError(f"study {self.name}: table {name}: {column}: expected a list of numbers or texts")
             rows[column] = values
             if values.dtype.kind in "UO":
@@ -331,6 +331,8 @@ class Study:
 
     def panel(self, title, x_label, y_label, curves, *, at=None, x_range=None, y_range=None, equal_aspect=False, scene=None):
         """Adds a panel of curves. at: (row, column); None: below the panel before. scene: a dict as of scene(), drawn instead."""
+        if at is not None and not (len(at) == 2 and min(at) >= 0):
+            raise InputError(f"study {self.name}: panel {title!r}: at = {at}: expected (row, column), 0 or more")
         self.panels.append({"title": title, "x_label": x_label, "y_label": y_label, "at": at, "x_range": x_range,
                             "y_range": y_range, "equal_aspect": equal_aspect, "scene": scene,
                             "curves": [dataclasses.asdict(each) for each in curves]})
@@ -365,16 +367,18 @@ class Study:
         _write_claims(folder, self.name, self.all_claims)
         return self._core.note_lines()
 
-
     def _require_columns(self):
         """Every curve has its table and columns of numbers."""
         tables = {name: {column: values for column, _, _, values, _ in columns} for name, _, columns in self.tables}
         for panel in self.panels:
             for each in panel["curves"]:
-                for column in filter(None, (each["x"], each["y"], each["z"])):
+                for column in (each["x"], each["y"], *filter(None, [each["z"]])):
                     if isinstance(tables.get(each["table"], {}).get(column, []), list):
                         raise InputError(f"study {self.name}: panel {panel['title']!r}: a curve asks for {each['table']}/{column}: "
                                          "expected a column of numbers of one of its tables")
+            for part in (panel["scene"] or {}).get("parts", ()):
+                if part["table"] not in tables:
+                    raise InputError(f"study {self.name}: panel {panel['title']!r}: a scene asks for table {part['table']!r}")
 
 
 def _sha256(file):
@@ -415,7 +419,12 @@ def make(name, folder, *, coarse=1, quick=False, executor=None, set=(), command=
 
     A study whose recording is missing is written as not run, unless settings named it. command: recorded in the file.
     """
+    _chosen([name])
+    if isinstance(set, str) or hasattr(set, "items"):
+        raise InputError(f"set = {set!r}: expected a list of texts, PATH=VALUE")
     entry = STUDIES[name]
+    if set and not entry.takes_settings:
+        raise InputError(f"study {name} --set {set[0]}: this study takes no settings")
     coarse = max(_integer("coarse", coarse, 1, 10), entry.quick_coarse if quick else 1)
     _require_folder(pathlib.Path(folder), name)
     made = Study(entry, coarse, executor, set)
@@ -427,9 +436,7 @@ def make(name, folder, *, coarse=1, quick=False, executor=None, set=(), command=
         made = Study(entry, coarse)
         made.title, made.caption = "Not run", f"Not run: {missing}"
         made.all_claims = [_core.claim_not_run(name, entry.summary, str(missing))]
-    if made._overrides and not made._takes_settings:
-        raise InputError(f"study {name} --set {made._overrides[0]}: this study takes no settings")
-    made.notes = made.write(folder, command or _command(entry, coarse, made._overrides))
+    made.notes = made.write(folder, command or _command(entry, coarse, made.overrides))
     return made
 
 
@@ -452,7 +459,7 @@ def _require_folder(folder, name):
 def _command(entry, coarse, overrides):
     """The command of a study of the project, or the call of a file of a user."""
     is_own = pathlib.Path(entry.file).parent.parent.parts[-2:] == ("data", "studies")
-    words = ["scripts/studies" if is_own else f"python3 {os.path.basename(entry.file)}", shlex.quote(entry.name)]
+    words = ["scripts/studies" if is_own else f"python3 {shlex.quote(os.path.basename(entry.file))}", shlex.quote(entry.name)]
     words += [f"--coarse {coarse}"] * (coarse > 1) + [f"--set {shlex.quote(each)}" for each in overrides]
     return " ".join(words)
 
@@ -516,6 +523,15 @@ def _leave_interruption():
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+def _draw(folder, format):
+    from remote_touch.plotting.folder import plot
+    from remote_touch.plotting.plot_error import PlotError
+    try:
+        plot(folder, folder, format)
+    except PlotError as error:
+        raise InputError(str(error)) from None
+
+
 def main(arguments=None):
     """The command line of a file of studies. Exit: 0 made, 1 a claim failed, 2 bad input, 3 interrupted."""
     options = _options(arguments)
@@ -525,8 +541,7 @@ def main(arguments=None):
             return 0
         held = _make_all(options)
         if not options.no_pictures:
-            from remote_touch.plotting.folder import plot
-            plot(options.output, options.output, options.format)
+            _draw(options.output, options.format)
     except (InputError, OSError) as error:
         print(f"studies: {error}", file=sys.stderr)
         return 2
@@ -534,7 +549,6 @@ def main(arguments=None):
         print("studies: interrupted; what was finished is kept", file=sys.stderr)
         return 3
     except Exception:  # of the code of a study: 1 would say that a claim failed
-        import traceback
         traceback.print_exc()
         return 2
     return 0 if held else 1
@@ -542,13 +556,27 @@ def main(arguments=None):
 
 def _run_files(arguments):
     """Imports the files before "--", then does what main() does with the arguments after it."""
-    import importlib.util
     end = arguments.index("--") if "--" in arguments else len(arguments)
-    for file in map(os.path.abspath, arguments[:end]):
-        sys.path.insert(0, os.path.dirname(file))  # a study may import what lies beside it
-        spec = importlib.util.spec_from_file_location("study_" + pathlib.Path(file).stem, file)
-        spec.loader.exec_module(importlib.util.module_from_spec(spec))
+    try:
+        for file in map(os.path.abspath, arguments[:end]):
+            _import_file(file)
+    except (InputError, OSError) as error:
+        print(f"studies: {error}", file=sys.stderr)
+        return 2
+    except Exception:  # of the code of a study: 1 would say that a claim failed
+        traceback.print_exc()
+        return 2
     return main(arguments[end + 1:])
+
+
+def _import_file(file):
+    import importlib.util
+    sys.path.insert(0, os.path.dirname(file))  # a study may import what lies beside it
+    spec = importlib.util.spec_from_file_location("study_" + pathlib.Path(file).stem, file)
+    if spec is None:
+        raise InputError(f"{file}: expected a file of Python, before --")
+    module = sys.modules[spec.name] = importlib.util.module_from_spec(spec)  # a dataclass looks for its module there
+    spec.loader.exec_module(module)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import sys
 import h5py
 import numpy as np
 import pytest
+import remote_touch as rt
 from conftest import PRESS, ROOT, STUDY_PAGE
 from remote_touch import InputError, studies, theory
 from remote_touch.studies import Rows, line, product, study
@@ -114,13 +115,34 @@ def test_theory_and_estimates():
                                              thickness_m=0.002, normal_error=0.05)
     assert 0.00499 + 0.002 == pytest.approx(acceleration / 900 + (0.1 + 9 * acceleration / 30) / 30 * 0.05)  # (4.25)
     assert theory.exact_interval(0, 10) == pytest.approx((0, 1 - 0.025 ** 0.1))
-    assert theory.estimated_fraction(5, 5)[0] == 0.5 and theory.estimated_quantile(range(1, 100), 0.5)[0] == 50
+    assert theory.estimated_fraction(5, 5)[0] == 0.5
     value, low, high = theory.estimated_mean(np.linspace(0, 1, 11))
     assert value == pytest.approx(0.5) and low < 0.5 < high and low + high == pytest.approx(1)
-    fit = theory.fit_polynomial([0, 1, 2, 3], [1, 3, 5, 7], [0, 1])
-    assert fit.at(10) == pytest.approx(21) and fit.half_width(10) == pytest.approx(0, abs=1e-9)
-    assert theory.isotonic_falling([3, 1, 2], [1, 1, 1]) == [3, 1.5, 1.5] and theory.crossing([0, 1], [1, 0], 0.25) == 0.75
     assert {"impact_force_N", "delay_onset"} < {*theory.__all__}
+    for refused in (lambda: theory.exact_interval(5, 3), lambda: theory.noisy_jump_m(0.01, [], 0.001),
+                    lambda: theory.sinusoid_in([0.0], [1.0, 2.0], 1), lambda: theory.exact_wall_limit_N_per_m(mass_kg=0),
+                    lambda: theory.first_impact(speed_m_per_s=np.nan, way_m=1, gap_m=1, natural_frequency_hz=1),
+                    lambda: theory.bar_in_slot(0.04, 0.005, 0.02, np.nan), lambda: theory.estimated_fraction(-1, 5)):
+        with pytest.raises(InputError, match="theory.*expected"):
+            refused()
+
+
+def test_doors_to_scenes_refuse_what_they_cannot_use():
+    scene = rt.scene("mesh-scene", mesh="fork", sensor="structured-light", width=64, height=48, focal_px=52)
+    cloud, times = scene.cloud(0), np.array([[0, 7], [0.1, 7], [0.2, 7]])[:, 0]
+    points = np.zeros((3, 3))
+    assert scene.signed_distances(points, times).tolist() == [scene.signed_distance((0, 0, 0), time_s) for time_s in times]
+    sensor = rt.DepthSensor(sensor="structured-light", width=np.int64(64), height=48, focal_px=52)
+    proxy = rt.renderer("fig4.12")
+    for refused in (lambda: scene.signed_distances(points, [0, 1]), lambda: scene.signed_distances(points, np.nan),
+                    lambda: cloud.surface_distances(points, np.nan), lambda: cloud.surface_distances(points, 0),
+                    lambda: cloud.window(0, 0, 65, 1), lambda: sensor.measured(np.ones((64, 48))),
+                    lambda: scene.true_image(0, {"width": 4}, np.eye(4)), lambda: scene.true_image(0, cloud.camera, np.full((4, 4), np.nan)),
+                    lambda: cloud.rule_weights({"name": "half-space", "normal": [0, 0, 0]}), lambda: proxy.step((0, 0, 0), np.nan)):
+        with pytest.raises(InputError, match="expected"):
+            refused()
+    tool = rt.renderer("tool-slot", set={"fixtures": []})
+    assert tool.step((0, 0, 0), 0.0).torque_Nm.shape == (3,) and proxy.step((0, 0, 0), 0.0).torque_Nm is None
 
 
 def refusal(folder, make, **options):
@@ -155,6 +177,8 @@ def test_refusals(tmp_path, monkeypatch):
     assert "asks for t/y: expected a column" in refuse(lambda s: (s.table("t", "t", **point), s.panel("", "", "", [line("t", "x", "y")])))
     assert "asks for t/name" in refuse(lambda s: (s.table("t", "t", **point), s.panel("", "", "", [line("t", "x", "name")])))
     assert "asks for u/x" in refuse(lambda s: s.panel("", "", "", [line("u", "x", "x")]))
+    assert "expected (row, column)" in refuse(lambda s: s.panel("", "", "", [], at=(-1, 0)))
+    assert "values: expected another name" in refuse(lambda s: s.table("t", "t", values=([1.0], "m", "x")))
     assert "expected another word for each table" in refuse(lambda s: (s.table("t", "t", **point), s.table("t", "t", **point)))
     assert "expected another word for each table" in refuse(lambda s: s.table("t/u", "t", **point))
     assert "expected a list of numbers" in refuse(lambda s: s.table("t", "t", x=([[1.0]], "m", "x")))
@@ -180,7 +204,7 @@ def test_a_missing_recording_is_told(tmp_path):
 SCRIPT = """
 import sys
 from remote_touch.studies import line, main, study
-@study("mine", "of a user", title="Mine", caption="Of a user.")
+@study("mine", "of a user", title="Mine", caption="Of a user.", takes_settings=True)
 def mine(s):
     s.table("t", "t", x=([1, 2], "m", "place"), y=([1, 3], "N", "force"))
     s.panel("A line", "x (m)", "y (N)", [line("t", "x", "y")])
