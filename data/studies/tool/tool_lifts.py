@@ -3,7 +3,7 @@ thickness, tilt, rotation and noise change that?"""
 import sys
 
 import numpy as np
-from carried_limits import FRAME_REACH_M, FRAMES_HZ, RULES, Carried, draw_limits, jump_m, rows_apart
+from carried_limits import FRAMES_HZ, RULES, Carried, draw_limits, jump_m, rows_apart
 
 from remote_touch.studies import main, study
 
