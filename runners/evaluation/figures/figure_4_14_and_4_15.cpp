@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "analysis/theory/surface_contacts.h"
 #include "analysis/trace/contact_measures.h"
