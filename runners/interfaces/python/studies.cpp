@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
 #include "runners/experiment/catalog/experiment.h"
