@@ -250,7 +250,7 @@ def shadow_baseline_m(widths, column, focal_px):
     known = ~np.isnan(widths[column])
     if known.sum() < FEWEST_WIDTHS:
         return math.nan
-    return fit_polynomial(widths.jump[known], np.array(widths[column])[known], [0, 1]).coefficients[1] / focal_px
+    return fit_polynomial(widths.jump[known], np.array(widths[column])[known], [0, 1])[1] / focal_px
 
 
 def add_active_stereo_claims(s, compared, noise, widths):

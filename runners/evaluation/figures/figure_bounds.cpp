@@ -24,7 +24,8 @@ constexpr double kSurvives = 4.3, kPops = 4.6;  // m/s^2
 
 // Position of the grid along x and z in units of its spacing.
 double phase_x(std::size_t i) {
-  return 0.125 * static_cast<double>(i / 8);
+  const std::size_t column = i / 8;
+  return 0.125 * static_cast<double>(column);
 }
 
 double phase_z(std::size_t i) {

@@ -1,6 +1,7 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -215,6 +216,16 @@ void bind_estimates(py::module_& theory) {
         return exact_interval(events, runs);
       },
       py::arg("events"), py::arg("runs"), "The exact 95 % interval of a fraction.");
+  theory.def(
+      "fit_polynomial",
+      [](const std::vector<double>& x, const std::vector<double>& y, const std::vector<int>& powers) {
+        require(x.size() == y.size() && x.size() > powers.size() && !powers.empty() &&
+                    *std::min_element(powers.begin(), powers.end()) >= 0,
+                "fit_polynomial", "as many x as y, fewer powers than these, and powers of 0 or more");
+        return fit_polynomial(x, y, powers).coefficients;
+      },
+      py::arg("x"), py::arg("y"), py::arg("powers"),
+      "The coefficients of a sum of these powers of x, by least squares.");
   theory.def(
       "sinusoid_in",
       [](const std::vector<double>& time_s, const std::vector<double>& values, double hz) {

@@ -2,7 +2,6 @@
 import concurrent.futures
 import json
 import multiprocessing
-import pathlib
 import re
 import subprocess
 import sys
@@ -118,11 +117,13 @@ def test_theory_and_estimates():
     assert theory.estimated_fraction(5, 5)[0] == 0.5
     value, low, high = theory.estimated_mean(np.linspace(0, 1, 11))
     assert value == pytest.approx(0.5) and low < 0.5 < high and low + high == pytest.approx(1)
+    assert theory.fit_polynomial([0, 1, 2, 3], [1, 3, 5, 7], [0, 1]) == pytest.approx([1, 2])
     assert {"impact_force_N", "delay_onset"} < {*theory.__all__}
     for refused in (lambda: theory.exact_interval(5, 3), lambda: theory.noisy_jump_m(0.01, [], 0.001),
                     lambda: theory.sinusoid_in([0.0], [1.0, 2.0], 1), lambda: theory.exact_wall_limit_N_per_m(mass_kg=0),
                     lambda: theory.first_impact(speed_m_per_s=np.nan, way_m=1, gap_m=1, natural_frequency_hz=1),
-                    lambda: theory.bar_in_slot(0.04, 0.005, 0.02, np.nan), lambda: theory.estimated_fraction(-1, 5)):
+                    lambda: theory.bar_in_slot(0.04, 0.005, 0.02, np.nan), lambda: theory.estimated_fraction(-1, 5),
+                    lambda: theory.fit_polynomial([1, 2, 3], [1], [0, 1])):
         with pytest.raises(InputError, match="theory.*expected"):
             refused()
 
@@ -238,11 +239,14 @@ def test_the_script_of_the_page(tmp_path):
 
 
 def test_every_study_of_the_project_is_declared():
-    """Each file in data/studies that declares a study has the name of the study."""
-    for path in sorted((ROOT / "data" / "studies").glob("*/*.py")):
-        text = pathlib.Path(path).read_text()
-        if "@study(" in text:
-            assert "sys.exit(main())" in text, path
+    """Each file in data/studies that declares a study is a program, and all can be imported together."""
+    paths = sorted((ROOT / "data" / "studies").glob("*/*.py"))
+    for path in paths:
+        if "@study(" in path.read_text():
+            assert "sys.exit(main())" in path.read_text(), path
+    listed = subprocess.run([sys.executable, "-B", "-m", "remote_touch.studies", *paths, "--", "--list"], capture_output=True, text=True,
+                            check=True).stdout.splitlines()
+    assert len(listed) >= 22 and any(line.startswith("camera-error ") for line in listed)
 
 
 def lost_by_the_rules(beside_m, moved_m, phase):
