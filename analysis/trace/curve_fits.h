@@ -56,7 +56,6 @@ struct Sinusoid {
 // are evenly spaced and cover whole periods.
 Sinusoid sinusoid_in(const std::vector<double>& time_s, const std::vector<double>& values, double hz);
 
-
 // The value on an axis at which an event has a given probability, and the difference of two such values.
 
 // The curve of an event's probability along an axis.
