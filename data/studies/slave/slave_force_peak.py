@@ -10,7 +10,7 @@ from remote_touch.studies import dashed, dots, main, study
 
 HIT_FROM_M = 0.1
 HIT_FREQUENCIES_HZ = (1, 2, 4, 8, 16)
-# What the hand feels, by the name of the table: its title, the feedback, and the radius of the forbidden region.
+# Each table shows one kind of force on the hand: title, feedback, and radius of the forbidden region, by the name of the table.
 FELT = {"rendered": ("Rendered force", "rendered", 0),
         "region": ("Rendered force, region of 5 mm", "rendered", 0.005),
         "none": ("No force", "none", 0),

@@ -12,7 +12,7 @@ AMPLITUDE_M, SHAKE_HZ, FRAME_RATE_HZ, TICK_S = 0.02, 0.5, 30, 0.001  # settings 
 
 FREQUENCIES_HZ = (2, 10)  # natural frequencies of the slave
 RADII_M = (0, 0.0025, 0.005, 0.0075, 0.01, 0.0125, 0.015, 0.02, 0.025)  # of the region
-# What the hand feels, by the name of the table.
+# The hand feels one of these forces; the keys are names of tables.
 ARCHITECTURES = {"rendered_20_mm": ("rendered, region of 20 mm", {"fixtures.0.radius_m": 0.02}),
                  "rendered": ("rendered, no region", {"fixtures.0.radius_m": 0}),
                  "none": ("no feedback", {"feedback.force": "none"}),

@@ -4,8 +4,14 @@
 
 #include <pybind11/pybind11.h>
 
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/interfaces/python/arrays.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep.h"
 
 namespace remote_touch {
 
@@ -18,6 +24,13 @@ void bind_scorecards(pybind11::module_& module);
 void bind_results(pybind11::module_& module);  // files, comparisons, descriptions
 void bind_studies(pybind11::module_& module);  // runs of a study, its figure file and its claims
 void bind_theory(pybind11::module_& module);   // closed forms and estimates, as the module _core.theory
+
+// The experiment or the sweep of a call: that of a name or a file, or of a text in JSON, whose label the
+// subject then is.
+Experiment experiment_of(const std::string& subject, const std::optional<std::string>& text,
+                         const std::vector<std::string>& overrides);
+Sweep sweep_of(const std::string& subject, const std::optional<std::string>& text,
+               const std::vector<std::string>& overrides);
 
 // Results for Python: files, sweeps and tallies as arrays over their axes, comparisons and scorecards.
 

@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +12,11 @@
 #include "analysis/sweeps/tally_file.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/python/arrays.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
-#include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
 #include "scenarios/recordings/recording.h"
 
@@ -93,11 +90,9 @@ TextAttributes trace_attributes(const TextAttributes& origin, const std::string&
   return list;
 }
 
-// Runs the experiment of a name or a file, or the one of a text in JSON, whose label the subject then is.
 RunResult run(const std::string& subject, const std::optional<std::string>& text, const Texts& overrides,
               const std::string& file_or_none, bool force, bool timing, const LongWork& work) {
-  const Experiment experiment =
-      text ? Experiment::from_json(*text, subject, overrides) : Experiment::load(subject, overrides);
+  const Experiment experiment = experiment_of(subject, text, overrides);
   const OutputFile output(file_or_none, force, subject, experiment.inputs());
   SimulationOptions options = options_of(work);
   options.hash_frames = options.find_true_contact = true;
@@ -178,6 +173,16 @@ py::dict replay_sweep(const std::string& file, const TextAttributes& attributes,
 }
 
 }  // namespace
+
+Experiment experiment_of(const std::string& subject, const std::optional<std::string>& text,
+                         const std::vector<std::string>& overrides) {
+  return text ? Experiment::from_json(*text, subject, overrides) : Experiment::load(subject, overrides);
+}
+
+Sweep sweep_of(const std::string& subject, const std::optional<std::string>& text,
+               const std::vector<std::string>& overrides) {
+  return text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
+}
 
 void bind_experiments(py::module_& module) {
   module.def("run", &run_experiment, py::arg("subject"), py::arg("text"), py::arg("overrides"),

@@ -10,7 +10,6 @@
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/clouds.h"
@@ -21,7 +20,7 @@
 
 namespace remote_touch {
 
-// What studies compute with: images and true surfaces of scenes, simulated sensors, and renderers in steps.
+// Images and true surfaces of scenes, simulated sensors, and renderers in steps, for studies.
 
 namespace py = pybind11;
 
@@ -351,8 +350,7 @@ void bind_built_renderer(py::module_& module) {
   py::class_<BuiltRenderer>(module, "BuiltRenderer", "A renderer of the catalog in steps, see renderer().")
       .def(py::init([](const std::string& subject, const std::optional<std::string>& text,
                        const std::vector<std::string>& overrides) {
-             return BuiltRenderer(text ? Experiment::from_json(*text, subject, overrides)
-                                       : Experiment::load(subject, overrides));
+             return BuiltRenderer(experiment_of(subject, text, overrides));
            }),
            py::arg("subject"), py::arg("text"), py::arg("overrides"))
       .def("on_frame", &BuiltRenderer::on_frame, py::arg("cloud"), py::arg("captured_s"),

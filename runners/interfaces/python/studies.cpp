@@ -2,7 +2,6 @@
 
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,15 +9,12 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
 #include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/clouds.h"
 #include "runners/interfaces/python/long_work.h"
-#include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
@@ -32,14 +28,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Texts = std::vector<std::string>;
 using OptionalText = std::optional<std::string>;
-
-Experiment experiment_of(const std::string& subject, const OptionalText& text, const Texts& overrides) {
-  return text ? Experiment::from_json(*text, subject, overrides) : Experiment::load(subject, overrides);
-}
-
-Sweep sweep_of(const std::string& subject, const OptionalText& text, const Texts& overrides) {
-  return text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
-}
 
 // Makes the runs of one study. Several threads may call run() and uses() at the same time. The hash of a
 // recording is computed once, however many runs read it.

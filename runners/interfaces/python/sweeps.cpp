@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_file.h"
@@ -14,8 +13,6 @@
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
 #include "runners/sweep/answer_display.h"
-#include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_session.h"
 
@@ -58,7 +55,7 @@ py::dict run_sweep_of(const std::string& subject, const std::optional<std::strin
                       const py::object& report) {
   KeptSweep made;
   do_long_work(report, threads, [&](const LongWork& work) {
-    const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
+    const Sweep sweep = sweep_of(subject, text, overrides);
     if (output.empty() && sweep.keep() != Keep::runs)
       throw InputError(sweep.title(), "keeps a tally: expected an output, which the runs are added to");
     const TextAttributes origin =
@@ -292,7 +289,7 @@ py::dict sweep_in_chunks(const std::string& subject, const std::optional<std::st
   {
     const UnchangedCatalog unchanged;
     const py::gil_scoped_release without_lock;
-    const Sweep sweep = text ? Sweep::from_json(*text, subject, overrides) : Sweep::load(subject, overrides);
+    const Sweep sweep = sweep_of(subject, text, overrides);
     const WorkElsewhere work{sweep, input_hashes(sweep.inputs()), do_round};
     const TextAttributes origin =
         provenance(sweep.to_json(), Recipe{"sweep", subject, overrides}, "", work.inputs);

@@ -110,7 +110,7 @@ class Run:
         """Whether a column of names, such as state, has this value, in each tick."""
         names = self.value_names.get(name, [])
         if value_name not in names:
-            raise AttributeError(f"{name} is never {value_name!r}: {f'it is {chr(44).join(names)}' if names else 'its values are numbers'}")
+            raise AttributeError(f"{name} is never {value_name!r}: it is {', '.join(names) or 'a column of numbers'}")
         return self.columns[name] == names.index(value_name)
 
     def frame_updates(self):
@@ -273,10 +273,20 @@ class Study:
             made.append(of(run, i))
         return made
 
-    def sweep(self, sweep, set=None, coarse=1):
+    def sweep(self, sweep, set=None):
         """All runs of a sweep, as the Dataset of remote_touch.sweep(). Raises InputError if a run failed."""
+        config, _, _ = self._core.uses_sweep(*_call(self.folder, sweep, set), 1)
+        return self._swept(config)
+
+    def map(self, sweep, set=None):
+        """A sweep of thousands of runs, of which a coarse study uses a part of the values of each axis."""
+        config, made, planned = self._core.uses_sweep(*_call(self.folder, sweep, set), self.coarse)
+        self.runs_of_maps += planned
+        self.made_runs_of_maps += made
+        return self._swept(config)
+
+    def _swept(self, config):
         from remote_touch import dataset
-        config, made, planned = self._core.uses_sweep(*_call(self.folder, sweep, set), coarse)
         self._configs.append(config)
         if self.executor is None:
             return dataset.of_sweep(self._core.sweep(config))
@@ -288,13 +298,6 @@ class Study:
         for bits in made.notes.values.ravel().tolist():
             self._core.add_notes(bits)
         return made
-
-    def map(self, sweep, set=None):
-        """A sweep of thousands of runs, of which a coarse study uses a part of the values of each axis."""
-        _, made, planned = self._core.uses_sweep(*_call(self.folder, sweep, set), self.coarse)
-        self.runs_of_maps += planned
-        self.made_runs_of_maps += made
-        return self.sweep(sweep, set, self.coarse)
 
     def uses(self, experiment, set=None):
         """The resolved configuration of an experiment as a dict; the file of the study records it."""
@@ -330,7 +333,11 @@ class Study:
         return rows
 
     def panel(self, title, x_label, y_label, curves, *, at=None, x_range=None, y_range=None, equal_aspect=False, scene=None):
-        """Adds a panel of curves. at: (row, column); None: below the panel before. scene: a dict as of scene(), drawn instead."""
+        """Adds a panel of curves. at: (row, column); None: below the panel before.
+
+        scene: a picture in space, drawn instead: a dict with eye, target and up (three numbers each), width_m, height_per_width and
+        parts, a list of dicts with kind (points, segments or solid), table, and what ScenePart of result_file.h lists.
+        """
         if at is not None and not (len(at) == 2 and min(at) >= 0):
             raise InputError(f"study {self.name}: panel {title!r}: at = {at}: expected (row, column), 0 or more")
         self.panels.append({"title": title, "x_label": x_label, "y_label": y_label, "at": at, "x_range": x_range,
