@@ -1,4 +1,5 @@
 """Runs the tests that reach a mutation, until one fails."""
+import contextlib
 import dataclasses
 import json
 import os
@@ -99,8 +100,9 @@ class Machine:
     def forget(self, mutation):
         shutil.rmtree(self.cache(mutation), ignore_errors=True)
 
-    def run(self, command, seconds, mutation=None, reached=None):
-        """True when the command ends with 0 in time."""
+    @contextlib.contextmanager
+    def started(self, command, mutation=None, reached=None, output=subprocess.DEVNULL):
+        """The process of the command; what is left of it and its folder are gone at the end."""
         folder = pathlib.Path(tempfile.mkdtemp(dir=self.scratch))
         # Tools that were made without the mistake would hide it.
         env = os.environ | {"TMPDIR": str(folder), "OMP_NUM_THREADS": "1", "REMOTE_TOUCH_CACHE": str(self.cache(mutation))}
@@ -109,12 +111,10 @@ class Machine:
             env.pop(name, None)
             if value is not None:
                 env[name] = str(value)
-        process = subprocess.Popen([*LIMITS, *command], cwd=folder, env=env, stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, process_group=0)
+        process = subprocess.Popen([*LIMITS, *command], cwd=folder, env=env, stdin=subprocess.DEVNULL, stdout=output,
+                                   stderr=subprocess.DEVNULL, process_group=0)
         try:
-            return process.wait(seconds) == 0
-        except subprocess.TimeoutExpired:
-            return False
+            yield process
         finally:
             try:
                 os.killpg(process.pid, 9)
@@ -122,6 +122,14 @@ class Machine:
                 pass
             process.wait()
             shutil.rmtree(folder, ignore_errors=True)
+
+    def run(self, command, seconds, mutation=None, reached=None):
+        """True when the command ends with 0 in time."""
+        with self.started(command, mutation, reached) as process:
+            try:
+                return process.wait(seconds) == 0
+            except subprocess.TimeoutExpired:
+                return False
 
     def observe(self, test):
         """Runs the test without a mutation: it has to pass. Notes its time and which mutations it reaches."""
