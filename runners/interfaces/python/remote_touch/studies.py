@@ -82,11 +82,12 @@ def study(name, summary, *, title="", caption="", source="the dissertation", qui
 class Run:
     """The trace of a run: run.force is the array of the column force, one row for each tick.
 
-    config: the resolved configuration as a dict. measures: {"max_force": 1.2}. units, value_names: of each column.
+    config: the resolved configuration as a dict; config_text: as the program writes it. measures: {"max_force": 1.2}. units,
+    value_names: of each column.
     """
 
     def __init__(self, config, columns, measures, notes):
-        self.config = json.loads(config)
+        self.config, self.config_text = json.loads(config), config
         self.columns = {name: values for name, _, _, values, _ in columns}
         self.units = {name: units for name, units, _, _, _ in columns}
         self.value_names = {name: names for name, _, _, _, names in columns if names}
@@ -232,13 +233,13 @@ class Study:
     def runs(self, jobs):
         """The Runs of several experiments (experiment, settings), side by side, in their order."""
         made = self._side_by_side(jobs, lambda run, i: run)
-        self._configs += [json.dumps(run.config) for run in made]
+        self._configs += [run.config_text for run in made]
         return made
 
     def measure(self, jobs, of):
         """of(run) for each of many runs; no run is kept. Of their configurations the file has the first."""
-        made = self._side_by_side(jobs, lambda run, i: (run.config, of(run)))
-        self._configs += [json.dumps(config) for config, _ in made[:1]]
+        made = self._side_by_side(jobs, lambda run, i: (run.config_text, of(run)))
+        self._configs += [config for config, _ in made[:1]]
         return [value for _, value in made]
 
     def grid(self, axes, task, columns):
@@ -252,8 +253,8 @@ class Study:
         cells = product(axes)
         functions = [_of_run_and_cell(function) for function in columns.values()]
         made = self._side_by_side([task(cell) for cell in cells],
-                                  lambda run, i: (run.config, [function(run, cells[i]) for function in functions]))
-        self._configs += [json.dumps(config) for config, _ in made[:1]]
+                                  lambda run, i: (run.config_text, [function(run, cells[i]) for function in functions]))
+        self._configs += [config for config, _ in made[:1]]
         rows = Rows({name: np.array([getattr(cell, name) for cell in cells]) for name in axes})
         rows.update({name: np.array([values[i] for _, values in made]) for i, name in enumerate(columns)})
         return rows

@@ -56,6 +56,12 @@ def test_a_study_writes_the_files_of_a_figure(tmp_path):
     assert claims[1]["unit"] == "standard errors" and claims[1]["measured"] < 1e-9
 
 
+def test_the_file_has_configurations_as_the_program_writes_them(tmp_path):
+    _, file, _ = made(tmp_path, declared("test-text", lambda s: (s.runs([PRESS]), s.uses(PRESS), s.measure([PRESS], len))))
+    used = rt.run(PRESS).attrs["config"]
+    assert text(file, "config") == f"[{used}, {used}, {used}]"
+
+
 def test_an_executor_changes_no_bit(tmp_path):
     in_the_air = declared("test-free", lambda s: s.run(PRESS, {"trajectory.depth_m": -0.01}))
     with concurrent.futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")) as workers:
