@@ -10,6 +10,7 @@
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/clouds.h"
@@ -20,7 +21,8 @@
 
 namespace remote_touch {
 
-// Images and true surfaces of scenes, simulated sensors, and renderers in steps, for studies.
+// Images and true surfaces of scenes, simulated sensors, meshes of tools, and renderers in steps, for
+// studies. A scene changes what it keeps of its frames, so its queries hold the interpreter's lock.
 
 namespace py = pybind11;
 
@@ -111,23 +113,38 @@ std::shared_ptr<PythonCloud> window_of(const PythonCloud& cloud, int left, int t
 std::shared_ptr<PythonCloud> filtered(const PythonCloud& cloud, int left, int top, int width, int height,
                                       const py::kwargs& settings) {
   const ImageLayout& layout = layout_of(cloud);
+  const auto given = settings_of<DepthPipelineSettings>(settings, "depth_pipeline");
+  const PixelRectangle at = checked({left, top, width, height}, layout.camera);
+  const py::gil_scoped_release without_lock;
   const AloneInThread alone;
-  DepthPipeline pipeline(settings_of<DepthPipelineSettings>(settings, "depth_pipeline"),
-                         chosen_python_kernels());
   PointCloud made;
-  pipeline.process(depth_of(cloud), layout.camera, layout.X_WC,
-                   checked({left, top, width, height}, layout.camera), made);
+  DepthPipeline(given, chosen_python_kernels())
+      .process(depth_of(cloud), layout.camera, layout.X_WC, at, made);
   return std::make_shared<PythonCloud>(std::move(made));
 }
 
-// Returns of(point, number) for each row of an array of points.
-template <class Of>
-py::array for_points(const py::handle& points, const char* subject, Of of) {
+std::vector<Vec3> vectors_of(const py::handle& points, const char* subject) {
   const PythonPoints p = points_of(points, [subject] { return std::string(subject) + ": points"; });
-  std::vector<double> values;
-  for (std::size_t i = 0; i < p.x.size(); ++i) values.push_back(of(Vec3(p.x[i], p.y[i], p.z[i]), i));
+  std::vector<Vec3> vectors;
+  for (std::size_t i = 0; i < p.x.size(); ++i) vectors.emplace_back(p.x[i], p.y[i], p.z[i]);
+  return vectors;
+}
+
+py::array as_array(std::vector<double> values) {
   const auto count = static_cast<py::ssize_t>(values.size());
   return owning_array(std::move(values), {count});
+}
+
+py::array surface_distances(const PythonCloud& cloud, const py::object& points, double radius_m) {
+  if (!(radius_m > 0 && std::isfinite(radius_m)))
+    throw InputError("surface_distances: radius_m", "expected a finite number above 0");
+  const std::vector<Vec3> places = vectors_of(points, "surface_distances");
+  std::vector<double> distances;
+  {
+    const py::gil_scoped_release without_lock;
+    for (const Vec3& p_W : places) distances.push_back(distance_to_measured(*cloud.shown, p_W, radius_m));
+  }
+  return as_array(std::move(distances));
 }
 
 py::array rule_weights(const PythonCloud& cloud, const py::dict& rule) {
@@ -136,8 +153,7 @@ py::array rule_weights(const PythonCloud& cloud, const py::dict& rule) {
   const auto factory = find_entry(fixtures(), name, "rule").make();
   read_parameters(part, factory->settings(), "rule", {"name"});
   if (const std::string problem = factory->validate(); !problem.empty()) throw InputError("rule." + problem);
-  return owning_array(factory->build()->weights(*cloud.shown),
-                      {static_cast<py::ssize_t>(cloud.shown->size())});
+  return as_array(factory->build()->weights(*cloud.shown));
 }
 
 py::array signed_distances(const PythonScene& scene, const py::handle& points, const Numbers2d& time_s) {
@@ -147,9 +163,10 @@ py::array signed_distances(const PythonScene& scene, const py::handle& points, c
   if (!fits ||
       !std::all_of(time_s.data(), time_s.data() + time_s.size(), [](double t) { return std::isfinite(t); }))
     throw InputError("signed_distances: time_s", "expected one finite time, or one for each point");
-  return for_points(points, "signed_distances", [&](const Vec3& p_W, std::size_t i) {
-    return (*scene).signed_distance(p_W, time_s.data()[is_one ? 0 : i]);
-  });
+  std::vector<double> distances;
+  for (const Vec3& p_W : vectors_of(points, "signed_distances"))
+    distances.push_back((*scene).signed_distance(p_W, time_s.data()[is_one ? 0 : distances.size()]));
+  return as_array(std::move(distances));
 }
 
 py::list true_objects(const PythonScene& scene, double time_s) {
@@ -208,17 +225,24 @@ struct PythonSensor {
 
   std::vector<py::array> measured(const Numbers2d& depth, const std::optional<Numbers2d>& cosine,
                                   const std::vector<int>& frames) const {
-    const AloneInThread alone;
     const CameraIntrinsics& camera = sensor.intrinsics();
     const auto is_image = [&](const Numbers2d& image) {
       return image.ndim() == 2 && image.shape(0) == camera.height && image.shape(1) == camera.width;
     };
     if (!is_image(depth) || (cosine && !is_image(*cosine)))
       throw InputError("measured", "expected images of " + size_text(camera) + ": rows x columns");
-    const auto view = sensor.view({camera.width, camera.height, pixels_of(depth)},
-                                  cosine ? pixels_of(*cosine) : std::vector<double>(), {});
+    std::vector<double> true_depth = pixels_of(depth);
+    std::vector<double> cosines = cosine ? pixels_of(*cosine) : std::vector<double>();
+    std::vector<std::vector<double>> depths;
+    {
+      const py::gil_scoped_release without_lock;
+      const AloneInThread alone;
+      const auto view =
+          sensor.view({camera.width, camera.height, std::move(true_depth)}, std::move(cosines), {});
+      for (const int frame : frames) depths.push_back(sensor.measured_depth(view, frame).z_m);
+    }
     std::vector<py::array> images;
-    for (const int frame : frames) images.push_back(as_image(sensor.measured_depth(view, frame).z_m, camera));
+    for (std::vector<double>& image : depths) images.push_back(as_image(std::move(image), camera));
     return images;
   }
   py::dict triangulated() const {
@@ -230,6 +254,26 @@ struct PythonSensor {
                     "step_px"_a = t.step_px, "window_px"_a = t.window_px);
   }
 };
+
+// An array of three numbers in each row.
+template <class Number, class Row>
+py::array as_rows(const std::vector<Row>& rows) {
+  std::vector<Number> numbers;
+  for (const Row& row : rows) numbers.insert(numbers.end(), row.data(), row.data() + 3);
+  return owning_array(std::move(numbers), {static_cast<py::ssize_t>(rows.size()), 3});
+}
+
+// Returns the vertices and the triangles of the mesh of a tool, which is made unless it is in the cache.
+py::tuple tool_mesh(const py::kwargs& given) {
+  const auto settings = settings_of<ToolSettings>(given, "tool");
+  std::shared_ptr<const VoxelTool> tool;
+  {
+    const py::gil_scoped_release without_lock;
+    const AloneInThread alone;
+    tool = load_tool(settings);
+  }
+  return py::make_tuple(as_rows<double>(tool->mesh.vertices), as_rows<int>(tool->mesh.triangles));
+}
 
 }  // namespace
 
@@ -251,18 +295,9 @@ void bind_images(py::module_& module, CloudClass& cloud, SceneClass& scene) {
           "filtered", &filtered, left, top, width, height,
           "A rectangle of pixels behind the depth pipeline, with settings of depth_pipeline: filtered points "
           "with normals.")
-      .def(
-          "surface_distances",
-          [](const PythonCloud& c, const py::object& points, double radius_m) {
-            if (!(radius_m > 0 && std::isfinite(radius_m)))
-              throw InputError("surface_distances: radius_m", "expected a finite number above 0");
-            return for_points(points, "surface_distances", [&](const Vec3& p_W, std::size_t) {
-              return distance_to_measured(*c.shown, p_W, radius_m);
-            });
-          },
-          py::arg("points"), py::arg("radius_m"),
-          "Distances of points from the surface that the image shows: from planes through the pixels within "
-          "radius_m.")
+      .def("surface_distances", &surface_distances, py::arg("points"), py::arg("radius_m"),
+           "Distances of points from the surface that the image shows: from planes through the pixels within "
+           "radius_m.")
       .def("rule_weights", &rule_weights, py::arg("rule"),
            "0 to 1 for each point: how a fixture rule, a dict of the section fixtures, selects it.");
   scene
@@ -287,6 +322,10 @@ void bind_images(py::module_& module, CloudClass& cloud, SceneClass& scene) {
           py::arg("frames") = std::vector<int>{0},
           "The images of these frames, of a scene at rest: an image of true depths (m), and one of the cosines "
           "between ray and normal (None: 1).");
+  module.def(
+      "tool_mesh", &tool_mesh,
+      "The mesh of a tool, with the settings tool_... of a renderer: vertices, in m from the centre of "
+      "mass, and triangles, the numbers of their vertices.");
 }
 
 namespace {

@@ -47,7 +47,7 @@ def bound_parameters(function):
     line = function.__doc__.splitlines()[0]
     inner = line[line.index("(") + 1:line.rindex(") ->")]
     names = [part.split(":")[0].strip() for part in re.split(r", (?=\w+: |\*, |\*$)", inner)]
-    return [re.sub(r"^self$|^arg0$", "self", name) for name in names if name and name != "*"]
+    return [re.sub(r"^self$|^arg0$", "self", name) for name in names if name and not name.startswith("*")]
 
 
 @pytest.mark.parametrize("module", [calls, classes])

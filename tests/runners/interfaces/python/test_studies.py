@@ -164,6 +164,16 @@ def refusal_with(folder, monkeypatch, **options):
     return refusal(folder, lambda s: None, **options)
 
 
+def test_a_tool_is_a_mesh_about_its_centre_of_mass():
+    vertices, triangles = rt.tool_mesh(tool_mesh="slab-10", tool_voxel_m=0.002)
+    assert np.abs(vertices).max(axis=0) == pytest.approx([0.02, 0.005, 0.02]) and {*triangles.ravel()} == {*range(len(vertices))}
+    a, b, c = np.moveaxis(vertices[triangles], 1, 0)
+    assert np.sum(a * np.cross(b, c)) / 6 == pytest.approx(0.04 * 0.01 * 0.04)  # the volume: triangles face outwards
+    for settings in ({"tool_mesh": "no-such-tool"}, {"tool_voxel_m": -1}, {"mesh": "key"}):
+        with pytest.raises(InputError, match="expected|unknown"):
+            rt.tool_mesh(**settings)
+
+
 def test_files_of_others_are_not_replaced(tmp_path, monkeypatch):
     for name, text_ in (("figtest-refused.h5", "hello"), ("claims.json", '{"mine": 1}')):
         (tmp_path / name).write_text(text_)
