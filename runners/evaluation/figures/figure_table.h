@@ -2,7 +2,7 @@
 // is included several times, each time with another FIGURE, so it has no include guard. An entry is
 //   FIGURE(name, summary, function that makes it, other members of FigureEntry)
 // Seconds are those on one core of an AMD EPYC with AVX-512, with the tools already in the cache. Those
-// of 4.12, 4.16 and tool-forces are scaled from a core that takes five times as long for 4.13.
+// of 4.12 and 4.16 are scaled from a core that takes five times as long for 4.13.
 FIGURE("4.10", "the proxy on a flat grid, in 3-D", figure_4_10, 0.05)
 FIGURE("4.11", "a flat grid touched from above: proxy height, and the ripple of the contact point",
        figure_4_11, 0.03)
@@ -10,8 +10,6 @@ FIGURE("4.12", "a noisy cloud lifted with acceleration: proxy height at each upd
 FIGURE("4.13", "pop-through in 5396 lifts, over noise and acceleration", figure_4_13, 32, true)
 FIGURE("4.13-replicated", "a coarser map with 20 lifts a cell: probability of pop-through",
        figure_4_13_replicated, 108, true, 3)
-FIGURE("4.13-tracked", "the pop-through map of the renderer tracked-sheet, next to that of the proxy",
-       figure_4_13_tracked, 150, true, 4)
 FIGURE("bounds", "the bounds (4.14) to (4.25), their parts measured, and how far they hold", figure_bounds,
        38)
 FIGURE("4.14", "the contact point over a triangle wave of growing amplitude", figure_4_14, 0.15)
@@ -26,8 +24,6 @@ FIGURE("5.5", "the region around a single point, entered and left", figure_5_5, 
 FIGURE("5.6", "the step between two fixture radii, and a stiffness that varies across a plane", figure_5_6,
        0.2)
 FIGURE("5.8", "a fixture that grows on a beating organ, seen by a simulated depth camera", figure_5_8, 10)
-FIGURE("5.8-recorded", "the fixture of 5.8 on recorded depth images, camera at rest and moving",
-       figure_5_8_recorded, 15)
 FIGURE("5.9", "the proxy at the distance of a forbidden region from a beating organ, in 3-D", figure_5_9, 4)
 FIGURE("6.2", "a recorded hand as points with normals, and what the filter does to a step", figure_6_2, 0.2)
 FIGURE(
@@ -45,5 +41,3 @@ FIGURE("7.5", "guidance leads the hand from one valve to the other, with five an
        figure_7_5, 12)
 FIGURE("7.5-guidance", "where guidance leads the hand, over its stiffness, with six and with five motors",
        figure_7_5_guidance, 18)
-FIGURE("7.5-recorded", "the task of 7.5 on a recorded desk: from an organ model to a dragon",
-       figure_7_5_recorded, 7)

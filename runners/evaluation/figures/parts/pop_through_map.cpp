@@ -14,10 +14,6 @@ std::string seed_setting(int seed) {
   return "seed=" + std::to_string(seed);
 }
 
-std::string noise_setting(double noise) {
-  return "scenario.noise_sigma_m=" + std::to_string(noise * kContactRadius_m);
-}
-
 std::vector<double> known_pop_throughs(FigureContext& context, const std::vector<Experiment>& lifts) {
   std::vector<double> popped = context.measure(lifts, popped_through);
   if (std::ranges::any_of(popped, [](double lift) { return std::isnan(lift); }))

@@ -19,9 +19,8 @@ namespace remote_touch {
 inline constexpr Lift kLift{0.00499, 30, 0.1, 10};
 inline constexpr int kRiseFrames = 15;
 
-// Settings of an experiment. noise: its standard deviation in r_c.
+// A setting of an experiment.
 std::string seed_setting(int seed);
-std::string noise_setting(double noise);
 // Returns 1 for each lift that popped through, and 0 for the others. Throws InputError if one is unknown.
 std::vector<double> known_pop_throughs(FigureContext& context, const std::vector<Experiment>& lifts);
 // Returns the share of the lifts that did not pop through.

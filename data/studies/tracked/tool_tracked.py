@@ -3,11 +3,11 @@ rules of the tool."""
 import sys
 
 import numpy as np
+from lift_maps import CONTACT_RADIUS_M, NOISE, LiftMap
 
 from remote_touch import theory
 from remote_touch.studies import dashed, line, main, study
 
-CONTACT_RADIUS_M = 0.005  # r_c
 PLATE = "slab-10"
 TRACKED = {"tracked": ("tracked sheets", {"name": "tracked-tool", "tool_mesh": PLATE})}
 # The rival rules with their default parameters, and with the velocity estimate that they have in sweep tool-noise.
@@ -32,7 +32,6 @@ WITH_HAND = {**RISES, "trajectory.poses": [[0, 0.03, 0, 0, 0, 0, 0], [0, -0.002,
 MOTIONS = {"at_rest": ("Surface at rest", {"scenario.wait_s": 2, "scenario.rise_s": 0, "scenario.acceleration_s": 0}),
            "carried": ("Rises with the hand", WITH_HAND), "left": ("Rises, the hand stays", RISES)}
 SHAPES = ("flat", "ridge", "corner", "sphere", "valley")
-NOISE = ("r_c", "standard deviation of the noise")
 
 
 def task(method, noise, seed, settings):
@@ -45,25 +44,10 @@ def task(method, noise, seed, settings):
 def lift_map(s, method, seed, stored):
     """The lifts of the whole map by a method: the number of those that did not pop through, and of all. stored: adds the map, and
     the cells in which more than half of the lifts survived."""
-    made = s.map("tool-tracked", {"renderer": METHODS[method][1], "seed": seed})
-    popped = made.tool_popped_through
-    outcomes = popped <= 0.5, popped > 0.5, np.isnan(popped)  # held, lost, unknown
-    counts = np.transpose([outcome.sum("replicate").values.ravel() for outcome in outcomes])
-    survived, low, high = np.transpose([theory.estimated_fraction(*of_cell) for of_cell in counts.tolist()])
-    runs = counts.sum(axis=1)
+    made = LiftMap(s.map("tool-tracked", {"renderer": METHODS[method][1], "seed": seed}), "tool_popped_through")
     if stored:
-        noise, acceleration = (axis.ravel() / CONTACT_RADIUS_M
-                               for axis in np.meshgrid(*(made[name] for name in popped.dims[:2]), indexing="ij"))
-        table = s.table(f"map_{method}", "lifts that did not pop through",
-                        noise=(noise, *NOISE), acceleration=(acceleration, "r_c/s^2", "acceleration of the lift"),
-                        survived=(survived, "1", "share of lifts that did not pop through"),
-                        survived_low=(low, "1", "lower end of its 95 % interval"),
-                        survived_high=(high, "1", "upper end of its 95 % interval"),
-                        runs=(runs.astype(float), "1", "number of lifts"))
-        more = survived > 0.5
-        s.table(f"survived_{method}", "cells whose lift did not pop through",
-                noise=(table.noise[more], *NOISE), acceleration=(table.acceleration[more], "r_c/s^2", "acceleration of the lift"))
-    return np.array([counts[:, 0].sum(), runs.sum()])
+        made.add_to(s, f"_{method}")
+    return np.array([made.counts[:, 0].sum(), made.runs.sum()])
 
 
 def add_lifts(s):
