@@ -2,9 +2,8 @@
 #include <algorithm>
 
 #include "analysis/trace/interval_estimates.h"
-#include "runners/evaluation/figures/parts/figure_context.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/figure_pictures.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 
 namespace remote_touch {
 

@@ -5,9 +5,8 @@
 
 #include "analysis/trace/interval_estimates.h"
 #include "core/points/vector.h"
-#include "runners/evaluation/figures/parts/figure_context.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/figure_pictures.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/evaluation/figures/valve_task.h"
 
 namespace remote_touch {
@@ -80,29 +79,19 @@ void add_slip(Figure& figure, const ValveTask& slip) {
   add_task_claims(figure, slip);
 }
 
-// Returns the ticks of the four moments A to D of the caption.
-std::vector<std::size_t> moments_7_4(const Trace& t) {
-  return {tick_of(t, kStart_s), tick_of(t, kHeldLeft_s), tick_of(t, kHeldRight_s), t.length() - 1};
-}
-
-Panel time_panel(const ValveTask& task, const char* title, const char* column, const char* label, int row) {
-  return plot(title, "time (s)", label, {{task.name, "time", column, CurveStyle::line, ""}}, {{{row, 0}}});
-}
-
 Table summary_table(const std::vector<ValveTask>& tasks) {
   using Task = const ValveTask&;
-  return quantity_table<ValveTask>("runs", "both runs", {tasks[0].name, tasks[1].name}, tasks,
-                                   {{"least distance of the mesh to the left valve", "m",
-                                     [](Task task) { return min_clearance_m(task, Valve::left); }},
-                                    {"least distance of the mesh to the right valve", "m",
-                                     [](Task task) { return min_clearance_m(task, Valve::right); }},
-                                    {"most pairs of leaves that touch", "1",
-                                     [](Task task) { return max_of(doubles(task.trace.contact_count)); }},
-                                    {"collision detections in a tick, mean", "1",
-                                     [](Task task) { return mean(doubles(task.trace.detections)); }},
-                                    {"ticks that used up their detections", "1", [](Task task) {
-                                       return std::ranges::count(task.trace.budget_exhausted, 1);
-                                     }}});
+  return quantity_table<ValveTask>(
+      "runs", "both runs", {tasks[0].name, tasks[1].name}, tasks,
+      {{"least distance of the mesh to the left valve", "m",
+        [](Task task) { return min_clearance_m(task, Valve::left); }},
+       {"least distance of the mesh to the right valve", "m",
+        [](Task task) { return min_clearance_m(task, Valve::right); }},
+       {"most pairs of leaves that touch", "1", [](Task task) { return most(task.trace.contact_count); }},
+       {"collision detections in a tick, mean", "1",
+        [](Task task) { return mean(doubles(task.trace.detections)); }},
+       {"ticks that used up their detections", "1",
+        [](Task task) { return std::ranges::count(task.trace.budget_exhausted, 1); }}});
 }
 
 }  // namespace
@@ -119,14 +108,19 @@ Figure figure_7_4(FigureContext& context) {
       "leaves. The letters in the traces and the pictures are the same four moments. The pictures show tool "
       "(filled) and device (transparent); the last one is a push deep beside the left valve's middle, where "
       "the tool slips round. Everything is simulated."};
+  const Trace& t = tasks[0].trace;
+  const std::vector<std::size_t> moments = {tick_of(t, kStart_s), tick_of(t, kHeldLeft_s),
+                                            tick_of(t, kHeldRight_s), t.length() - 1};
   for (const ValveTask& task : tasks) figure.tables.push_back(task_table(task));
   figure.tables.push_back(summary_table(tasks));
-  figure.tables.push_back(moment_table("A: start, B: pushed to the left, C: pushed to the right, D: end",
-                                       tasks[0].trace, moments_7_4(tasks[0].trace)));
-  figure.panels = {lettered(time_panel(tasks[0], "First task", "force", "force (N)", 0)),
-                   lettered(time_panel(tasks[0], "", "torque", "torque (N m)", 1)),
-                   time_panel(tasks[1], "Pushed deep beside the middle", "force", "force (N)", 2)};
-  add_task_picture_tables(figure, context, tasks[0], moments_7_4(tasks[0].trace));
+  figure.tables.push_back(
+      moment_table("A: start, B: pushed to the left, C: pushed to the right, D: end", t, moments));
+  PanelColumn panels{figure, tasks[0].name, "time", "time (s)"};
+  add_letters(panels.add("First task", "force (N)", {{"force"}}));
+  add_letters(panels.add("", "torque (N m)", {{"torque"}}));
+  panels.table = tasks[1].name;
+  panels.add("Pushed deep beside the middle", "force (N)", {{"force"}});
+  add_task_picture_tables(figure, context, tasks[0], moments);
   add_task_picture_tables(figure, context, tasks[1], {tasks[1].trace.length() - 1});
   figure.panels.push_back(task_picture(tasks[0], "A) at the start", 0, 0, 1));
   figure.panels.push_back(task_picture(tasks[0], "B) pushed to the left", 1, 0, 2));
@@ -142,7 +136,6 @@ Figure figure_7_4(FigureContext& context) {
 
 namespace {
 
-constexpr double kRegion_m = 0.04;
 constexpr double kPressed_s = 3;
 constexpr double kClamp_N = 4;       // guidance.max_force_N of the experiment
 constexpr double kLittle_Nm = 2e-3;  // torque caused by the noise of the target
@@ -185,7 +178,7 @@ void add_common_claims(Figure& figure, const ValveTask& task) {
   claims.at_least(
       "the tool stays out of the region round the true left valve: smallest distance of its mesh to the "
       "valve",
-      min_clearance_m(task, Valve::left), kRegion_m - 1e-3, "m");
+      min_clearance_m(task, Valve::left), kValveRegion_m - 1e-3, "m");
   add_task_claims(figure, task);
   checks.between("guidance begins to pull when the button is pressed: time", t.time_s[first], kPressed_s,
                  kPressed_s + 1e-9, "s", "about 3");
@@ -211,7 +204,7 @@ void add_panels(Figure& figure, const ValveTask& task, int column) {
   panels.add(task.label, "force (N)", {{"force"}}, {{0, 8}});
   panels.add("", "torque (N m)", {{"torque"}}, {{0, 0.2}});
   if (column == 0)
-    for (Panel& panel : figure.panels) panel = lettered(panel);
+    for (Panel& panel : figure.panels) add_letters(panel);
   panels.add("", "torque about the handle's axes (N m)",
              {{"torque_x", CurveStyle::line, "roll (x)"},
               {"torque_y", CurveStyle::line, "y"},
@@ -228,6 +221,28 @@ Table target_table(const ValveTask& task) {
   Table table = position_table("goals", "where guidance leads to, by each frame", t.guidance_goal_m);
   table.columns.insert(table.columns.begin(), {"time", "s", "simulated time", t.time_s});
   return rows_of(std::move(table), ticks);
+}
+
+// Fig 7.5 for other stiffnesses of guidance, with six motors and with five: where the hand is led.
+
+// Returns the results at the end of the task for one device, a row for each stiffness of guidance.
+Table guided_table(const SweepResult& sweep, std::size_t motors, const char* name, const std::string& label) {
+  const auto of = [&](const char* measure) { return measured(sweep, measure, {{}, motors}); };
+  const auto degrees = [](double rad) { return rad / kRadiansPerDegree; };
+  const auto mm = [](double m) { return 1e3 * m; };
+  return {
+      name,
+      "end of the task, " + label,
+      {{"stiffness", "N/m", "stiffness of guidance", axis_values(sweep, 0)},
+       {"error", "mm", "distance of the tool from the goal at the end", each(of("guidance_error"), mm)},
+       {"angle", "deg", "angle between tool and goal at the end", each(of("guidance_error_angle"), degrees)},
+       {"clearance", "mm", "minimum gap between the tool and a region", each(of("min_clearance"), mm)}}};
+}
+
+Panel guided_panel(const std::string& title, const std::string& column, const std::string& y_label) {
+  return plot(title, "stiffness of guidance (N/m)", y_label,
+              {{"six_motors", "stiffness", column, CurveStyle::line, "six motors"},
+               {"five_motors", "stiffness", column, CurveStyle::dashed, "no motor about x"}});
 }
 
 }  // namespace
@@ -262,33 +277,6 @@ Figure figure_7_5(FigureContext& context) {
   figure.panels.push_back(task_picture(tasks[0], "B) five motors, at the goal except for the roll", 1, 3, 1));
   return figure;
 }
-
-// Fig 7.5 for other stiffnesses of guidance, with six motors and with five: where the hand is led.
-
-namespace {
-
-// Returns the results at the end of the task for one device, a row for each stiffness of guidance.
-Table guided_table(const SweepResult& sweep, std::size_t motors, const char* name, const std::string& label) {
-  const std::vector<std::size_t> runs = runs_at(sweep, {{}, motors});
-  const auto of = [&](const char* measure) { return measured(sweep, measure, runs); };
-  const auto degrees = [](double rad) { return rad / kRadiansPerDegree; };
-  Table table{name, "end of the task, " + label};
-  table.add("stiffness", "N/m", "stiffness of guidance", axis_values(sweep, 0));
-  table.add("error", "mm", "distance of the tool from the goal at the end",
-            scaled(1e3, of("guidance_error")));
-  table.add("angle", "deg", "angle between tool and goal at the end",
-            each(of("guidance_error_angle"), degrees));
-  table.add("clearance", "mm", "minimum gap between the tool and a region", scaled(1e3, of("min_clearance")));
-  return table;
-}
-
-Panel guided_panel(const std::string& title, const std::string& column, const std::string& y_label) {
-  return plot(title, "stiffness of guidance (N/m)", y_label,
-              {{"six_motors", "stiffness", column, CurveStyle::line, "six motors"},
-               {"five_motors", "stiffness", column, CurveStyle::dashed, "no motor about x"}});
-}
-
-}  // namespace
 
 Figure figure_7_5_guidance(FigureContext& context) {
   const SweepResult sweep = context.sweep(Sweep::load("fig7.5-guidance"));  // torque_x: true, false

@@ -1,9 +1,10 @@
 #include "runners/evaluation/figures/valve_task.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "analysis/trace/interval_estimates.h"
@@ -11,22 +12,17 @@
 #include "analysis/trace/trace.h"
 #include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/points/vector.h"
-#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/figure_pictures.h"
 
 namespace remote_touch {
 
 namespace {
 
-constexpr std::size_t kEvery = 5;            // ticks, in tables
 constexpr std::size_t kClearanceEvery = 10;  // ticks, in the search for the least clearance
 constexpr double kSettled_m = 1e-4;
 constexpr std::size_t kRegionsEvery = 25;  // stride of the regions in pictures
 constexpr int kRaysOfRegion = 60;
 constexpr std::uint32_t kRegionColour = 0xC0392B;
-
-Vec3 place_of(const Trace& t, std::size_t tick, const Vec3& p_T) {
-  return t.proxy_position_m[tick] + t.tool_orientation[tick] * p_T;
-}
 
 // Returns the distance along a ray to where it leaves the union of the regions. from: a position inside them.
 double exit_distance_m(const SphereTree& regions, const Vec3& from, const Vec3& along) {
@@ -88,27 +84,22 @@ std::vector<ValveTask> run_tasks(FigureContext& context, const std::vector<Named
   return runs;
 }
 
-double clearance_m(const ValveTask& task, Valve valve, std::size_t tick) {
-  double min = std::numeric_limits<double>::infinity();
-  const auto measure = [&](const Vec3& p_T) {
-    min = min_or_nan(min, task.tank->distance_to_valve(valve, place_of(task.trace, tick, p_T)));
-  };
-  const TriangleMesh& mesh = task.tool->mesh;
-  for (const Vec3& vertex : mesh.vertices) measure(vertex);
-  for (const auto& [a, b, c] : mesh.triangles)
-    measure((mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)] +
-             mesh.vertices[static_cast<std::size_t>(c)]) /
-            3);
-  return min;
-}
-
 double min_clearance_m(const ValveTask& task, Valve valve) {
+  const Trace& t = task.trace;
+  const TriangleMesh& mesh = task.tool->mesh;
+  std::vector<Vec3> places_T = mesh.vertices;
+  for (const auto& [a, b, c] : mesh.triangles)
+    places_T.push_back((mesh.vertices[static_cast<std::size_t>(a)] +
+                        mesh.vertices[static_cast<std::size_t>(b)] +
+                        mesh.vertices[static_cast<std::size_t>(c)]) /
+                       3);
   double min = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < task.trace.length(); i += kClearanceEvery) {
+  for (std::size_t i = 0; i < t.length(); i += kClearanceEvery) {
+    const auto to_valve_m = [&](const Vec3& p_W) { return task.tank->distance_to_valve(valve, p_W); };
     // No position on the tool can be nearer than this.
-    const double bound_m =
-        task.tank->distance_to_valve(valve, task.trace.proxy_position_m[i]) - task.tool->reach_m;
-    if (!(bound_m >= min)) min = min_or_nan(min, clearance_m(task, valve, i));
+    if (to_valve_m(t.proxy_position_m[i]) - task.tool->reach_m >= min) continue;
+    for (const Vec3& p_T : places_T)
+      min = min_or_nan(min, to_valve_m(t.proxy_position_m[i] + t.tool_orientation[i] * p_T));
   }
   return min;
 }
@@ -122,65 +113,61 @@ Table task_table(const ValveTask& task) {
   const auto about = [&](int axis, const std::vector<Vec3>& torque_W) {
     return each_of(t.length(), [&](std::size_t i) { return about_handle(t, i, torque_W[i])[axis]; });
   };
-  Table table{task.name, task.label};
-  table.add("time", "s", "simulated time", t.time_s);
-  table.add("force", "N", "norm of the force", norms(t.force_N));
-  table.add("torque", "N m", "norm of the torque", norms(t.torque_Nm));
-  table.add("torque_x", "N m", "torque about the handle's x, the roll axis", about(0, t.torque_Nm));
-  table.add("torque_y", "N m", "torque about the handle's y, which the device can exert",
-            about(1, t.torque_Nm));
-  table.add("torque_z", "N m", "torque about the handle's z, which the device can exert",
-            about(2, t.torque_Nm));
-  table.add("exerted_x", "N m", "torque that the device exerts about the roll axis",
-            about(0, t.device_torque_Nm));
-  table.add("exerted", "N", "norm of the force that the device exerts", norms(t.device_force_N));
-  table.add("lag", "m", "distance from the tool to the device",
-            norms_between(t.hip_position_m, t.proxy_position_m));
-  table.add("yielded", "m", "distance from where the operator wants the device to where it is",
-            norms_between(t.intended_position_m, t.hip_position_m));
-  table.add("pairs", "1", "pairs of leaves that touch", doubles(t.contact_count));
-  table.add("leaves", "1", "leaves of the tool that touch", doubles(t.contact_clusters));
-  table.add("active", "1", "constraints that hold the tool", doubles(t.active_constraints));
-  table.add("penetration", "m", "deepest leaf of the tool in a region at the end of the tick",
-            t.tool_penetration_m);
-  table.add("detections", "1", "collision detections in the tick", doubles(t.detections));
-  table.add("exhausted", "1", "the tick ended before the tool was at rest", doubles(t.budget_exhausted));
-  return every(kEvery, std::move(table));
+  return every(
+      5,
+      {task.name,
+       task.label,
+       {{"time", "s", "simulated time", t.time_s},
+        {"force", "N", "norm of the force", norms(t.force_N)},
+        {"torque", "N m", "norm of the torque", norms(t.torque_Nm)},
+        {"torque_x", "N m", "torque about the handle's x, the roll axis", about(0, t.torque_Nm)},
+        {"torque_y", "N m", "torque about the handle's y, which the device can exert", about(1, t.torque_Nm)},
+        {"torque_z", "N m", "torque about the handle's z, which the device can exert", about(2, t.torque_Nm)},
+        {"exerted_x", "N m", "torque that the device exerts about the roll axis",
+         about(0, t.device_torque_Nm)},
+        {"exerted", "N", "norm of the force that the device exerts", norms(t.device_force_N)},
+        {"lag", "m", "distance from the tool to the device",
+         norms_between(t.hip_position_m, t.proxy_position_m)},
+        {"yielded", "m", "distance from where the operator wants the device to where it is",
+         norms_between(t.intended_position_m, t.hip_position_m)},
+        {"pairs", "1", "pairs of leaves that touch", doubles(t.contact_count)},
+        {"leaves", "1", "leaves of the tool that touch", doubles(t.contact_clusters)},
+        {"active", "1", "constraints that hold the tool", doubles(t.active_constraints)},
+        {"penetration", "m", "deepest leaf of the tool in a region at the end of the tick",
+         t.tool_penetration_m},
+        {"detections", "1", "collision detections in the tick", doubles(t.detections)},
+        {"exhausted", "1", "the tick ended before the tool was at rest", doubles(t.budget_exhausted)}}});
 }
 
 Table moment_table(const std::string& title, const Trace& trace, const std::vector<std::size_t>& ticks) {
-  Column letters{"letter", "1", "moment of the task", {}};
-  std::vector<std::int32_t> letter;
-  for (std::size_t i = 0; i < ticks.size(); ++i) {
-    letters.value_names.emplace_back(1, static_cast<char>('A' + i));
-    letter.push_back(static_cast<std::int32_t>(i));
-  }
-  letters.values = letter;
+  std::vector<std::int32_t> moment(ticks.size());
+  std::iota(moment.begin(), moment.end(), 0);
+  const auto letters = list_of(moment, [](int i) { return std::string(1, static_cast<char>('A' + i)); });
   return {"moments",
           title,
-          {letters,
+          {{"letter", "1", "moment of the task", moment, 1, letters},
            {"time", "s", "simulated time", at(ticks, trace.time_s)},
            {"force", "N", "norm of the force", at(ticks, norms(trace.force_N))},
            {"torque", "N m", "norm of the torque", at(ticks, norms(trace.torque_Nm))}}};
 }
 
-Panel lettered(Panel panel) {
+void add_letters(Panel& panel) {
   const std::string column = panel.curves.front().y;
   panel.curves.push_back({"moments", "time", column, CurveStyle::letters, "", 0, "letter"});
-  return panel;
 }
 
 Table sequence_table(const ValveTask& task) {
-  using Entry = const SequenceEntry&;
-  return table_over<SequenceEntry>(
-      task.name + "_steps", "steps of the task: " + task.label, sequence_log(task.trace),
-      {{"step", "1", "number of the step", &SequenceEntry::step},
-       {"began", "s", "when it began", &SequenceEntry::began_s},
-       {"ended", "s", "when it ended", &SequenceEntry::ended_s},
-       {"missed", "1", "whether its deadline ended it", &SequenceEntry::missed},
-       {"distance", "m", "from the tool to the goal when it ended", &SequenceEntry::distance_m},
-       {"angle", "deg", "between tool and goal when it ended",
-        [](Entry entry) { return entry.angle_rad / kRadiansPerDegree; }}});
+  using Entry = SequenceEntry;
+  const std::vector<Entry> log = sequence_log(task.trace);
+  return {task.name + "_steps",
+          "steps of the task: " + task.label,
+          {{"step", "1", "number of the step", each(log, &Entry::step)},
+           {"began", "s", "when it began", each(log, &Entry::began_s)},
+           {"ended", "s", "when it ended", each(log, &Entry::ended_s)},
+           {"missed", "1", "whether its deadline ended it", each(log, &Entry::missed)},
+           {"distance", "m", "from the tool to the goal when it ended", each(log, &Entry::distance_m)},
+           {"angle", "deg", "between tool and goal when it ended",
+            each(log, [](const Entry& entry) { return entry.angle_rad / kRadiansPerDegree; })}}};
 }
 
 void add_task_picture_tables(Figure& figure, const FigureContext& context, const ValveTask& task,
@@ -214,8 +201,7 @@ Panel task_picture(const ValveTask& task, const std::string& title, std::size_t 
 void add_task_claims(Figure& figure, const ValveTask& task) {
   const Trace& t = task.trace;
   const Claims claims(figure, task.label + ": ");
-  claims.at_most("all numbers are finite: fraction of ticks with one that is not", non_finite_fraction(t), 0,
-                 "fraction");
+  claim_finite(claims, t);
   claims.at_most("the tool stays out of the regions: depth of its deepest sphere at the end of a tick",
                  max_of(t.tool_penetration_m), kSettled_m, "m", "very small");
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/dissertation/tool_shape/voxel_tool.h"
-#include "runners/evaluation/figures/parts/figure_context.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "scenarios/simulated/camera_scenes.h"
 
 namespace remote_touch {
@@ -20,11 +20,9 @@ std::vector<ValveTask> run_tasks(FigureContext& context, const std::vector<Named
 // Returns a table of places x, y, z.
 Table position_table(const std::string& name, const std::string& title, const std::vector<Vec3>& places);
 
-// Returns the distance from the tool's mesh to the true surface of a valve. It is measured at the vertices
-// and at the centres of the triangles, so it can be too large by a few hundredths of a millimetre. pre: there
-// is a tank; also for the functions below.
-double clearance_m(const ValveTask& task, Valve valve, std::size_t tick);
-// Returns the minimum over every tenth tick.
+// Returns the least distance from the tool's mesh to the true surface of a valve, over every tenth tick. It
+// is measured at the vertices and at the centres of the triangles, so it can be too large by a few hundredths
+// of a millimetre. pre: there is a tank; also for the functions below.
 double min_clearance_m(const ValveTask& task, Valve valve);
 
 // Returns a torque about the handle's own axes, which are those of the tool.
@@ -34,10 +32,10 @@ Vec3 about_handle(const Trace& trace, std::size_t tick, const Vec3& torque_W);
 // tick.
 Table task_table(const ValveTask& task);
 // Returns force and torque at the ticks, which are called A, B, ... The table is named "moments". For
-// lettered().
+// add_letters().
 Table moment_table(const std::string& title, const Trace& trace, const std::vector<std::size_t>& ticks);
 // Adds these letters to a panel over time. Its first curve must show the force or the torque.
-Panel lettered(Panel panel);
+void add_letters(Panel& panel);
 // The log of the task's steps; no rows without a task.
 Table sequence_table(const ValveTask& task);
 

@@ -6,7 +6,7 @@
 
 #include "analysis/storage/digest.h"
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"

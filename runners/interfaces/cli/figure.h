@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/sweep/work_pool.h"

@@ -8,7 +8,7 @@
 
 #include "core/dissertation/tool_shape/generated_tools.h"
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/evaluation/scorecard/benchmark.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/configuration.h"

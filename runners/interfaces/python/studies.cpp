@@ -8,7 +8,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "analysis/trace/measures.h"
-#include "runners/evaluation/figures/figures.h"
-#include "runners/evaluation/figures/parts/pop_through_map.h"
+#include "runners/evaluation/figures/figure_recipe.h"
+#include "runners/evaluation/figures/pop_through_map.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 

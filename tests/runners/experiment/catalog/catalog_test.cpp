@@ -11,7 +11,7 @@
 #include "analysis/trace/trace.h"
 #include "core/points/point_cloud.h"
 #include "core/rivals/implicit_surface_renderers.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/files/input_files.h"

@@ -9,7 +9,7 @@
 
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/figure_pictures.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/recordings/recording.h"
 #include "tests/runners/experiment/simulation/tool_audit.h"

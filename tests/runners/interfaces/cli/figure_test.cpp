@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/kernels/isa.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::figure_test {

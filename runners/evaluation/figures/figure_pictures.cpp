@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/figure_pictures.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 #include "runners/experiment/settings/json_parameters.h"
@@ -25,9 +25,7 @@ std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment)
 }
 
 std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud) {
-  std::vector<char> picked;
-  for (const double fraction : rule.weights(cloud)) picked.push_back(fraction > 0);
-  return picked;
+  return list_of(rule.weights(cloud), [](double fraction) -> char { return fraction > 0; });
 }
 
 Table picture_table(const std::string& name, const std::string& title, const PointCloud& cloud,
@@ -55,12 +53,7 @@ Panel picture_panel(const std::string& title, int row, int column, const std::st
 namespace {
 
 constexpr std::uint32_t kToolColour = 0x146BAB, kDeviceColour = 0xC08800;
-
-std::vector<double> chosen_of(const std::vector<double>& values, const std::vector<std::size_t>& chosen) {
-  std::vector<double> kept;
-  for (const std::size_t i : chosen) kept.push_back(values[i]);
-  return kept;
-}
+const char *const kAxes[] = {"x", "y", "z"}, *const kCorners[] = {"a", "b", "c"};
 
 }  // namespace
 
@@ -83,40 +76,40 @@ PointCloud processed_cloud(const Experiment& experiment, const Kernels& kernels,
 
 Table cloud_table(const std::string& name, const std::string& title, const PointCloud& cloud,
                   const std::vector<std::size_t>& chosen) {
-  Table table{name, title};
-  table.add("x", "m", "x of the point", chosen_of(cloud.x, chosen));
-  table.add("y", "m", "y of the point", chosen_of(cloud.y, chosen));
-  table.add("z", "m", "z of the point", chosen_of(cloud.z, chosen));
+  Table table{name,
+              title,
+              {{"x", "m", "x of the point", at(chosen, cloud.x)},
+               {"y", "m", "y of the point", at(chosen, cloud.y)},
+               {"z", "m", "z of the point", at(chosen, cloud.z)}}};
   if (cloud.has_normals()) {
-    table.add("nx", "1", "x of the normal", chosen_of(cloud.nx, chosen));
-    table.add("ny", "1", "y of the normal", chosen_of(cloud.ny, chosen));
-    table.add("nz", "1", "z of the normal", chosen_of(cloud.nz, chosen));
+    table.add("nx", "1", "x of the normal", at(chosen, cloud.nx));
+    table.add("ny", "1", "y of the normal", at(chosen, cloud.ny));
+    table.add("nz", "1", "z of the normal", at(chosen, cloud.nz));
   }
-  if (cloud.colour.empty()) return table;
-  std::vector<double> colour;
-  for (const std::size_t i : chosen) colour.push_back(cloud.colour[i]);
-  table.add("colour", "1", "colour as 0xRRGGBB", std::move(colour));
+  if (!cloud.colour.empty())
+    table.add("colour", "1", "colour as 0xRRGGBB", at(chosen, doubles(cloud.colour)));
   return table;
 }
 
 Table vertex_table(const std::string& name, const TriangleMesh& mesh) {
-  TableRows rows;
-  for (const Vec3& p : mesh.vertices) rows.push_back({p.x(), p.y(), p.z()});
-  const char* const meaning = "position in the tool's axes";
-  return table_of(name, "vertices of the tool, from its centre of mass",
-                  {{"x", "m", meaning}, {"y", "m", meaning}, {"z", "m", meaning}}, rows);
+  Table table{name, "vertices of the tool, from its centre of mass"};
+  for (const int axis : {0, 1, 2})
+    table.add(kAxes[axis], "m", "position in the tool's axes", along(axis, mesh.vertices));
+  return table;
 }
 
 Table triangle_table(const std::string& name, const TriangleMesh& mesh) {
-  TableRows rows;
-  for (const auto& [a, b, c] : mesh.triangles)
-    rows.push_back({static_cast<double>(a), static_cast<double>(b), static_cast<double>(c)});
-  const char* const meaning = "row of a corner among the vertices";
-  return table_of(name, "triangles of the tool",
-                  {{"a", "1", meaning}, {"b", "1", meaning}, {"c", "1", meaning}}, rows);
+  Table table{name, "triangles of the tool"};
+  for (const std::size_t corner : {0, 1, 2})
+    table.add(kCorners[corner], "1", "row of a corner among the vertices",
+              each(mesh.triangles, [&](const auto& triangle) { return triangle[corner]; }));
+  return table;
 }
 
-Table pose_table(const std::string& name, const Trace& trace, const std::vector<std::size_t>& ticks) {
+void add_tool_tables(Figure& figure, const std::string& name, const TriangleMesh& mesh, const Trace& trace,
+                     const std::vector<std::size_t>& ticks) {
+  figure.tables.push_back(vertex_table(name + "_vertices", mesh));
+  figure.tables.push_back(triangle_table(name + "_triangles", mesh));
   TableRows rows;
   const auto add = [&](std::size_t tick, const Vec3& p, const Eigen::Quaterniond& q) {
     rows.push_back({trace.time_s[tick], p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()});
@@ -126,17 +119,10 @@ Table pose_table(const std::string& name, const Trace& trace, const std::vector<
     add(tick, trace.hip_position_m[tick], trace.hip_orientation[tick]);
   }
   std::vector<ColumnName> columns = {{"time", "s", "simulated time"}};
-  for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, "m", "centre of mass"});
+  for (const char* axis : kAxes) columns.push_back({axis, "m", "centre of mass"});
   for (const char* part : {"qw", "qx", "qy", "qz"})
     columns.push_back({part, "1", "orientation, tool axes to the world's"});
-  return table_of(name, "poses of tool and device, in turn", columns, rows);
-}
-
-void add_tool_tables(Figure& figure, const std::string& name, const TriangleMesh& mesh, const Trace& trace,
-                     const std::vector<std::size_t>& ticks) {
-  figure.tables.push_back(vertex_table(name + "_vertices", mesh));
-  figure.tables.push_back(triangle_table(name + "_triangles", mesh));
-  figure.tables.push_back(pose_table(name + "_poses", trace, ticks));
+  figure.tables.push_back(table_of(name + "_poses", "poses of tool and device, in turn", columns, rows));
 }
 
 std::size_t tick_of(const Trace& trace, double time_s) {

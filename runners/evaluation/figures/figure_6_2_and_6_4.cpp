@@ -1,14 +1,17 @@
-// Fig 6.2: a recorded hand as a cloud with normals; and what the filter does to a depth edge.
+// Fig 6.2: a recorded hand as a cloud with normals; and what the filter does to a depth edge. Fig 6.4: tools
+// of meshes slide over recorded objects.
+
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "analysis/trace/interval_estimates.h"
+#include "analysis/trace/force_measures.h"
+#include "analysis/trace/measures.h"
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/points/noise.h"
-#include "runners/evaluation/figures/parts/figure_context.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/figure_pictures.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/experiment/settings/changed_settings.h"
 
 namespace remote_touch {
@@ -150,13 +153,13 @@ Table profile_table(const StepMeasurement& wide, const StepMeasurement& narrow) 
 }
 
 Table count_table(const NormalCount& counted) {
-  return table_over<NormalCount>(
-      "counts", "normals of the whole frame", {counted},
-      {{"points", "1", "measured points", &NormalCount::points},
-       {"with_neighbours", "1", "measured points with 10 others within the window and the radius",
-        &NormalCount::with_neighbours},
-       {"wrong", "1", "of these, points without a unit normal towards the sensor", &NormalCount::wrong},
-       {"without_normal", "1", "measured points without a normal", &NormalCount::without_normal}});
+  return table_of(
+      "counts", "normals of the whole frame",
+      {{"points", "1", "measured points"},
+       {"with_neighbours", "1", "measured points with 10 others within the window and the radius"},
+       {"wrong", "1", "of these, points without a unit normal towards the sensor"},
+       {"without_normal", "1", "measured points without a normal"}},
+      {{counted.points, counted.with_neighbours, counted.wrong, counted.without_normal}});
 }
 
 void add_panels(Figure& figure) {
@@ -232,6 +235,182 @@ Figure figure_6_2(FigureContext& context) {
                    count_table(counted)};
   add_panels(figure);
   add_claims(figure, counted, wide, narrow);
+  return figure;
+}
+
+// Fig 6.4: tools of meshes slide over recorded objects.
+
+namespace {
+
+constexpr double kSlides_s = 0.8, kLifts_s = 2.4;  // start of sliding and of lifting, in all three runs
+constexpr double kFirst_s = 1.0, kSecond_s = 2.3;  // moments of the pictures
+constexpr double kVoxel_m = 5e-4;
+// A point in the shell is within 1.5 sqrt(3) voxels of the centre of a free voxel, which is outside the tool.
+constexpr double kDeepestInShell_m = 2.5981 * kVoxel_m;
+
+// A recording and its pictures: the part around the object, and the viewpoint. There are two runs, with the
+// rule look-ahead, which is drawn, and with the rule as printed, whose name ends with _voxels.
+struct DrawnMoment {
+  const char *experiment, *table, *label;
+  double left_m, right_m, top_m, bottom_m, max_depth_m;
+  Vec3 eye, target;
+  double width_m;
+};
+
+const DrawnMoment kDrawnMoments[] = {{"fig6.4", "bunny", "Bunny, printed cube", -0.25, 0.10, -0.20, 0.16,
+                                      0.62, Vec3(0.36, -0.16, 0.22), Vec3(-0.03, 0.02, 0.42), 0.30},
+                                     {"fig6.4-organ", "hand", "Hand, organ model", -0.02, 0.32, -0.22, 0.14,
+                                      0.75, Vec3(-0.23, -0.17, 0.33), Vec3(0.12, -0.03, 0.58), 0.36},
+                                     {"fig6.4-box", "drill", "Power drill, cereal box", -0.32, 0.14, -0.05,
+                                      0.26, 0.80, Vec3(-0.36, -0.10, 0.24), Vec3(-0.01, 0.13, 0.52), 0.46}};
+
+// Distance from the tool to the device in each tick.
+Numbers lags_m(const Trace& t) {
+  return norms_between(t.hip_position_m, t.proxy_position_m);
+}
+
+Table touch_table(const NamedRun& run) {
+  const Trace& t = run.trace;
+  return every(
+      5, {run.name,
+          run.label,
+          {{"time", "s", "simulated time", t.time_s},
+           {"frame", "1", "frame in use", doubles(t.frame_index)},
+           {"lag", "m", "from the tool's centre of mass to the device", lags_m(t)},
+           {"lag_rotation", "deg", "between their orientations",
+            each_of(t.length(), [&](std::size_t i) { return lag_rad(t, i) / kRadiansPerDegree; })},
+           {"points", "1", "points that touch the tool", doubles(t.contact_count)},
+           {"active", "1", "constraints that hold it", doubles(t.active_constraints)},
+           {"clusters", "1", "10 mm cells of the tool with points that touch", doubles(t.contact_clusters)},
+           {"penetration", "m", "deepest point in the tool at the end of the tick", t.tool_penetration_m},
+           {"detections", "1", "collision detections in the tick", doubles(t.detections)},
+           {"exhausted", "1", "the tick ended before the tool was at rest", doubles(t.budget_exhausted)},
+           {"force", "N", "magnitude of the force", norms(t.force_N)},
+           {"torque", "N m", "magnitude of the torque", norms(t.torque_Nm)}}});
+}
+
+// Returns every second pixel, in a chequered pattern, of the part of the recording that is shown.
+std::vector<std::size_t> seen_points(const PointCloud& cloud, const DrawnMoment& shown) {
+  const auto width = static_cast<std::size_t>(cloud.image->camera.width);
+  return chosen_points(cloud, [&](std::size_t i) {
+    const Vec3 p = cloud.point(i);  // a point that is NaN fails the test below
+    return (i / width + i % width) % 2 == 0 && p.x() > shown.left_m && p.x() < shown.right_m &&
+           p.y() > shown.top_m && p.y() < shown.bottom_m && p.z() < shown.max_depth_m;
+  });
+}
+
+void add_pictures(Figure& figure, const FigureContext& context, const NamedRun& run, const DrawnMoment& shown,
+                  int row) {
+  const PointCloud cloud = processed_cloud(run.experiment, context.kernels(), 0);
+  const std::vector<std::size_t> ticks = {tick_of(run.trace, kFirst_s), tick_of(run.trace, kSecond_s)};
+  figure.tables.push_back(cloud_table(run.name + "_cloud", "points of the first frame, every second pixel",
+                                      cloud, seen_points(cloud, shown)));
+  add_tool_tables(figure, run.name, tool_of(run.experiment)->mesh, run.trace, ticks);
+  for (std::size_t instant = 0; instant < 2; ++instant)
+    figure.panels.push_back(scene_panel(std::string(shown.label) + ", " +
+                                            std::to_string(run.trace.time_s[ticks[instant]]).substr(0, 3) +
+                                            " s",
+                                        row, static_cast<int>(instant),
+                                        {shown.eye, shown.target, -Vec3::UnitY(), shown.width_m, 0.8,
+                                         tool_in_cloud(run.name, instant, 0.003)}));
+  figure.panels.push_back(
+      plot("", "time (s)", "force (N)",
+           {{run.name, "time", "force", CurveStyle::line, "look-ahead"},
+            {run.name + "_voxels", "time", "force", CurveStyle::dashed, "voxels, as printed"}},
+           {{{row, 2}}, {{0, 3.2}}, {{0, 9}}}));
+}
+
+// Returns the share of the ticks while the tool slides in which it touches.
+double touching_fraction(const Trace& t) {
+  const std::size_t from = tick_of(t, kSlides_s), until = tick_of(t, kLifts_s);
+  return mean_where(
+      until, [&](std::size_t i) { return i >= from; }, [&](std::size_t i) { return t.contact_count[i] > 0; });
+}
+
+// Returns the largest penetration of the tool over the ticks without a new frame; NaN if one of them has no
+// value or there are none.
+double deepest_m(const Trace& trace) {
+  return max_where(
+      trace.length(), [&](std::size_t i) { return !trace.frame_update(i); },
+      [&](std::size_t i) { return trace.tool_penetration_m[i]; });
+}
+
+// Counts the ticks whose log contradicts itself. No tick may make more detections than the budget, and a tick
+// must report a used-up budget exactly if it is not at rest. It must then have made all its detections.
+double inconsistent_ticks(const NamedRun& run) {
+  const int budget = run.experiment.value_at_start("renderer.detections_per_tick");
+  const Trace& t = run.trace;
+  return count_where(t.length(), [&](std::size_t i) {
+    const bool used_up = t.budget_exhausted[i] != 0;
+    return t.detections[i] > budget || (used_up && t.detections[i] < budget) || used_up != !t.converged[i];
+  });
+}
+
+void add_claims(Figure& figure, const NamedRun& run, const char* object, bool is_printed) {
+  const Trace& t = run.trace;
+  const Claims claims(figure, object + std::string(is_printed ? ", as printed: " : ": "));
+  claim_finite(claims, t);
+  claims.at_most(
+      "points stay out of the tool: depth of the deepest one at the end of a tick without a new frame",
+      deepest_m(t), is_printed ? kDeepestInShell_m : kVoxel_m, "m", "0");
+  claims.at_most("the log of used-up budgets fits the detections: ticks in which it does not",
+                 inconsistent_ticks(run), 0, "ticks");
+  claims.at_least("the tool touches while it slides: fraction of that time", touching_fraction(t), 0.9,
+                  "fraction");
+  claims.at_least("the object holds the tool back: largest distance from tool to device", max_of(lags_m(t)),
+                  0.005, "m");
+  claims.at_most("no force remains when the tool was lifted: force at the end",
+                 t.force_N[t.length() - 1].norm(), 0, "N", "0");
+}
+
+Table summary_table(const std::vector<NamedRun>& runs) {
+  using R = const NamedRun&;
+  return quantity_table<NamedRun>(
+      "runs", "what happened in each run", list_of(runs, [](R run) { return run.name; }), runs,
+      {{"ticks", "1", [](R r) { return r.trace.length(); }},
+       {"most points that touch at once", "1", [](R r) { return most(r.trace.contact_count); }},
+       {"most active constraints at once", "1", [](R r) { return most(r.trace.active_constraints); }},
+       {"deepest point at the end of any tick", "m", [](R r) { return max_of(r.trace.tool_penetration_m); }},
+       {"ticks that used up their detections", "1",
+        [](R r) { return std::ranges::count(r.trace.budget_exhausted, 1); }},
+       {"points of a frame without a normal, at most", "1",
+        [](R r) { return most(r.trace.disabled_points); }},
+       {"maximum force", "N", [](R r) { return max_force_N(r.trace); }},
+       {"largest force jump at a frame", "N", [](R r) { return max_force_jump_N(r.trace); }}});
+}
+
+// Returns both runs of each recording in turn.
+std::vector<NamedRun> touch_runs(FigureContext& context) {
+  std::vector<NamedExperiment> experiments;
+  for (const DrawnMoment& shown : kDrawnMoments)
+    for (const std::string rule : {"look-ahead", "voxels"})
+      experiments.push_back({std::string(shown.table) + (rule == "voxels" ? "_voxels" : ""),
+                             std::string(shown.label) + ", contact rule " + rule,
+                             shown.experiment,
+                             {"renderer.contact_rule=" + rule}});
+  return named_runs(context, experiments);
+}
+
+}  // namespace
+
+Figure figure_6_4(FigureContext& context) {
+  const std::vector<NamedRun> runs = touch_runs(context);
+  Figure figure{
+      "6.4", "Tools of meshes in recorded point clouds",
+      "The tool as a filled solid, the device's pose transparent. A bunny on a printed cube and a hand on an "
+      "organ model, five frames of a camera at rest played to and fro at 10 Hz; a power drill on a cereal "
+      "box, one frame. Every frame is filtered and gets normals. The device comes from the camera's side, "
+      "goes about 10 mm into the object, moves some tens of millimetres along it while it turns, and leaves. "
+      "The points are shown from beside the camera, so what it did not see is empty. The pictures are of the "
+      "rule look-ahead; the force of the printed rule is beside it."};
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const DrawnMoment& shown = kDrawnMoments[r / 2];
+    const bool is_printed = r % 2 == 1;
+    figure.tables.push_back(touch_table(runs[r]));
+    if (!is_printed) add_pictures(figure, context, runs[r], shown, static_cast<int>(r / 2));
+    add_claims(figure, runs[r], shown.label, is_printed);
+  }
+  figure.tables.push_back(summary_table(runs));
   return figure;
 }
 

@@ -1,14 +1,118 @@
-#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/trace/measures.h"
+#include "core/kernels/isa.h"
 #include "core/parameters/parameter.h"
+#include "runners/sweep/sweep_run.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {
+
+Trace FigureContext::run(const Experiment& experiment) {
+  uses(experiment);
+  return simulated(experiment);
+}
+
+std::vector<Trace> FigureContext::run(const std::vector<Experiment>& experiments) {
+  for (const Experiment& experiment : experiments) uses(experiment);
+  return collect(experiments.size(), [&](std::size_t i) { return simulated(experiments[i]); });
+}
+
+std::string FigureContext::configurations() const {
+  return "[" + joined(configurations_, ", ") + "]";
+}
+
+Trace FigureContext::simulated(const Experiment& experiment) {
+  SimulationOptions options;
+  options.kernels = &kernels_;
+  options.stop = stop_;
+  RunReport report;
+  options.report = &report;
+  Trace trace = simulate(experiment, options);
+  notes_.add(report.notes);
+  return trace;
+}
+
+Sweep FigureContext::map(const std::string& name, const std::vector<std::string>& overrides) {
+  const Sweep whole = Sweep::load(name, overrides);
+  Sweep made = coarse_ > 1 ? whole.thinned(coarse_) : whole;
+  runs_of_maps_ += whole.plan().run_count(), made_runs_of_maps_ += made.plan().run_count();
+  return made;
+}
+
+SweepResult FigureContext::sweep(const Sweep& sweep) {
+  SweepResult result = run_sweep(sweep, {&kernels_, stop_, {}, runs_});
+  note(sweep.to_json());
+  inputs_.add(sweep.inputs());
+  const auto failed = result.runs_in(RunState::failed);
+  if (!failed.empty()) throw InputError(sweep.title(), "a run failed: " + result.error[failed.front()]);
+  notes_.add(result);
+  return result;
+}
+
+std::vector<NamedRun> named_runs(FigureContext& context, const std::vector<NamedExperiment>& experiments) {
+  std::vector<Experiment> loaded = list_of(experiments, [](const NamedExperiment& one) {
+    return Experiment::load(one.experiment, one.overrides);
+  });
+  std::vector<Trace> traces = context.run(loaded);
+  std::vector<NamedRun> runs;
+  for (std::size_t i = 0; i < loaded.size(); ++i)
+    runs.push_back({experiments[i].name, experiments[i].label, std::move(loaded[i]), std::move(traces[i])});
+  return runs;
+}
+
+std::vector<double> measured(const SweepResult& sweep, const std::string& measure,
+                             const std::vector<std::optional<std::size_t>>& places) {
+  return where(sweep.measure(measure), [&](std::size_t run) {
+    const std::vector<std::size_t> at = sweep.axis_indices(sweep.cell_of(run));
+    bool has_places = true;
+    for (std::size_t axis = 0; axis < places.size(); ++axis)
+      has_places = has_places && (!places[axis] || *places[axis] == at[axis]);
+    return has_places;
+  });
+}
+
+namespace {
+
+// Returns the radius at each frame's time of capture, one value for each tick, as the rules compute it.
+std::vector<double> radii(const Experiment& experiment, const Trace& trace, const Scenario& scenario) {
+  const FixtureAssignment fixtures = experiment.build_fixtures();
+  std::vector<double> radius_m;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    if (i > 0 && !trace.frame_update(i)) {
+      radius_m.push_back(radius_m.back());
+      continue;
+    }
+    PointCloud point;
+    point.append(Vec3::Zero());
+    fixtures.assign(point, scenario.captured_s(trace.frame_index[i]));
+    radius_m.push_back(point.fixture_radius_m.front());
+  }
+  return radius_m;
+}
+
+}  // namespace
+
+std::vector<FixtureRun> run_fixtures(FigureContext& context, const std::vector<Experiment>& experiments) {
+  std::vector<Trace> traces = context.run(experiments);
+  std::vector<FixtureRun> runs;
+  for (std::size_t r = 0; r < experiments.size(); ++r) {
+    auto scenario = experiments[r].build_scenario(kernels_for(Isa::x86_64));
+    std::vector<double> radius_m = radii(experiments[r], traces[r], *scenario);
+    runs.push_back({std::move(traces[r]), std::move(scenario), std::move(radius_m)});
+  }
+  return runs;
+}
+
+double most(const std::vector<std::int32_t>& counts) {
+  return max_of(doubles(counts));
+}
 
 Numbers norms(const std::vector<Vec3>& vectors) {
   return each(vectors, [](const Vec3& v) { return v.norm(); });
@@ -24,11 +128,6 @@ Numbers along(int axis, const std::vector<Vec3>& vectors) {
 
 Numbers minus(Numbers values, const Numbers& others) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] -= others.at(i);
-  return values;
-}
-
-Numbers scaled(double factor, Numbers values) {
-  for (double& value : values) value *= factor;
   return values;
 }
 
@@ -63,18 +162,12 @@ Table every(std::size_t step, Table table) {
   return rows_of(std::move(table), rows);
 }
 
-void add_rows(Table& table, const std::vector<ColumnName>& columns, const TableRows& rows) {
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    std::vector<double> values;
-    for (const std::vector<double>& row : rows) values.push_back(row.at(c));
-    table.add(columns[c].name, columns[c].units, columns[c].long_name, std::move(values));
-  }
-}
-
 Table table_of(const std::string& name, const std::string& title, const std::vector<ColumnName>& columns,
                const TableRows& rows) {
   Table table{name, title};
-  add_rows(table, columns, rows);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    table.add(columns[c].name, columns[c].units, columns[c].long_name,
+              each(rows, [&](const std::vector<double>& row) { return row.at(c); }));
   return table;
 }
 
@@ -103,24 +196,22 @@ void Claims::add(Claim claim) const {
   figure_.claims.push_back(std::move(claim));
 }
 
-void Claims::at_most(const std::string& claim, double measured, double limit, const std::string& unit,
-                     const std::string& paper) const {
-  add(claim_at_most(figure_.name, opening_ + claim, paper, measured, limit, unit));
+void claim_finite(const Claims& claims, const Trace& trace, const std::string& paper) {
+  claims.at_most("all numbers are finite: fraction of ticks with one that is not", non_finite_fraction(trace),
+                 0, "fraction", paper);
 }
 
-void Claims::at_least(const std::string& claim, double measured, double limit, const std::string& unit,
-                      const std::string& paper) const {
-  add(claim_at_least(figure_.name, opening_ + claim, paper, measured, limit, unit));
+void add_side_claim(Figure& figure, const std::string& where, const Trace& trace) {
+  Claims(figure, where)
+      .at_most("the proxy is never on the wrong side of the surface: fraction of ticks in which it is",
+               wrong_side_fraction(trace), 0, "fraction", "none");
 }
 
-void Claims::between(const std::string& claim, double measured, double low, double high,
-                     const std::string& unit, const std::string& paper) const {
-  add(claim_between(figure_.name, opening_ + claim, paper, measured, low, high, unit));
-}
-
-void Claims::differs(const std::string& claim, double measured, double low, double high,
-                     const std::string& unit, const std::string& paper) const {
-  add(claim_differs(figure_.name, opening_ + claim, paper, measured, low, high, unit));
+void add_sound_claims(Figure& figure, const std::string& where, const Trace& trace) {
+  const Claims claims(figure, where);
+  claim_finite(claims, trace, "none");
+  claims.at_most("the HIP is never held back without force: fraction of ticks in which it is",
+                 no_force_fraction(trace, kContactRadius_m), 0, "fraction", "none");
 }
 
 std::string line_of(const Claim& claim) {

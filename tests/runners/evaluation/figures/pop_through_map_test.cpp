@@ -1,4 +1,4 @@
-#include "runners/evaluation/figures/parts/pop_through_map.h"
+#include "runners/evaluation/figures/pop_through_map.h"
 
 #include <gtest/gtest.h>
 

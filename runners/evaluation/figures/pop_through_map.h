@@ -10,8 +10,7 @@
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/theory/surface_contacts.h"
 #include "analysis/trace/curve_fits.h"
-#include "runners/evaluation/figures/parts/figure_context.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 
 namespace remote_touch {
 
@@ -21,8 +20,13 @@ inline constexpr int kRiseFrames = 15;
 
 // A setting of an experiment.
 std::string seed_setting(int seed);
-// Returns 1 for each lift that popped through, and 0 for the others. Throws InputError if one is unknown.
-std::vector<double> known_pop_throughs(FigureContext& context, const std::vector<Experiment>& lifts);
+// Returns the share of lifts without noise that did not pop through, over n x n positions of the grid under
+// the proxy. Throws InputError if one is unknown.
+double survived_over_phases(FigureContext& context, std::size_t n, double acceleration_m_per_s2,
+                            const std::vector<std::string>& overrides = {});
+// Returns the critical acceleration without noise, (4.14), at 8 x 8 positions, bisected between these two.
+inline constexpr double kSurvives = 4.3, kPops = 4.6;  // m/s^2
+Table critical_over_phases(FigureContext& context);
 // Returns the share of the lifts that did not pop through.
 double survived_share(FigureContext& context, const std::vector<Experiment>& lifts);
 
@@ -42,29 +46,9 @@ Table survivors(const std::string& name, const Table& map);
 // 1150 r_c/s^2, and for each of these noise from 0, 0.5, 1, 1.5, 2 r_c. NaN for a region without cells.
 Table region_table(const std::string& name, const Table& map);
 
-// A share of lifts that another implementation computed too, and how far two such shares may differ by
-// chance.
-struct SharedLifts {
-  double survived = 0;  // share in the other implementation
-  double variance = 0;  // variance of one lift about its node's probability
-  double nodes = 0, lifts_a_node = 0;
-  // Returns the standard error of the difference to a share over as many nodes, with our_lifts_a_node lifts
-  // at each. One lift with a variance of 1 is added, so that the error is not 0 if no lift differed from the
-  // other lifts of its node.
-  double standard_error(double our_lifts_a_node) const;
-};
-// Differences in standard errors that chance exceeds once in a thousand: for one comparison, and for the
-// largest of n. Normal distribution, two-sided.
-inline constexpr double kByChance = 3.3, kByChanceOf6 = 3.8, kByChanceOf25 = 4.1;
-// Claims that a share differs from the other implementation's by no more than chance allows.
-void claim_agrees(const Claims& claims, const std::string& claim, double measured, const SharedLifts& other,
-                  double our_lifts_a_node, const std::string& paper = "-");
 // Returns the largest magnitude in the column `difference_in_standard_errors`. NaN if a value is NaN, or if
 // there is none.
 double max_apart(const Table& table);
-// Returns a share of lifts in the second implementation, which made one lift at each node. place:
-// "/map/whole", or "/map/coarse" (every third noise and second acceleration).
-SharedLifts second_fraction(const std::string& place);
 
 // Returns a table with noise from 0 to 3 r_c, for curves over it.
 Table noise_table(const std::string& name, const std::string& title);

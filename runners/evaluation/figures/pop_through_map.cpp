@@ -1,12 +1,10 @@
-#include "runners/evaluation/figures/parts/pop_through_map.h"
+#include "runners/evaluation/figures/pop_through_map.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/measures.h"
 #include "core/parameters/parameter.h"
-#include "runners/experiment/settings/changed_settings.h"
 
 namespace remote_touch {
 
@@ -14,12 +12,57 @@ std::string seed_setting(int seed) {
   return "seed=" + std::to_string(seed);
 }
 
-std::vector<double> known_pop_throughs(FigureContext& context, const std::vector<Experiment>& lifts) {
-  std::vector<double> popped = context.measure(lifts, popped_through);
+namespace {
+
+// Returns the position of the grid under a lift along x and z, in units of the grid's spacing.
+std::pair<double, double> phase(std::size_t n, std::size_t lift) {
+  const auto part = [&](std::size_t place) { return static_cast<double>(place) / static_cast<double>(n); };
+  return {part(lift / n), part(lift % n)};
+}
+
+// Returns 1 for each position at which the lift pops through, and 0 for the others. acceleration: of each.
+Numbers popped_over_phases(FigureContext& context, std::size_t n, const Numbers& acceleration,
+                           const std::vector<std::string>& overrides) {
+  std::vector<Experiment> lifts;
+  for (std::size_t i = 0; i < n * n; ++i) {
+    const auto [x, z] = phase(n, i);
+    std::vector<std::string> settings = overrides;
+    settings.insert(
+        settings.end(),
+        {"scenario.noise_sigma_m=0", "scenario.acceleration_m_per_s2=" + std::to_string(acceleration.at(i)),
+         "scenario.phase_x=" + std::to_string(x), "scenario.phase_z=" + std::to_string(z)});
+    lifts.push_back(Experiment::load("fig4.12", settings));
+  }
+  Numbers popped = context.measure(lifts, popped_through);
   if (std::ranges::any_of(popped, [](double lift) { return std::isnan(lift); }))
     throw InputError("popped_through",
                      "is unknown for a lift of a figure: expected a known surface below it");
   return popped;
+}
+
+}  // namespace
+
+double survived_over_phases(FigureContext& context, std::size_t n, double acceleration_m_per_s2,
+                            const std::vector<std::string>& overrides) {
+  return 1 - mean(popped_over_phases(context, n, Numbers(n * n, acceleration_m_per_s2), overrides));
+}
+
+Table critical_over_phases(FigureContext& context) {
+  constexpr std::size_t kPhases = 8 * 8;
+  Numbers low(kPhases, kSurvives), high(kPhases, kPops), middle(kPhases);
+  for (int halving = 0; halving < 10; ++halving) {
+    for (std::size_t i = 0; i < kPhases; ++i) middle[i] = 0.5 * (low[i] + high[i]);
+    const Numbers popped = popped_over_phases(context, 8, middle, {});
+    for (std::size_t i = 0; i < kPhases; ++i) (popped[i] > 0.5 ? high : low)[i] = middle[i];
+  }
+  return {"phases",
+          "critical acceleration without noise, by position of the grid",
+          {{"phase_x", "1", "shift of the grid in units of its spacing",
+            each_of(kPhases, [](std::size_t i) { return phase(8, i).first; })},
+           {"phase_z", "1", "shift of the grid in units of its spacing",
+            each_of(kPhases, [](std::size_t i) { return phase(8, i).second; })},
+           {"survives", "m/s^2", "largest acceleration tried without pop-through", low},
+           {"pops", "m/s^2", "smallest acceleration tried with pop-through", high}}};
 }
 
 double survived_share(FigureContext& context, const std::vector<Experiment>& lifts) {
@@ -69,13 +112,11 @@ Table region_table(const std::string& name, const Table& map) {
   TableRows rows;
   for (int row = 0; row < 5; ++row)
     for (int column = 0; column < 5; ++column) {
-      std::vector<double> inside;
-      for (std::size_t i = 0; i < x.size(); ++i) {
-        const bool in_column = x[i] + kEdge >= kNoise[column] && x[i] + kEdge < kNoise[column + 1];
-        const bool in_row = y[i] + kEdge >= kAcceleration[row] && y[i] + kEdge < kAcceleration[row + 1];
-        if (in_column && in_row) inside.push_back(survived[i]);
-      }
-      rows.push_back({kNoise[column], kAcceleration[row], share_of_known(inside)});
+      const auto is_inside = [&](std::size_t i) {
+        return x[i] + kEdge >= kNoise[column] && x[i] + kEdge < kNoise[column + 1] &&
+               y[i] + kEdge >= kAcceleration[row] && y[i] + kEdge < kAcceleration[row + 1];
+      };
+      rows.push_back({kNoise[column], kAcceleration[row], share_of_known(where(survived, is_inside))});
     }
   return table_of(name, "success by region",
                   {{"noise_from", "r_c", "lower edge of the region"},
@@ -84,28 +125,8 @@ Table region_table(const std::string& name, const Table& map) {
                   rows);
 }
 
-double SharedLifts::standard_error(double our_lifts_a_node) const {
-  const double lifts = nodes * lifts_a_node, at_least = (variance * lifts + 1) / (lifts + 1);
-  return std::sqrt(at_least / nodes * (1 / lifts_a_node + 1 / our_lifts_a_node));
-}
-
-void claim_agrees(const Claims& claims, const std::string& claim, double measured, const SharedLifts& other,
-                  double our_lifts_a_node, const std::string& paper) {
-  const double slack = kByChance * other.standard_error(our_lifts_a_node);
-  claims.between(claim, measured, std::max(0.0, other.survived - slack),
-                 std::min(1.0, other.survived + slack), "fraction", paper);
-}
-
 double max_apart(const Table& table) {
-  const std::vector<double>& values = numbers(table, "difference_in_standard_errors");
-  double max = values.empty() ? std::nan("") : 0;  // nothing that was compared is no agreement
-  for (const double apart : values) max = max_or_nan(max, std::abs(apart));
-  return max;
-}
-
-SharedLifts second_fraction(const std::string& place) {
-  const auto number = [&](const char* what) { return second_number("chapter_4", place + "/" + what); };
-  return {number("survived"), number("variance"), number("nodes"), 1};
+  return max_of(magnitudes(numbers(table, "difference_in_standard_errors")));
 }
 
 Table survivors(const std::string& name, const Table& map) {
@@ -119,10 +140,9 @@ Table survivors(const std::string& name, const Table& map) {
 
 void add_bound(Table& table, const std::string& column, const std::string& meaning,
                const std::function<double(double noise_m)>& bound_m_per_s2) {
-  std::vector<double> bound;
-  for (const double noise : numbers(table, "noise"))
-    bound.push_back(bound_m_per_s2(noise * kContactRadius_m) / kContactRadius_m);
-  table.add(column, "r_c/s^2", meaning, bound);
+  table.add(column, "r_c/s^2", meaning, each(numbers(table, "noise"), [&](double noise) {
+              return bound_m_per_s2(noise * kContactRadius_m) / kContactRadius_m;
+            }));
 }
 
 double printed_bound(double noise_m) {

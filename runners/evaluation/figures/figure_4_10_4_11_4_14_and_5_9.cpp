@@ -1,5 +1,6 @@
 // Fig 4.10: the proxy on a flat grid, and the HIP below it. Fig 5.9: the proxy keeps the distance of a
-// forbidden region from a beating organ. Both are pictures of one tick of a run.
+// forbidden region from a beating organ. Both are pictures of one tick of a run. Fig 4.11 and 4.14: its path
+// over a flat grid, and over sharp corners.
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/theory/surface_contacts.h"
 #include "analysis/trace/contact_measures.h"
-#include "analysis/trace/interval_estimates.h"
 #include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/kernels/isa.h"
 #include "core/points/point_cloud.h"
-#include "core/points/vector.h"
-#include "runners/evaluation/figures/parts/figure_context.h"
-#include "runners/evaluation/figures/parts/figure_form.h"
-#include "runners/evaluation/figures/parts/figure_pictures.h"
+#include "runners/evaluation/figures/figure_pictures.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 
 namespace remote_touch {
 
@@ -84,23 +84,22 @@ Table pose_rows(const std::string& name, const Trace& trace, std::size_t tick) {
                    row(hip_W, trace.force_N[tick])});
 }
 
-// Adds the chosen points, and a tick of a trace: the proxy as a ball of radius r_c, the HIP as a smaller
+// Returns the chosen points, and a tick of a trace: the proxy as a ball of radius r_c, the HIP as a smaller
 // ball, the normal as an arrow that starts on the proxy, and the force on the hand as an arrow that starts at
 // the HIP. Tables are NAME_cloud, NAME_proxy, NAME_hip, NAME_ball_triangles, NAME_normal, NAME_force,
 // NAME_bar_triangles (of both arrows) and NAME_poses.
-void add_proxy_tables(Figure& figure, const std::string& name, const PointCloud& cloud,
-                      const std::vector<std::size_t>& chosen, const Trace& trace, std::size_t tick,
-                      double force_m_per_N) {
+std::vector<Table> proxy_tables(const std::string& name, const PointCloud& cloud,
+                                const std::vector<std::size_t>& chosen, const Trace& trace, std::size_t tick,
+                                double force_m_per_N) {
   const TriangleMesh proxy = ball_of(kContactRadius_m), normal = arrow_of(kNormalArrow_m);
-  const auto add = [&](Table table) { figure.tables.push_back(std::move(table)); };
-  add(cloud_table(name + "_cloud", "points around the proxy", cloud, chosen));
-  add(vertex_table(name + "_proxy", proxy));
-  add(vertex_table(name + "_hip", ball_of(kHipRadius_m)));
-  add(triangle_table(name + "_ball_triangles", proxy));
-  add(vertex_table(name + "_normal", normal));
-  add(vertex_table(name + "_force", arrow_of(force_m_per_N * trace.force_N[tick].norm())));
-  add(triangle_table(name + "_bar_triangles", normal));
-  add(pose_rows(name + "_poses", trace, tick));
+  return {cloud_table(name + "_cloud", "points around the proxy", cloud, chosen),
+          vertex_table(name + "_proxy", proxy),
+          vertex_table(name + "_hip", ball_of(kHipRadius_m)),
+          triangle_table(name + "_ball_triangles", proxy),
+          vertex_table(name + "_normal", normal),
+          vertex_table(name + "_force", arrow_of(force_m_per_N * trace.force_N[tick].norm())),
+          triangle_table(name + "_bar_triangles", normal),
+          pose_rows(name + "_poses", trace, tick)};
 }
 
 // Returns the cloud, the proxy, the HIP, the normal and the force. HIP and force are slightly transparent,
@@ -179,6 +178,25 @@ constexpr double kSpring_4_10_N_per_m = 600;
 constexpr double kInstant_5_9_s = 12, kRegion_5_9_m = 0.02;  // r_f has been 20 mm for 2 s
 constexpr double kShell_5_9_m[] = {0.00499, 0.00501};        // r_1 and r_2 of Table 4.2
 
+// Fig 4.11: the HIP moves above, below and above a flat grid.
+
+constexpr double kShell_m = 1e-5;
+
+// First tick in which the HIP is below the surface.
+std::size_t jump_tick(const Trace& trace) {
+  std::size_t i = 0;
+  while (i + 1 < trace.length() && trace.hip_position_m[i].y() >= 0) ++i;
+  return i;
+}
+
+// Number of steps from the jump until the proxy is within the contact shell, in a run with one step per tick.
+double steps_to_contact(const Trace& single) {
+  const std::size_t jump = jump_tick(single);
+  std::size_t i = jump;
+  while (i < single.length() && !(std::abs(single.nearest_distance_m[i] - kContactRadius_m) <= kShell_m)) ++i;
+  return static_cast<double>(i - jump + 1);
+}
+
 }  // namespace
 
 Figure figure_4_10(FigureContext& context) {
@@ -192,7 +210,7 @@ Figure figure_4_10(FigureContext& context) {
       "The run of figure 4.11 after 2.5 s: the HIP is 5 mm below the grid. The proxy, a ball of radius r_c, "
       "is on the grid and drawn transparent. The upper arrow is the estimated normal, 20 mm long. The lower "
       "arrow is the force on the hand, 5 mm long for 1 N. Points within 25 mm of the proxy are shown."};
-  add_proxy_tables(figure, "touch", cloud, points_near(cloud, proxy_W, 0.025), trace, tick, 0.005);
+  figure.tables = proxy_tables("touch", cloud, points_near(cloud, proxy_W, 0.025), trace, tick, 0.005);
   const Scene scene{
       proxy_W + Vec3(0.05, 0.03, 0.075), proxy_W + Vec3(0, 0.0045, 0), Vec3::UnitY(), 0.064, 0.7,
       proxy_in_cloud("touch", 0.0006)};
@@ -227,7 +245,7 @@ Figure figure_5_9(FigureContext& context) {
       "net is the surface of the region, its lines 5 mm apart. The upper arrow is the estimated normal of "
       "the region, 20 mm long. The lower arrow is the force on the hand, 1.5 mm long for 1 N; it starts at "
       "the HIP, which is seen through the points. Points within 60 mm of the proxy are shown."};
-  add_proxy_tables(figure, "held", cloud, near, trace, tick, 0.0015);
+  figure.tables = proxy_tables("held", cloud, near, trace, tick, 0.0015);
   figure.tables.push_back(net_table("held_region", cloud, near, kRegion_5_9_m, proxy_W));
   Scene scene{proxy_W + Vec3(0.10, 0.07, 0.19), proxy_W - Vec3(0, 0.02, 0), Vec3::UnitY(), 0.13, 0.75,
               proxy_in_cloud("held", 0.001)};
@@ -235,57 +253,24 @@ Figure figure_5_9(FigureContext& context) {
   region.label = "region";
   scene.parts.insert(scene.parts.begin() + 1, region);
   figure.panels = {scene_panel("After 12 s", 0, 0, scene)};
-  const Claims claims(figure);
   Claims(figure, "", &Claim::set_up)
       .between("the picture shows the chosen tick: its time", trace.time_s[tick], kInstant_5_9_s,
                kInstant_5_9_s, "s");
-  claims.between(
+  Claims(figure).between(
       "the proxy stays at the boundary of the forbidden region: distance of its centre to the nearest "
       "point, minus r_f",
       trace.nearest_distance_m[tick], kShell_5_9_m[0], kShell_5_9_m[1], "m", "r_1 to r_2");
   return figure;
 }
 
-// Fig 4.11: the HIP moves above, below and above a flat grid.
-
-namespace {
-
-constexpr double kShell_m = 1e-5;
-
-// First tick in which the HIP is below the surface.
-std::size_t jump_tick(const Trace& trace) {
-  std::size_t i = 0;
-  while (i + 1 < trace.length() && trace.hip_position_m[i].y() >= 0) ++i;
-  return i;
-}
-
-// The contact point while the HIP presses, from the first tick after the jump.
-Table contact_heights(const Trace& trace) {
-  const std::size_t jump = jump_tick(trace);
-  const auto presses = [&](std::size_t i) { return i > jump && pressing(trace, i, kContactRadius_m); };
-  const auto height_m = [&](std::size_t i) { return contact_point(trace, i, kContactRadius_m).y(); };
-  return {
-      "contact",
-      "height of the contact point",
-      {{"time", "s", "simulated time", where(trace.time_s, presses)},
-       {"contact_y", "m", "height of the contact point", values_where(trace.length(), presses, height_m)}}};
-}
-
-// Number of steps from the jump until the proxy is within the contact shell, in a run with one step per tick.
-double steps_to_contact(const Trace& single) {
-  const std::size_t jump = jump_tick(single);
-  std::size_t i = jump;
-  while (i < single.length() && !(std::abs(single.nearest_distance_m[i] - kContactRadius_m) <= kShell_m)) ++i;
-  return static_cast<double>(i - jump + 1);
-}
-
-}  // namespace
-
 Figure figure_4_11(FigureContext& context) {
   const Trace trace = context.run("fig4.11");
   // A budget of one step per tick shows, in the tick of the jump, where the first step leads.
   const Trace single = context.run("fig4.11", {"renderer.steps_per_tick=1"});
   const std::size_t jump = jump_tick(trace);
+  const auto presses = [&](std::size_t i) { return i > jump && pressing(trace, i, kContactRadius_m); };
+  const auto height_m = [&](std::size_t i) { return contact_point(trace, i, kContactRadius_m).y(); };
+  const Numbers contact_m = values_where(trace.length(), presses, height_m);
 
   Figure figure{
       "4.11", "Flat point cloud",
@@ -296,8 +281,10 @@ Figure figure_4_11(FigureContext& context) {
                     {{"time", "s", "simulated time", trace.time_s},
                      {"hip_y", "m", "height of the HIP", along(1, trace.hip_position_m)},
                      {"proxy_y", "m", "height of the proxy's centre", along(1, trace.proxy_position_m)}}},
-                   contact_heights(trace)};
-  const Numbers& contact_m = numbers(figure.tables[1], "contact_y");
+                   {"contact",
+                    "height of the contact point",
+                    {{"time", "s", "simulated time", where(trace.time_s, presses)},
+                     {"contact_y", "m", "height of the contact point", contact_m}}}};
   figure.panels = {plot("Height of HIP and proxy", "time (s)", "y (m)",
                         {{"heights", "time", "hip_y", CurveStyle::dashed, "HIP"},
                          {"heights", "time", "proxy_y", CurveStyle::line, "proxy"}}),
@@ -316,6 +303,123 @@ Figure figure_4_11(FigureContext& context) {
       std::abs(single.nearest_distance_m[jump] - kContactRadius_m), kShell_m, "m", "1 - 2 steps");
   claims.between("the proxy reaches the surface in 1 to 2 steps after the HIP jumps: number of steps",
                  steps_to_contact(single), 1, 2, "steps", "1 - 2");
+  return figure;
+}
+
+// Fig 4.14: sharp corners, against what a ball of radius r_c can reach.
+
+namespace {
+
+constexpr double kSampling_m = 1e-5;  // sampling of the exact profile; its corners are multiples of it
+
+// The true profile and its closing with a ball of radius r_c, sampled from x = low on.
+struct Oracle {
+  double low;
+  std::vector<double> heights, closing;
+
+  Oracle(const Scenario& scenario, double from, double to) : low(from) {
+    for (int i = 0; from + i * kSampling_m <= to; ++i)
+      heights.push_back(scenario.surface_height(from + i * kSampling_m, 0, 0));
+    closing = ball_closing(heights, kSampling_m, kContactRadius_m);
+  }
+  double at(double x) const {
+    const double place = (x - low) / kSampling_m;
+    const auto i = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(closing.size() - 2)));
+    return closing[i] + (place - static_cast<double>(i)) * (closing[i + 1] - closing[i]);
+  }
+};
+
+// Returns the contact points with x in [from, to], in the ticks in which the surface holds the HIP back.
+Table contact_table(const Trace& trace, const Oracle& oracle, double from, double to) {
+  std::vector<Vec3> contact;
+  Numbers error, shell;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const Vec3 p = contact_point(trace, i, kContactRadius_m);
+    if (!pressing(trace, i, kContactRadius_m) || p.x() < from || p.x() > to) continue;
+    contact.push_back(p);
+    error.push_back(p.y() - oracle.at(p.x()));
+    shell.push_back(trace.nearest_distance_m[i] - kContactRadius_m);
+  }
+  return {"contact",
+          "contact point",
+          {{"x", "m", "position of the contact point", along(0, contact)},
+           {"y", "m", "height of the contact point", along(1, contact)},
+           {"error", "m", "height over the exact closing with a ball of r_c", error},
+           {"shell", "m", "distance of the nearest point less r_c", shell}}};
+}
+
+Table profile_table(const Oracle& oracle) {
+  const auto x = [&](std::size_t i) { return oracle.low + static_cast<double>(i) * kSampling_m; };
+  return every(20, {"profile",
+                    "exact profile and its closing",
+                    {{"x", "m", "position", each_of(oracle.heights.size(), x)},
+                     {"surface_y", "m", "true height", oracle.heights},
+                     {"closing_y", "m", "height that a ball of r_c can reach", oracle.closing}}});
+}
+
+// Returns the points of the grid row under the path.
+Table row_table(const PointCloud& cloud, double path_z) {
+  const auto is_under = [&](std::size_t i) { return std::abs(cloud.z[i] - path_z) < 1e-6; };
+  return {"points",
+          "one row of the grid",
+          {{"x", "m", "position", where(cloud.x, is_under)}, {"y", "m", "height", where(cloud.y, is_under)}}};
+}
+
+// Returns the position of the proxy when it is nearest to valley_x, the last full valley.
+Table valley_table(const Trace& trace, double valley_x) {
+  const auto aside_m = [&](const Vec3& p) { return std::abs(p.x() - valley_x); };
+  const Vec3& ball = *std::ranges::min_element(trace.proxy_position_m, {}, aside_m);
+  return {"ball",
+          "the proxy in a valley",
+          {{"x", "m", "position", Numbers{ball.x()}}, {"y", "m", "height", Numbers{ball.y()}}}};
+}
+
+}  // namespace
+
+Figure figure_4_14(FigureContext& context) {
+  const Experiment experiment = Experiment::load("fig4.14");
+  const auto scenario = experiment.build_scenario(kernels_for(Isa::x86_64));
+  const Trace trace = context.run(experiment);
+  constexpr double kFrom = -0.2, kTo = 0.2;  // the ends of the grid have no neighbours on one side
+  const Oracle oracle(*scenario, -0.22, 0.22);
+  const Table contact = contact_table(trace, oracle, kFrom, kTo);
+  Figure figure{
+      "4.14", "Sharp corners",
+      "A 300 x 100 cloud shaped as a triangle wave of growing amplitude. Top: the points as a "
+      "surface. Middle: a cross-section of the wave and the contact point. Bottom: a part of it, "
+      "with the points and the proxy, a ball of radius r_c. Convex corners are rendered sharp; in a "
+      "valley the proxy rests on both flanks."};
+  const PointCloud cloud = scenario->cloud(0);
+  figure.tables = {contact,
+                   profile_table(oracle),
+                   {"surface",
+                    "the points",
+                    {{"x", "m", "x of the point", cloud.x},
+                     {"y", "m", "height, y", cloud.y},
+                     {"z", "m", "z of the point", cloud.z}}},
+                   row_table(cloud, trace.hip_position_m[0].z()),
+                   valley_table(trace, 0.135)};
+  const Curve points{"points", "x", "y", CurveStyle::dots, "points"};
+  const Curve line{"contact", "x", "y", CurveStyle::line, "contact point"};
+  figure.panels = {
+      plot("The point cloud, x, y and z equally scaled", "x (m)", "z (m)",
+           {{"surface", "x", "z", CurveStyle::surface, "", 0, "y"}}),
+      plot("The whole wave", "x (m)", "y (m)",
+           {{"profile", "x", "surface_y", CurveStyle::dashed, "surface"}, line}),
+      plot("A part of it", "x (m)", "y (m)",
+           {points,
+            line,
+            {"ball", "x", "y", CurveStyle::circle, "proxy, a ball of radius r_c", kContactRadius_m}},
+           {.x_range = {{0.095, 0.175}}, .y_range = {{-0.014, 0.015}}, .equal_aspect = true})};
+  const Claims claims(figure);
+  const Numbers& error = numbers(contact, "error");
+  claims.at_most("the contact point follows the exact closing of the wave with a ball of r_c: rms distance",
+                 rms(error), 1e-4, "m", "very well");
+  claims.at_most(
+      "the contact point follows the exact closing of the wave with a ball of r_c: largest distance",
+      max_of(magnitudes(error)), 5e-4, "m");
+  claims.at_most("the nearest point is r_c from the proxy: largest difference",
+                 max_of(magnitudes(numbers(contact, "shell"))), 2e-5, "m", "1e-5");
   return figure;
 }
 

@@ -60,10 +60,9 @@ Table cloud_table(const std::string& name, const std::string& title, const Point
                   const std::vector<std::size_t>& chosen);
 Table vertex_table(const std::string& name, const TriangleMesh& mesh);
 Table triangle_table(const std::string& name, const TriangleMesh& mesh);
-// Returns two rows for each of the ticks: the tool, then the device.
-Table pose_table(const std::string& name, const Trace& trace, const std::vector<std::size_t>& ticks);
 
-// Adds the tables NAME_vertices, NAME_triangles and NAME_poses of the ticks.
+// Adds the tables NAME_vertices, NAME_triangles and NAME_poses, with two rows for each of the ticks: the
+// tool, then the device.
 void add_tool_tables(Figure& figure, const std::string& name, const TriangleMesh& mesh, const Trace& trace,
                      const std::vector<std::size_t>& ticks);
 
