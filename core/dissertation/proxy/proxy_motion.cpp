@@ -103,12 +103,10 @@ double printed_free_root(const PointsView& points, const Vec3& p_W, const Vec3& 
                          double limit) {
   double step = limit;
   for (std::size_t i = 0; i < points.padded_count; ++i) {
-    const Vec3 e = Vec3(points.x[i], points.y[i], points.z[i]) - p_W;
-    const double along = e.dot(u), r = radius + (points.radius ? points.radius[i] : 0);
-    const double rest = r * r - (e - along * u).squaredNorm();
-    if (!(rest >= 0)) continue;
-    const double near = along - std::sqrt(rest), far = along + std::sqrt(rest);
-    const double root = std::abs(near) <= std::abs(far) ? near : far;
+    const auto d = equations::roots<double>(p_W, {points.x[i], points.y[i], points.z[i]}, u,
+                                            radius + (points.radius ? points.radius[i] : 0));
+    if (!d) continue;
+    const double root = std::abs(d->near) <= std::abs(d->far) ? d->near : d->far;
     if (std::abs(root) <= limit) step = std::min(step, root);
   }
   return step;
