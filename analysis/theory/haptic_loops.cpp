@@ -176,24 +176,6 @@ DelayOnset delay_onset(const PositionForceLoop& parameters) {
   return onset;
 }
 
-double max_environment_stiffness(const PositionForceLoop& loop, double round_trip_s) {
-  const auto is_stable = [&](double stiffness) {
-    PositionForceLoop tried = loop;
-    tried.environment_stiffness_N_per_m = stiffness;
-    return delay_onset(tried).round_trip_s > round_trip_s;
-  };
-  double low = 0, high = 1e-3;
-  while (is_stable(high)) {
-    low = high, high *= 1.01;
-    if (high > 1e9) return kInfinity;
-  }
-  while (high - low > 1e-10 * high) {
-    const double middle = 0.5 * (low + high);
-    (is_stable(middle) ? low : high) = middle;
-  }
-  return low;
-}
-
 double held_round_trip(double round_trip_s, double tick_s, int holds) {
   return round_trip_s + 0.5 * holds * tick_s;
 }

@@ -79,12 +79,6 @@ struct DelayOnset {
 // Returns the least round trip for which the loop is not stable.
 DelayOnset delay_onset(const PositionForceLoop& loop);
 
-// Returns the stiffness K of the environment up to which the loop is stable with every round trip up to
-// round_trip_s; infinity if it is above 1e9 N/m. It ignores environment_stiffness_N_per_m of the loop. The
-// relative error is below 1e-9, except where a range of unstable K is narrower than 1 %: the search from
-// below in steps of 1 % may skip it.
-double max_environment_stiffness(const PositionForceLoop& loop, double round_trip_s);
-
 // Returns the round trip of the loop without holds that has the same phase as a loop in which `holds` signals
 // are sampled and held for a tick: half a tick more for each. The transfer of a hold is e^(-s tick / 2)
 // sinc(u tick / 2): its phase is exactly that of half a tick at all frequencies below the sample rate. Its
