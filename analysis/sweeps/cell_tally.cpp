@@ -1,4 +1,4 @@
-#include "analysis/sweeps/cell_tally.h"
+#include "analysis/sweeps/sweep_tally.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "analysis/sweeps/event_limits.h"
+#include "analysis/sweeps/sweep_means.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <numeric>
 #include <set>
 
-#include "analysis/sweeps/sweep_means.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/interval_estimates.h"
 
@@ -55,7 +54,7 @@ struct AxisRuns {
 std::vector<std::size_t> axes_without(const SweepGrid& grid, const std::vector<std::size_t>& left_out) {
   std::vector<std::size_t> others;
   for (std::size_t axis = 0; axis < grid.axes.size(); ++axis)
-    if (std::find(left_out.begin(), left_out.end(), axis) == left_out.end()) others.push_back(axis);
+    if (std::ranges::find(left_out, axis) == left_out.end()) others.push_back(axis);
   return others;
 }
 
@@ -63,7 +62,7 @@ std::vector<std::size_t> axes_without(const SweepGrid& grid, const std::vector<s
 std::vector<std::size_t> by_value(const std::vector<double>& x) {
   std::vector<std::size_t> order(x.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
   return order;
 }
 
@@ -210,8 +209,8 @@ std::optional<bool> direction_of(const std::vector<AxisRuns>& rows, bool are_ind
 bool groups_are_independent(const std::vector<CellGroup>& groups, const CellStreams& streams) {
   std::vector<std::size_t> one_of_each;  // along the axis sharing does no harm
   for (const CellGroup& group : groups) {
-    const auto random = std::find_if(group.cells.begin(), group.cells.end(),
-                                     [&](std::size_t cell) { return !streams.is_fixed(cell); });
+    const auto random =
+        std::ranges::find_if(group.cells, [&](std::size_t cell) { return !streams.is_fixed(cell); });
     if (random != group.cells.end()) one_of_each.push_back(*random);
   }
   return streams.are_independent(one_of_each);
@@ -383,10 +382,8 @@ std::vector<std::size_t> next_round(const SweepResult& result, const RefinementR
     return requested_replicates(result, a) < requested_replicates(result, b);
   });
 
-  const auto spent =
-      static_cast<std::uint64_t>(std::count_if(result.state.begin(), result.state.end(), [](RunState state) {
-        return state != RunState::not_sampled;
-      }));
+  const auto spent = static_cast<std::uint64_t>(
+      std::ranges::count_if(result.state, [](RunState state) { return state != RunState::not_sampled; }));
   std::vector<std::size_t> runs;
   for (const std::size_t cell : order) {
     const int from = requested_replicates(result, cell),
@@ -394,7 +391,7 @@ std::vector<std::size_t> next_round(const SweepResult& result, const RefinementR
     for (int replicate = from; replicate < to && spent + runs.size() < rule.budget; ++replicate)
       runs.push_back(result.run(cell, replicate));
   }
-  std::sort(runs.begin(), runs.end());
+  std::ranges::sort(runs);
   return runs;
 }
 

@@ -1,4 +1,4 @@
-#include "analysis/sweeps/run_spool.h"
+#include "analysis/sweeps/sweep_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -72,7 +72,7 @@ RunSpool::~RunSpool() {
 }
 
 std::size_t RunSpool::array_number(const std::string& array) const {
-  return static_cast<std::size_t>(std::find(arrays_.begin(), arrays_.end(), array) - arrays_.begin());
+  return static_cast<std::size_t>(std::ranges::find(arrays_, array) - arrays_.begin());
 }
 
 void RunSpool::put(const Words& words) {
@@ -120,8 +120,7 @@ void RunSpool::copy_errors(const Part& part, const PartValues& values) {
   for (std::size_t first = 0; first < part.held; first += kBlock) {
     const std::size_t count = std::min(kBlock, part.held - first);
     const Words states = get(part, state, first, count);
-    if (std::find(states.begin(), states.end(), bits(static_cast<std::int32_t>(RunState::failed))) ==
-        states.end())
+    if (std::ranges::find(states, bits(static_cast<std::int32_t>(RunState::failed))) == states.end())
       continue;
     const Words runs = get(part, 0, first, count);
     const auto errors = std::get<std::vector<std::string>>(values("error", first, count));
@@ -146,7 +145,7 @@ void RunSpool::find_held() {
       const Words runs = get(part, 0, first, std::min(kBlock, part.held - first));
       held.insert(held.end(), runs.begin(), runs.end());
     }
-  std::sort(held.begin(), held.end());
+  std::ranges::sort(held);
   held.erase(std::unique(held.begin(), held.end()), held.end());  // load() finds runs that were there twice
 }
 

@@ -8,7 +8,6 @@
 
 #include "analysis/trace/curve_fits.h"
 #include "analysis/trace/interval_estimates.h"
-#include "analysis/trace/paired_test.h"
 
 namespace remote_touch {
 
@@ -112,8 +111,7 @@ void note_clusters(Estimate& e, const ValueClusters& row, const SweepResult& res
 }
 
 const Column& measure_column(const SweepGrid& grid, const std::string& measure) {
-  return *std::find_if(grid.measures.begin(), grid.measures.end(),
-                       [&](const Column& column) { return column.name == measure; });
+  return *std::ranges::find_if(grid.measures, [&](const Column& column) { return column.name == measure; });
 }
 
 // Returns the cell with another place on one axis.
@@ -132,8 +130,8 @@ Column* with_meaning(Table& table, const char* meaning) {
 }  // namespace
 
 std::string name_beside(const Table& table, const std::string& name) {
-  const bool is_taken = std::any_of(table.columns.begin(), table.columns.end(),
-                                    [&](const Column& column) { return column.name == name; });
+  const bool is_taken =
+      std::ranges::any_of(table.columns, [&](const Column& column) { return column.name == name; });
   return is_taken ? name + "_of_answer" : name;
 }
 

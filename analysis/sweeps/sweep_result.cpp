@@ -213,13 +213,12 @@ std::vector<Column> axes_of(const SweepGrid& grid, const std::vector<std::size_t
 
 Values counts_in_column(const std::vector<std::int64_t>& counts) {
   const auto fits = [](std::int64_t count) { return count <= std::numeric_limits<std::int32_t>::max(); };
-  if (std::all_of(counts.begin(), counts.end(), fits))
-    return std::vector<std::int32_t>(counts.begin(), counts.end());
+  if (std::ranges::all_of(counts, fits)) return std::vector<std::int32_t>(counts.begin(), counts.end());
   return std::vector<double>(counts.begin(), counts.end());
 }
 
 bool CellStreams::share_replicates(const std::vector<std::size_t>& cells) const {
-  return std::any_of(cells.begin(), cells.end(), [&](std::size_t cell) { return draws[cell].of_replicate; });
+  return std::ranges::any_of(cells, [&](std::size_t cell) { return draws[cell].of_replicate; });
 }
 
 bool CellStreams::are_independent(const std::vector<std::size_t>& cells) const {

@@ -1,4 +1,4 @@
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,6 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/sweeps/tally_arrays.h"
 #include "core/parameters/parameter.h"
 
 namespace remote_touch {
@@ -83,10 +82,6 @@ void write_arrays(Hdf5Writer& hdf5, const SweepTally& tally, const TallyArrays& 
 }
 
 }  // namespace
-
-bool is_free_in_tallies(const std::string& name) {
-  return !is_taken_in_tallies(name);
-}
 
 std::string digest(const SweepTally& tally) {
   return digest(columns_of(arrays_of(tally)));
@@ -257,14 +252,14 @@ void TallyReader::read_sums(const std::string& name, std::size_t measure, Unroun
 }
 
 void TallyReader::read_sketch(std::size_t measure) {
-  using Pairs = std::vector<std::pair<std::int32_t, std::int64_t>>;
+  using Buckets = std::vector<std::pair<std::int32_t, std::int64_t>>;
   const std::string group = tally_.measures[measure].name + '/';
   const auto offsets = values<std::int32_t>(group + "bucket_offset");
   const auto medians = values<std::int32_t>(group + "median_bucket", cells_);
   const auto counts = values<std::int32_t>(group + "bucket_values");
   if (counts.size() / cells_ != offsets.size() || counts.size() % cells_ != 0)
     hdf5_.damaged("/tally/" + group + "bucket_values has another length");
-  std::vector<Pairs> pairs(cells_);
+  std::vector<Buckets> pairs(cells_);
   for (std::size_t row = 0; row < offsets.size(); ++row)
     for (std::size_t i = 0; i < cells_; ++i)
       if (const std::int32_t count = counts[row * cells_ + i]; count != 0)

@@ -173,9 +173,8 @@ UnderPlate under_ball(double radius_m, double seen_m) {
 double noisy_jump_m(double thickness_m, const std::vector<NoisyPoint>& points, double sigma_m) {
   assert(sigma_m > 0);
   constexpr double kReach = 10;  // standard deviations, beyond which there is no point
-  const auto [lowest, highest] =
-      std::minmax_element(points.begin(), points.end(),
-                          [](const NoisyPoint& a, const NoisyPoint& b) { return a.height_m < b.height_m; });
+  const auto [lowest, highest] = std::ranges::minmax_element(
+      points, [](const NoisyPoint& a, const NoisyPoint& b) { return a.height_m < b.height_m; });
   const auto any_above = [&](double x) {
     double none = 1;
     for (const NoisyPoint& p : points)

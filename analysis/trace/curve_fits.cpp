@@ -192,7 +192,7 @@ Limit limit_of(const std::vector<OutcomesAtValue>& curve, const LimitRule& rule)
 // Returns the number of replicates that have a run in both curves.
 std::int64_t replicates_of(const std::vector<OutcomesAtValue>& a, const std::vector<OutcomesAtValue>& b) {
   const auto has_run = [](const std::vector<OutcomesAtValue>& curve, std::size_t replicate) {
-    return std::any_of(curve.begin(), curve.end(), [&](const OutcomesAtValue& value) {
+    return std::ranges::any_of(curve, [&](const OutcomesAtValue& value) {
       return value.outcomes[replicate] != EventOutcome::missing;
     });
   };
@@ -203,7 +203,7 @@ std::int64_t replicates_of(const std::vector<OutcomesAtValue>& a, const std::vec
 }
 
 bool are_fixed(const std::vector<OutcomesAtValue>& curve) {
-  return std::all_of(curve.begin(), curve.end(), [](const OutcomesAtValue& v) { return v.is_fixed; });
+  return std::ranges::all_of(curve, [](const OutcomesAtValue& v) { return v.is_fixed; });
 }
 
 }  // namespace
@@ -331,11 +331,10 @@ Limit estimated_limit(const std::vector<RunsAtValue>& values, const LimitRule& r
   if (used.empty()) return limit;
   set_crossing(used, level, limit);
   const Walk up(used, level, End::low, rule.values_are_independent);
-  std::reverse(used.begin(), used.end());
+  std::ranges::reverse(used);
   const Walk down(used, level, End::high, rule.values_are_independent);
   e.low = up.last_clear(), e.high = down.last_clear();
-  const bool are_fixed =
-      std::all_of(used.begin(), used.end(), [](const RunsAtValue& value) { return value.is_fixed; });
+  const bool are_fixed = std::ranges::all_of(used, [](const RunsAtValue& value) { return value.is_fixed; });
   e.method = are_fixed ? kExactMethod : "binomial walks";
   if (std::isnan(e.low)) e.add_note("low: " + reason_of(up, rule, "first"));
   if (std::isnan(e.high)) e.add_note("high: " + reason_of(down, rule, "last"));
@@ -390,7 +389,7 @@ Estimate estimated_limit_comparison(const std::vector<OutcomesAtValue>& a,
     least.push_back(compared(in_b.below, in_a.above)), greatest.push_back(compared(in_b.above, in_a.below));
     below += in_b.below < in_a.above ? 1 : 0, above += in_b.above > in_a.below ? 1 : 0;
   }
-  std::sort(least.begin(), least.end()), std::sort(greatest.begin(), greatest.end());
+  std::ranges::sort(least), std::ranges::sort(greatest);
   e.low = least[kEnd - 1], e.high = greatest[greatest.size() - kEnd];
   if (!is_ratio) e.p = std::min(1.0, 2 * (1 + static_cast<double>(std::min(below, above))) / (kDraws + 1));
   e.method = "bootstrap of replicates";

@@ -1,4 +1,4 @@
-#include "analysis/trace/force_fidelity.h"
+#include "analysis/trace/force_measures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,8 +79,7 @@ Range range_of(const std::vector<Pressed>& ticks) {
 // Returns no ticks if the press is too short to have a stiffness, or if no force of it pushes out.
 std::vector<Pressed> press_of(const Trace& trace) {
   std::vector<Pressed> press = pressed_ticks(trace, true);
-  const bool pushes =
-      std::any_of(press.begin(), press.end(), [](const Pressed& tick) { return tick.normal_N > 0; });
+  const bool pushes = std::ranges::any_of(press, [](const Pressed& tick) { return tick.normal_N > 0; });
   if (!pushes || !range_of(press).is_long_enough()) press.clear();
   return press;
 }

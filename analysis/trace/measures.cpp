@@ -5,10 +5,8 @@
 #include <limits>
 
 #include "analysis/trace/contact_measures.h"
-#include "analysis/trace/force_fidelity.h"
 #include "analysis/trace/force_measures.h"
 #include "analysis/trace/interval_estimates.h"
-#include "analysis/trace/tool_and_slave_measures.h"
 
 namespace remote_touch {
 
@@ -41,6 +39,40 @@ double badness(double value, Better better) {
       break;
   }
   return value;
+}
+
+bool is_change(Judgement judgement) {
+  return judgement == Judgement::better || judgement == Judgement::worse || judgement == Judgement::changed;
+}
+
+const char* name_of(Judgement judgement) {
+  constexpr const char* kNames[] = {"equal", "within_margin", "better", "worse", "changed", "undecided"};
+  return kNames[static_cast<int>(judgement)];
+}
+
+bool needs_contact(const std::string& measure) {
+  constexpr const char* kOthers[] = {"guidance_",
+                                     "rms_slave_",
+                                     "slave_anticipation",
+                                     "rms_force_error",
+                                     "relative_force_error",
+                                     "force_direction_error",
+                                     "false_contact_fraction",
+                                     "lost_contact_fraction"};
+  return !is_outcome(measure) &&
+         std::ranges::none_of(kOthers, [&](const char* other) { return measure.starts_with(other); });
+}
+
+Judgement judge_value(double baseline, double candidate, Better better, const Tolerance& tolerance) {
+  if (within(tolerance, baseline, candidate)) return Judgement::equal;
+  // A difference that may be rounding has no direction.
+  constexpr double kRounding = 1e-9;
+  const double most = std::max(std::abs(baseline), std::abs(candidate));
+  if (std::isfinite(most) && std::abs(candidate - baseline) <= kRounding * most) return Judgement::changed;
+  const double before = badness(baseline, better), now = badness(candidate, better);
+  if (better == Better::neither || std::isnan(before) || std::isnan(now) || before == now)
+    return Judgement::changed;
+  return now < before ? Judgement::better : Judgement::worse;
 }
 
 namespace {
@@ -363,8 +395,7 @@ bool applies(const Measure& measure, const Trace& trace) {
     case guidance:
       return trace.has_guidance();
     case true_normal:
-      return std::any_of(trace.true_normal.begin(), trace.true_normal.end(),
-                         [](const Vec3& normal) { return normal.allFinite(); });
+      return std::ranges::any_of(trace.true_normal, [](const Vec3& normal) { return normal.allFinite(); });
     case replay:
       return trace.has_replay();
     case measured_surface:
@@ -419,9 +450,7 @@ double mean_steps(const Trace& trace) {
 }
 
 double max_steps(const Trace& trace) {
-  return trace.length() == 0
-             ? 0
-             : *std::max_element(trace.proxy_steps.begin(), trace.proxy_steps.end());  // no NaN: integers
+  return trace.length() == 0 ? 0 : *std::ranges::max_element(trace.proxy_steps);  // no NaN: integers
 }
 
 double unconverged_fraction(const Trace& trace) {

@@ -8,6 +8,7 @@
 
 namespace remote_touch {
 
+struct Tolerance;
 struct Trace;
 
 // The direction in which a measure gets better.
@@ -28,6 +29,27 @@ const char* text_of(Better better);
 
 // Returns a value that is smaller if the measure is better. A measure without a direction keeps its value.
 double badness(double value, Better better);
+
+// The judgement of a measure that was compared.
+enum class Judgement {
+  equal,          // within the tolerance
+  within_margin,  // sweeps only: the intervals of the differences lie within the margins
+  better,
+  worse,
+  changed,   // neither: no direction, a number was or became NaN, equally good, or another outcome
+  undecided  // sweeps only: too few runs, or similar numbers of better and worse runs
+};
+bool is_change(Judgement judgement);  // better, worse or changed
+// "equal", "within_margin", "better", ...
+const char* name_of(Judgement judgement);
+
+// Judges one number: equal, better, worse or changed. A number that was or became NaN is changed, and so is
+// one that differs by at most 1e-9 of itself, which may be rounding.
+Judgement judge_value(double baseline, double candidate, Better better, const Tolerance& tolerance);
+
+// True for a measure that says nothing about a run without any contact, such as the greatest depth in the
+// tool. False for outcomes, and for measures of guidance, of the slave's motion and of an expected force.
+bool needs_contact(const std::string& measure);
 
 // 1 when the proxy's centre (with a tool its centre of mass) passed through the surface and ended behind it,
 // else 0. The surface is that of judged_distance_m(). The centre is behind it if its distance is less than

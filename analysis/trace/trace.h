@@ -13,7 +13,6 @@
 
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

@@ -4,7 +4,7 @@
 
 #include "core/kernels/depth_kernels.h"
 
-#include "core/kernels/float_lanes.h"
+#include "core/kernels/lanes.h"
 #include "core/kernels/level.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {

@@ -2,7 +2,7 @@
 // sample_field(), in the same order.
 #pragma once
 
-#include "core/kernels/double_lanes.h"
+#include "core/kernels/lanes.h"
 #include "core/kernels/tool_kernels.h"
 
 namespace remote_touch {

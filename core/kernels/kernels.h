@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 namespace remote_touch {
 
@@ -36,5 +37,15 @@ struct Kernels {
 // Padding of columns to whole groups of kLanes. Each x86-64 level reads a group in one or several vectors.
 inline constexpr std::size_t kLanes = 8;
 inline constexpr double kFarAway = 1e100;  // coordinate of a padding point; its square is still finite
+
+// The x86-64 levels of the kernels that the running machine supports. All levels compute the same bits.
+
+// x86-64 levels in rising order.
+enum class Isa { x86_64, x86_64_v3, x86_64_v4 };
+
+Isa best_isa();                   // the highest level of the running machine
+const Kernels& kernels_for(Isa);  // pre: the machine has that level
+// Kernels of every level that the running machine supports, in rising order.
+std::span<const Kernels* const> supported_kernels();
 
 }  // namespace remote_touch

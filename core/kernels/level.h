@@ -5,8 +5,7 @@
 
 #include "core/kernels/kernels.h"
 
-// Each table is defined after the functions of its domain, or in kernel_tables.cpp if these are in several
-// files.
+// Each table is defined after the functions of its domain.
 #define REMOTE_TOUCH_DECLARE_TABLES(level)   \
   namespace remote_touch::level {            \
   extern const GatherKernels kGatherKernels; \

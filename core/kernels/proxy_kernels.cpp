@@ -1,9 +1,9 @@
 // Query of the points near the proxy: one pass computes its state, its normal and the stiffness. The code is
 // written in vectors, because compilers vectorise minima and 64-bit integers badly.
 
-#include "core/kernels/proxy_kernels.h"
+#include "core/kernels/point_kernels.h"
 
-#include "core/kernels/double_lanes.h"
+#include "core/kernels/lanes.h"
 #include "core/kernels/level.h"
 
 namespace remote_touch::REMOTE_TOUCH_LEVEL {

@@ -4,7 +4,7 @@
 // computed for them alone.
 #include <math.h>
 
-#include "core/kernels/double_lanes.h"
+#include "core/kernels/lanes.h"
 #include "core/kernels/level.h"
 #include "core/kernels/point_kernels.h"
 

@@ -1,4 +1,4 @@
-#include "core/mesh/mesh_sides.h"
+#include "core/mesh/mesh_distance.h"
 
 #include <algorithm>
 #include <cmath>

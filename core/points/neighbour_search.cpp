@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/kernels/proxy_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/points/number_columns.h"
 
 namespace remote_touch {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <new>
@@ -51,7 +52,13 @@ using LineVector = std::vector<T, WholeLines<T>>;
 
 // Returns the quantile: the value with index floor(fraction * n), counted from 0, among the n sorted values.
 // Changes the order of the values. pre: none is NaN.
-double quantile_in_place(std::span<double> values, double fraction);
+inline double quantile_in_place(std::span<double> values, double fraction) {
+  assert(!values.empty() && fraction >= 0 && fraction < 1);
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
 
 // The same for fraction 0.5. If the number of values is even, the result is the upper one of the two in the
 // middle.

@@ -1,22 +1,95 @@
 // The interface of every haptic renderer: frames at the camera's rate, steps at the haptic rate. Beside it,
-// what most renderers need: the order of frames, and data that is prepared from a frame.
+// what most renderers need: the order of frames, data that is prepared from a frame, and the velocity of the
+// surface.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
+#include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "core/rendering/frame.h"
 
 namespace remote_touch {
+
+// The data that a renderer receives: frames of a sensor, with the targets of guidance in them, 7.3.2, and the
+// state of a device.
+
+// The target of one guidance virtual fixture in one frame, 7.3.2: the mean position of the points of a class,
+// and the plane that they lie in; world frame.
+struct GuidanceTarget {
+  std::size_t points = 0;      // number of points that the rule selects; 0: no target in the frame
+  Vec3 mean_W = Vec3::Zero();  // weighted mean of their positions
+  // Unit normal of the plane that fits them by weighted total least squares, towards the sensor. It is zero
+  // for fewer than three points. It is also zero if they do not form a plane: if their standard deviation
+  // along the normal is above kFlat times that along the plane's shorter axis, or if the latter is at most
+  // kLine times that along the longer axis.
+  Vec3 normal_W = Vec3::Zero();
+  double strength = 1;  // strength of its rule when the frame was captured, 0 to 1
+  static constexpr double kFlat = 0.25, kLine = 1e-3;
+
+  bool operator==(const GuidanceTarget&) const = default;
+  bool is_visible() const { return points > 0; }
+  bool is_flat() const { return !normal_W.isZero(0); }
+};
+
+// Returns the target. weights: weight of each point, 0 to 1, as FixtureRule::weights() returns it. Points
+// that are not finite are ignored. The sensor is assumed at the camera of the cloud's image; at the origin if
+// the cloud has no image.
+GuidanceTarget guidance_target(const PointCloud& cloud, const std::vector<double>& weights);
+
+// The properties that a renderer can require of the points of its frames. A run is refused if its frames lack
+// one of them, because there would be no force, or a wrong one.
+enum class FrameNeed {
+  normals,    // points with normals
+  organised,  // rows and columns, so that the neighbours of a point are known
+  regions,    // forbidden regions around points, or a target of guidance
+  view        // viewing direction of the sensor: an image, or a setting `view`
+};
+
+// Data that a renderer computes from a frame in advance, see Renderer::prepare().
+class FramePreparation {
+ public:
+  virtual ~FramePreparation() = default;
+};
+
+// The true surface at the time of a frame, which only a simulation knows; a frame of a sensor has none. It is
+// only for oracles: renderers that show what a better estimate could reach.
+class TrueSurface {
+ public:
+  virtual ~TrueSurface() = default;
+  // Returns the distance to the surface at a time, m, positive on the side that the sensor sees. NaN if it is
+  // not known, and beside a surface with a border, where there is no back.
+  virtual double signed_distance(const Vec3& p_W, double time_s) const = 0;
+};
+
+// One point cloud of the stream. Latency is part of the data: the renderer receives the frame at arrives_s.
+struct Frame {
+  int index = 0;
+  double captured_s = 0;
+  double arrives_s = 0;
+  std::shared_ptr<const NeighbourSearch> points;
+  std::vector<GuidanceTarget> guidance = {};  // one for every guidance fixture, in their order
+  std::shared_ptr<const FramePreparation> prepared = nullptr;
+  std::shared_ptr<const TrueSurface> truth = nullptr;  // simulations only
+};
+
+// The position of the haptic interface point (HIP) in the world frame; the orientation, which rotates the
+// axes of the handle to the world; and the pressed buttons of the handle, one bit each.
+struct DeviceState {
+  Vec3 position_W = Vec3::Zero();
+  Eigen::Quaterniond orientation_W = Eigen::Quaterniond::Identity();
+  std::uint32_t buttons = 0;
+};
 
 // Force on the hand, and torque about the device's position, as a renderer commands them and a device exerts
 // them; world frame.
@@ -237,5 +310,74 @@ std::shared_ptr<const Form> form_of(const Frame& frame, const Kernels& kernels, 
   if (!prepared) prepared = prepared_form<Form>(*frame.points, kernels, settings...);
   return {prepared, &prepared->form};
 }
+
+// Estimate of the point cloud velocity, 4.2.5: the speed of the surface along the proxy's normal, positive
+// towards the proxy.
+
+// The interval between the frames of a stream, without pauses of the stream. A stream continues at its former
+// rate after a pause, so a pause does not predict when the next frame comes. The part of an interval above a
+// limit counts as a pause. The limit is kMaxRatio times the previous interval without its own pause. It grows
+// with each longer interval, so a stream that becomes slower is accepted after a few frames. The first
+// interval of a stream has no limit.
+class UsualInterval {
+ public:
+  // Two frames in a row may be lost without a pause, as with the default max_prediction_s of 0.1 s at 30 Hz.
+  static constexpr double kMaxRatio = 3;
+
+  // Returns the interval that ends with the newest frame, s, without the part that is a pause.
+  double without_pause(double interval_s) const { return std::min(interval_s, longest_s_); }
+  // Adds an interval that has ended. An interval of 0 is ignored.
+  void add(double interval_s) {
+    if (interval_s > 0) longest_s_ = kMaxRatio * without_pause(interval_s);
+  }
+
+ private:
+  double longest_s_ = std::numeric_limits<double>::infinity();
+};
+
+class SurfaceVelocity {
+ public:
+  // max_interval_s bounds how far ahead (4.3) extrapolates when frames are missing.
+  explicit SurfaceVelocity(double max_interval_s)
+      : max_interval_s_(max_interval_s), horizon_s_(max_interval_s) {}
+
+  // Processes a new frame, with the normal estimated just before it. Returns the correction s_j of (4.3), to
+  // be added to the proxy. The interval is the time between the captures of the two frames: 1/f_c for a
+  // steady stream. Frames that follow each other without a step between them count as one.
+  Vec3 on_frame(double captured_s, const Vec3& normal);
+  // Adds the growth of a forbidden region under the proxy in the newest frame, m. on_step() subtracts it,
+  // because it is no motion of the cloud. Call it between on_frame() and on_step().
+  void on_growth(double growth_m) { growth_m_ += growth_m; }
+  // Corrects the estimate by the first proxy step after a frame, (4.13); later steps change nothing. It may
+  // be a step of any state: a free step back to the surface shows that the estimate was too high. The
+  // estimate is never negative and never reset.
+  void on_step(const Vec3& step);
+
+  // Replaces on_frame() and on_step() if the motion is measured by other means. The velocity along the normal
+  // may then be negative.
+  void on_measured(double captured_s, double velocity_m_per_s, const Vec3& normal);
+
+  double m_per_s() const { return velocity_m_per_s_; }
+  // Returns v_hat as a vector along the normal of the last frame.
+  Vec3 vector() const { return velocity_m_per_s_ * normal_; }
+  // Returns the time after a frame during which v_hat may be used, s: the larger of max_interval_s and the
+  // newest interval between frames without its pause.
+  double horizon_s() const { return horizon_s_; }
+
+ private:
+  void set_horizon();
+
+  double max_interval_s_;
+  double horizon_s_;
+  double velocity_m_per_s_ = 0;  // v_0 = 0
+  double captured_s_ = 0;
+  double interval_s_ = 0;  // time since the frame before the last step; 0 before the second frame
+  UsualInterval usual_interval_;
+  double frame_correction_m_ = 0;  // displacement of the proxy along the normal in that time
+  double growth_m_ = 0;            // growth of regions in that time
+  Vec3 normal_ = Vec3::Zero();
+  bool has_frame_ = false;
+  bool awaits_step_ = false;
+};
 
 }  // namespace remote_touch

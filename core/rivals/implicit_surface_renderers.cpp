@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/rivals/exact_sum.h"
+#include "core/rivals/point_normals.h"
 
 namespace remote_touch {
 namespace {

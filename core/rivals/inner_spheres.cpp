@@ -1,4 +1,4 @@
-#include "core/rivals/inner_spheres.h"
+#include "core/rivals/inner_sphere_motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "core/rivals/exact_sum.h"
-
 namespace remote_touch {
 namespace {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/kernels/kernels.h"
-#include "core/kernels/proxy_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
 #include "core/rendering/renderer.h"

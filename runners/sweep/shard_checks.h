@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "core/kernels/kernels.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_parts.h"

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "analysis/trace/contact_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"

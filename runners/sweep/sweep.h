@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/sweeps/event_limits.h"
+#include "analysis/sweeps/sweep_means.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/measures.h"
 #include "runners/experiment/catalog/experiment.h"

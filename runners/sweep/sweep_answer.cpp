@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"

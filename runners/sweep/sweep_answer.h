@@ -26,7 +26,7 @@ struct SweepQuestion {
   // Where does an event become more probable than `level` along an axis? Empty `along`: the last axis of at
   // least two numbers. direction: "rises" if the event becomes more probable along the axis, "falls" if less;
   // empty: as the runs show it. With `between`, also: how do the limits differ between the first value of
-  // that axis and each other value? See event_limits.h.
+  // that axis and each other value? See sweep_means.h.
   std::string limit;
   std::string along;
   double threshold = 0.5;

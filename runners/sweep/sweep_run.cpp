@@ -7,7 +7,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"

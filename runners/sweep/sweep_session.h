@@ -11,7 +11,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "core/kernels/kernels.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"

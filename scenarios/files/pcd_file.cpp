@@ -1,4 +1,4 @@
-#include "scenarios/files/pcd_file.h"
+#include "scenarios/files/depth_images.h"
 
 #include <lzf.h>
 
@@ -20,7 +20,6 @@
 
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/files/depth_images.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {
@@ -106,7 +105,7 @@ Entries read_entries(const std::string& file, PcdText& rest) {
   while (!rest.text.empty() && !entries.contains("DATA")) {
     const Words words = rest.take_line();
     if (words.empty() || words[0].front() == '#') continue;
-    if (std::find(kKeywords.begin(), kKeywords.end(), words[0]) == kKeywords.end()) {
+    if (std::ranges::find(kKeywords, words[0]) == kKeywords.end()) {
       std::string allowed;
       for (const std::string_view keyword : kKeywords) allowed.append(" ").append(keyword);
       refuse(file + ":" + std::to_string(rest.line), shown_word(words[0]),
@@ -153,7 +152,7 @@ void read_fields(const std::string& file, const Entries& entries, PcdHeader& hea
 // A coordinate must be one floating-point value: integers would need a scale that PCD does not have.
 PcdField coordinate(const std::string& file, const PcdHeader& header, const std::string& name) {
   const auto named = [&](const PcdField& field) { return field.name == name; };
-  const auto found = std::find_if(header.fields.begin(), header.fields.end(), named);
+  const auto found = std::ranges::find_if(header.fields, named);
   if (found == header.fields.end()) refuse(file, "FIELDS has no ", name, ": expected x, y and z");
   if (found->type != 'F' || found->size < 4 || found->count != 1)
     refuse(file, "field ", name, " = ", found->text(), ": expected TYPE F SIZE 4 or 8 COUNT 1");
@@ -212,7 +211,7 @@ std::optional<RigidTransform> read_viewpoint(const std::string& file, const Entr
 PcdHeader read_pcd_header(const std::string& file, PcdText& rest) {
   const Entries entries = read_entries(file, rest);
   const std::string_view version = entry(file, entries, "VERSION", 1)[0];
-  if (std::find(kVersions.begin(), kVersions.end(), version) == kVersions.end())
+  if (std::ranges::find(kVersions, version) == kVersions.end())
     refuse(file, "VERSION = ", shown_word(version), ": expected 0.5, 0.6 or 0.7");
   PcdHeader header;
   read_fields(file, entries, header);
@@ -384,7 +383,7 @@ bool see_from(const RigidTransform& X_FC, PcdCloud& file) {
   };
   // Tries the image as it is, mirrored left to right, upside down, and both.
   for (const bool upside_down : {false, true}) {
-    if (upside_down) each_column([](auto& values) { std::reverse(values.begin(), values.end()); });
+    if (upside_down) each_column([](auto& values) { std::ranges::reverse(values); });
     for (const bool mirrored : {false, true}) {
       if (mirrored) each_column([&](auto& values) { mirror_rows(values, seen.width); });
       cloud.image = fit_pinhole(cloud, seen.width, seen.height);
@@ -417,8 +416,7 @@ void find_image(const std::optional<RigidTransform>& X_FV, PcdCloud& file) {
     if (see_from(*X_FV, file) || see_from(*X_FV * about_face, file)) return;
   }
   const PointCloud& cloud = file.cloud;
-  const bool has_points =
-      std::any_of(cloud.z.begin(), cloud.z.end(), [](double z_m) { return !std::isnan(z_m); });
+  const bool has_points = std::ranges::any_of(cloud.z, [](double z_m) { return !std::isnan(z_m); });
   file.has_unused_viewpoint = X_FV.has_value() && has_points;
   if (is_organised) file.cloud.image = fit_pinhole(file.cloud, file.width, file.height);
 }

@@ -9,7 +9,6 @@
 #include "core/points/point_cloud.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/objects/mesh_object.h"
-#include "scenarios/objects/pose_file.h"
 
 namespace remote_touch {
 namespace {
@@ -219,8 +218,7 @@ std::vector<double> cosines(const RasterImage& image, const std::vector<RasterMe
 
 std::vector<std::uint32_t> colours(const RasterImage& image, std::span<const SceneMesh> meshes) {
   std::vector<std::uint32_t> colour;
-  const bool any = std::any_of(meshes.begin(), meshes.end(),
-                               [](const SceneMesh& mesh) { return mesh.colour.has_value(); });
+  const bool any = std::ranges::any_of(meshes, [](const SceneMesh& mesh) { return mesh.colour.has_value(); });
   if (!any) return colour;
   colour.assign(image.mesh.size(), 0);
   for (std::size_t i = 0; i < colour.size(); ++i)

@@ -15,8 +15,8 @@
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 #include "scenarios/objects/mesh_object.h"
-#include "scenarios/scene/scenario.h"
-#include "scenarios/simulated/depth_sensor.h"
+#include "scenarios/simulated/depth_camera.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "scenarios/objects/pose_file.h"
+#include "scenarios/objects/mesh_object.h"
 
 #include <algorithm>
 #include <cmath>
@@ -118,8 +118,8 @@ Eigen::Matrix3d rotation_in(const std::string& where, const Eigen::Matrix3d& R) 
 std::optional<RigidTransform> pose_of_quaternion(const std::string& where,
                                                  const std::array<double, 7>& values, bool may_be_unknown) {
   constexpr double kMaxNormError = 1e-2;
-  if (may_be_unknown && std::all_of(values.begin(), values.end(), is_not_finite)) return {};
-  if (std::any_of(values.begin(), values.end(), is_not_finite))
+  if (may_be_unknown && std::ranges::all_of(values, is_not_finite)) return {};
+  if (std::ranges::any_of(values, is_not_finite))
     refuse(where, "has a number that is not finite: ", kStamped);
   const auto [tx, ty, tz, qx, qy, qz, qw] = values;
   const Eigen::Quaterniond q(qw, qx, qy, qz);
@@ -139,7 +139,7 @@ std::optional<RigidTransform> pose_of_matrix(const std::string& where,
   constexpr double kMaxOff = 1e-6;
   std::array<double, 12> rows{};
   std::copy_n(numbers.begin(), rows.size(), rows.begin());
-  const bool is_known = !std::all_of(rows.begin(), rows.end(), is_not_finite);
+  const bool is_known = !std::ranges::all_of(rows, is_not_finite);
   for (std::size_t i = 0; is_known && i < kLastRow.size(); ++i) {
     if (is_not_finite(numbers[rows.size() + i])) refuse(where, "has a number that is not finite: ", kMatrix);
     if (!(std::abs(numbers[rows.size() + i] - kLastRow[i]) <= kMaxOff))
@@ -314,11 +314,10 @@ RigidTransform with_rotation(const RigidTransform& X, const Eigen::Matrix3d& R) 
 }  // namespace
 
 std::optional<RigidTransform> pose_of_rows(const std::string& where, const std::array<double, 12>& rows) {
-  if (std::all_of(rows.begin(), rows.end(), is_not_finite)) return {};
-  if (std::any_of(rows.begin(), rows.end(), [](double x) { return std::isnan(x); }))
+  if (std::ranges::all_of(rows, is_not_finite)) return {};
+  if (std::ranges::any_of(rows, [](double x) { return std::isnan(x); }))
     refuse(where, "has nan beside numbers: ", kMatrix);
-  if (std::any_of(rows.begin(), rows.end(), is_not_finite))
-    refuse(where, "has a number that is not finite: ", kMatrix);
+  if (std::ranges::any_of(rows, is_not_finite)) refuse(where, "has a number that is not finite: ", kMatrix);
   using Matrix = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;
   const Matrix matrix = Eigen::Map<const Matrix>(rows.data());
   RigidTransform X = RigidTransform::Identity();
@@ -366,7 +365,7 @@ std::vector<double> origins_of_clocks(std::span<const PoseFile* const> files, st
     if (poses->stamps_s.size() > 1) ranges.emplace_back(poses->stamps_s.front(), poses->stamps_s.back());
   }
   if (ranges.size() < 2) return origins;
-  std::sort(ranges.begin(), ranges.end());
+  std::ranges::sort(ranges);
   double end_s = ranges.front().second;
   for (const auto& [first_s, last_s] : ranges) {
     if (first_s > end_s) {
@@ -379,7 +378,7 @@ std::vector<double> origins_of_clocks(std::span<const PoseFile* const> files, st
     }
     end_s = std::max(end_s, last_s);
   }
-  std::fill(origins.begin(), origins.end(), ranges.front().first);
+  std::ranges::fill(origins, ranges.front().first);
   return origins;
 }
 
@@ -405,9 +404,8 @@ std::vector<Note> unusual_poses(const std::string& subject, std::span<const Stam
   if (const Fastest most = fastest(poses); most.speed_m_per_s > kFastest_m_per_s)
     add("pose " + std::to_string(most.pose) + formatted(" is reached at %.3g m/s: ", most.speed_m_per_s) +
         "positions may be millimetres instead of metres, or the poses in another order");
-  const auto far = std::find_if(poses.begin(), poses.end(), [&](const StampedPose& pose) {
-    return pose.X.translation().norm() > kFarthest_m;
-  });
+  const auto far = std::ranges::find_if(
+      poses, [&](const StampedPose& pose) { return pose.X.translation().norm() > kFarthest_m; });
   if (far != poses.end())
     add("pose " + std::to_string(far - poses.begin()) +
         formatted(" is %.4g m from the origin: ", far->X.translation().norm()) +
@@ -418,7 +416,7 @@ std::vector<Note> unusual_poses(const std::string& subject, std::span<const Stam
   const auto is_half_turn = [&](const StampedPose& pose) {
     return std::abs(Eigen::Quaterniond(pose.X.linear()).x()) > kHalfTurn;
   };
-  if (has_unnamed_quaternions && std::all_of(poses.begin(), poses.end(), is_half_turn))
+  if (has_unnamed_quaternions && std::ranges::all_of(poses, is_half_turn))
     add("every pose is turned by about 180 degrees around x: the order of a quaternion is qx qy qz qw; if qw "
         "comes first, a first line must name the columns: # t tx ty tz qw qx qy qz");
   return notes;

@@ -13,7 +13,6 @@
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/objects/mesh_object.h"
-#include "scenarios/objects/pose_file.h"
 
 namespace remote_touch {
 
@@ -27,7 +26,7 @@ std::vector<fs::path> files_with(const std::vector<std::string_view>& endings, c
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& file = entry.path();
     const auto fits = [&file](std::string_view ending) { return has_ending(file, ending); };
-    if (std::any_of(endings.begin(), endings.end(), fits) && !is_hidden(file)) files.push_back(file);
+    if (std::ranges::any_of(endings, fits) && !is_hidden(file)) files.push_back(file);
   }
   sort_by_name(files);
   return files;
@@ -47,7 +46,7 @@ fs::path file_of(const fs::path& json_file, const std::string& where, const Json
   const std::string text = text_of(json_file, where, json, key);
   const fs::path name = text;
   const auto is_up = [](const fs::path& part) { return part == ".."; };
-  const bool leaves = name.is_absolute() || std::any_of(name.begin(), name.end(), is_up);
+  const bool leaves = name.is_absolute() || std::ranges::any_of(name, is_up);
   if (leaves || text.find('\0') != text.npos)
     refuse(json_file, where, key, " = ", shown(json[key]), ": expected a file inside truth/");
   fs::path file = json_file.parent_path() / name.lexically_normal();
@@ -95,7 +94,7 @@ TruthFolder meshes_in(const fs::path& folder) {
   if (meshes.empty() || !fs::is_regular_file(poses))
     refuse(folder, "has neither truth.json nor poses.txt with a mesh: expected one of them");
   const auto is_scene = [](const fs::path& mesh) { return mesh.stem() == "scene"; };
-  if (!std::all_of(meshes.begin(), meshes.end(), is_scene)) std::erase_if(meshes, is_scene);
+  if (!std::ranges::all_of(meshes, is_scene)) std::erase_if(meshes, is_scene);
   TruthFolder truth;
   for (const fs::path& mesh : meshes) truth.objects.push_back({mesh.stem().string(), mesh, poses, {}});
   return truth;
@@ -104,7 +103,7 @@ TruthFolder meshes_in(const fs::path& folder) {
 void require_different_names(const fs::path& subject, const std::vector<TruthObjectFiles>& objects) {
   std::vector<std::string> names;
   for (const TruthObjectFiles& object : objects) names.push_back(object.name);
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   const auto same = std::adjacent_find(names.begin(), names.end());
   if (same != names.end())
     refuse(subject, "two objects have the name '", *same, "': expected different names");
@@ -283,7 +282,7 @@ std::vector<fs::path> mask_files(const TruthFolder& truth) {
 std::vector<fs::path> files_of(const TruthFolder& truth) {
   std::vector<fs::path> files;
   const auto add = [&files](const fs::path& file) {
-    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+    if (!file.empty() && std::ranges::find(files, file) == files.end()) files.push_back(file);
   };
   add(truth.description);
   for (const TruthObjectFiles& object : truth.objects) add(object.mesh), add(object.poses);
@@ -307,8 +306,7 @@ bool TruthMasks::holds_at(std::size_t frame, const Vec3& p_C) const {
 }
 
 const std::vector<bool>& TruthMasks::mask_of(std::size_t frame) const {
-  const auto found =
-      std::find_if(cache_.begin(), cache_.end(), [&](const Mask& mask) { return mask.frame == frame; });
+  const auto found = std::ranges::find_if(cache_, [&](const Mask& mask) { return mask.frame == frame; });
   if (found != cache_.end()) {
     std::rotate(cache_.begin(), found, found + 1);
   } else {
@@ -346,7 +344,7 @@ RecordedTruth::RecordedTruth(const TruthFolder& folder, const std::vector<std::s
     name_ += (name_.empty() ? folder.name + " (" : ", ") + files.name;
   }
   name_ += ")";
-  if (std::none_of(X_CO_.begin(), X_CO_.end(), [](const auto& X) { return X.has_value(); }))
+  if (std::ranges::none_of(X_CO_, [](const auto& X) { return X.has_value(); }))
     refuse(poses_file_, "has no known pose: expected the pose of an object in a frame or more");
 }
 

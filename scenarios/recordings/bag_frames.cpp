@@ -1,4 +1,4 @@
-#include "scenarios/recordings/bag_frames.h"
+#include "scenarios/recordings/bag_file.h"
 
 #include <algorithm>
 #include <cassert>
@@ -204,8 +204,8 @@ std::size_t topic_of_camera(const std::string& path, const BagFile& bag, std::si
     return bag.topics()[t].type == kCameraType && is_readable(bag.topics()[t]) && has_messages(bag, t);
   });
   const auto find = [&](const std::string& wanted) {
-    const auto found = std::find_if(cameras.begin(), cameras.end(),
-                                    [&](std::size_t t) { return bag.topics()[t].name == wanted; });
+    const auto found =
+        std::ranges::find_if(cameras, [&](std::size_t t) { return bag.topics()[t].name == wanted; });
     return found == cameras.end() ? bag.topics().size() : *found;
   };
   const std::size_t none = bag.topics().size();
@@ -297,9 +297,8 @@ void BagFrames::refuse_image_settings(const BagChoice& choice) const {
 
 std::string BagFrames::subject(std::size_t topic, const MessagePlace& place) const {
   const auto& places = bag_->places(topic);
-  const auto same = std::find_if(places.begin(), places.end(), [&](const MessagePlace& other) {
-    return other.part == place.part && other.at == place.at;
-  });
+  const auto same = std::ranges::find_if(
+      places, [&](const MessagePlace& other) { return other.part == place.part && other.at == place.at; });
   return path_ + ": " + bag_->topics()[topic].name + ", message " + std::to_string(same - places.begin());
 }
 
@@ -373,7 +372,7 @@ void BagFrames::order_frames() {
     add_remark("has messages without a stamp: the times of the recorder are used");
   }
   const auto earlier = [](const auto& a, const auto& b) { return a.first < b.first; };
-  if (!std::is_sorted(stamped.begin(), stamped.end(), earlier)) {
+  if (!std::ranges::is_sorted(stamped, earlier)) {
     std::stable_sort(stamped.begin(), stamped.end(), earlier);
     add_remark("has messages out of order: they were sorted by their stamps");
   }

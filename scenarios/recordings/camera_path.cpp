@@ -10,7 +10,7 @@
 #include "scenarios/files/input_files.h"
 #include "scenarios/objects/mesh_object.h"
 #include "scenarios/objects/recorded_truth.h"
-#include "scenarios/recordings/image_folders.h"
+#include "scenarios/recordings/recording.h"
 
 namespace remote_touch {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/objects/pose_file.h"
+#include "scenarios/objects/mesh_object.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 
@@ -24,12 +24,12 @@ class RecordedTruth;
 class CameraPath {
  public:
   // poses: a name in the recording's folder; empty: the camera is at rest in B. It is a file, see
-  // pose_file.h, whose line i is the pose at frame i, or whose poses have stamps. Stamps of the clock of the
-  // frames are interpolated at the times of the frames; a frame before the first or after the last of them,
-  // by more than 0.02 s, has no pose. Stamps in a recording without stamps belong to the frames in their
-  // order. Or it is a folder with one file of 16 numbers for each frame, see pose_files(). Throws InputError
-  // if the file cannot be used, has another number of poses than the recording has frames, or has stamps of
-  // another clock.
+  // mesh_object.h, whose line i is the pose at frame i, or whose poses have stamps. Stamps of the clock of
+  // the frames are interpolated at the times of the frames; a frame before the first or after the last of
+  // them, by more than 0.02 s, has no pose. Stamps in a recording without stamps belong to the frames in
+  // their order. Or it is a folder with one file of 16 numbers for each frame, see pose_files(). Throws
+  // InputError if the file cannot be used, has another number of poses than the recording has frames, or has
+  // stamps of another clock.
   CameraPath(const RigidTransform& X_WB, const std::string& poses, PoseDirection direction,
              const RecordingIndex& recording, const std::filesystem::path& folder);
 

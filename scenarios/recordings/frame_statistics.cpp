@@ -58,7 +58,7 @@ bool is_near(std::uint64_t cell, const std::vector<std::uint64_t>& cells) {
                           kStepY = std::uint64_t{1} << kAxisBits;
   for (const std::uint64_t along_x : {cell, cell - kStepX, cell + kStepX})  // the likeliest first
     for (const std::uint64_t row : {along_x, along_x - kStepY, along_x + kStepY}) {
-      const auto found = std::lower_bound(cells.begin(), cells.end(), row - 1);
+      const auto found = std::ranges::lower_bound(cells, row - 1);
       if (found != cells.end() && *found <= row + 1) return true;
     }
   return false;
@@ -70,7 +70,7 @@ std::vector<std::uint64_t> occupied_cells(const PointCloud& cloud, double max_de
   for (std::size_t i = 0; i < cloud.size(); i += step)
     if (cloud.is_measured(i) && !(cloud.image && cloud.z[i] > max_depth_m))
       cells.push_back(cell_of(cloud.point(i)));
-  std::sort(cells.begin(), cells.end());
+  std::ranges::sort(cells);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   return cells;
 }
@@ -85,8 +85,7 @@ double share(std::size_t part, std::size_t whole) {
 
 // Returns the share of the cells that are near one of the others.
 double share_near(const std::vector<std::uint64_t>& cells, const std::vector<std::uint64_t>& others) {
-  const auto near =
-      std::count_if(cells.begin(), cells.end(), [&](std::uint64_t cell) { return is_near(cell, others); });
+  const auto near = std::ranges::count_if(cells, [&](std::uint64_t cell) { return is_near(cell, others); });
   return share(static_cast<std::size_t>(near), cells.size());
 }
 
@@ -151,7 +150,7 @@ std::string FrameTimes::text() const {
   }
   if (!follows_stamps()) return number(rate_hz_) + " Hz";
   const std::vector<double> periods = periods_s(since_first_s_);
-  const double longest_s = *std::max_element(periods.begin(), periods.end()), usual_hz = usual_rate_hz();
+  const double longest_s = *std::ranges::max_element(periods), usual_hz = usual_rate_hz();
   if (longest_s * usual_hz <= kPausePeriods) return number(rate_hz_) + " Hz";
   return number(usual_hz) + " Hz with pauses of up to " + number(longest_s) + " s (" + number(rate_hz_) +
          " Hz on average)";
@@ -239,7 +238,7 @@ std::vector<Note> FrameStatistics::notes(double max_depth_m) const {
 }
 
 std::vector<Note> unused_frames(const std::vector<bool>& is_used) {
-  const auto unused = std::count(is_used.begin(), is_used.end(), false);
+  const auto unused = std::ranges::count(is_used, false);
   if (unused == 0) return {};
   const auto after = std::find(is_used.rbegin(), is_used.rend(), true) - is_used.rbegin();
   const std::string reason = unused == after ? "the run ended before them"

@@ -9,7 +9,7 @@
 
 #include "core/points/point_cloud.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "scenarios/recordings/image_folders.h"
+#include "scenarios/recordings/recording.h"
 
 #include <algorithm>
 #include <array>
@@ -158,7 +158,7 @@ RecordingIndex index_tum(const fs::path& folder) {
   index.frames = associate_stamps(depth, colour);
   index.is_stamped = true, index.first_stamp_s = depth.front().stamp_s;
   const auto has_colour = [](const RecordedFrame& frame) { return !frame.colour.empty(); };
-  if (!colour.empty() && std::none_of(index.frames.begin(), index.frames.end(), has_colour))
+  if (!colour.empty() && std::ranges::none_of(index.frames, has_colour))
     refuse(colour_list, "no image is within 0.02 s of one in depth.txt; the first are ",
            colour.front().file.string(), " and ", depth.front().file.string(),
            ": expected stamps of one clock, in seconds");
@@ -369,8 +369,7 @@ DepthImage read_depth_image(const fs::path& file, double metres_per_unit) {
   if (has_ending(file, ".npy")) return read_depth_npy(file, metres_per_unit, kNoLimit_m);
   DepthImage depth = read_depth_png(file, metres_per_unit, kNoLimit_m);
   // The largest value is no measurement: 7-Scenes marks missing pixels with it.
-  std::replace(depth.z_m.begin(), depth.z_m.end(), 65535 * metres_per_unit,
-               std::numeric_limits<double>::quiet_NaN());
+  std::ranges::replace(depth.z_m, 65535 * metres_per_unit, std::numeric_limits<double>::quiet_NaN());
   return depth;
 }
 

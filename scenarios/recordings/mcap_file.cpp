@@ -9,7 +9,7 @@
 #include "core/parameters/parameter.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/recordings/bag_file.h"
-#include "scenarios/recordings/messages.h"
+#include "scenarios/recordings/frames_from_messages.h"
 
 namespace remote_touch {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenarios/recordings/messages.h"
+#include "scenarios/recordings/frames_from_messages.h"
 
 #include <bit>
 #include <cmath>

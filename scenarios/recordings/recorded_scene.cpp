@@ -7,7 +7,7 @@
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/objects/mesh_object.h"
-#include "scenarios/recordings/bag_frames.h"
+#include "scenarios/recordings/bag_file.h"
 
 namespace remote_touch {
 

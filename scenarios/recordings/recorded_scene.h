@@ -16,7 +16,7 @@
 #include "scenarios/recordings/camera_path.h"
 #include "scenarios/recordings/frame_statistics.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

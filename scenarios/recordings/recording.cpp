@@ -11,12 +11,9 @@
 #include "core/points/point_cloud.h"
 #include "scenarios/files/depth_images.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/files/pcd_file.h"
 #include "scenarios/objects/recorded_truth.h"
 #include "scenarios/recordings/bag_file.h"
-#include "scenarios/recordings/bag_frames.h"
 #include "scenarios/recordings/camera_path.h"
-#include "scenarios/recordings/image_folders.h"
 
 namespace remote_touch {
 
@@ -46,15 +43,14 @@ void require_readable_size(const fs::path& file) {
 bool is_single_file(const fs::path& file) {
   constexpr std::array kEndings = {".png", ".obj", ".ply",  ".stl", ".h5",
                                    ".oni", ".csv", ".traj", ".txt", ".tum"};
-  return std::any_of(kEndings.begin(), kEndings.end(),
-                     [&](const char* ending) { return has_ending(file, ending); });
+  return std::ranges::any_of(kEndings, [&](const char* ending) { return has_ending(file, ending); });
 }
 
 // Returns all files of a bag, regardless of the topic and the frames.
 std::vector<InputFile> bag_files(const fs::path& bag) {
   std::vector<InputFile> list;
   for (const fs::path& file : files_of_bag(bag)) list.push_back({file.filename().generic_string(), file});
-  std::sort(list.begin(), list.end(), [](const InputFile& a, const InputFile& b) { return a.name < b.name; });
+  std::ranges::sort(list, [](const InputFile& a, const InputFile& b) { return a.name < b.name; });
   return list;
 }
 

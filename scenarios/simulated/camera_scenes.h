@@ -10,8 +10,8 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "scenarios/scene/scenario.h"
 #include "scenarios/simulated/depth_camera.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

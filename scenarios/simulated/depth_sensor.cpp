@@ -1,4 +1,4 @@
-#include "scenarios/simulated/depth_sensor.h"
+#include "scenarios/simulated/depth_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +73,7 @@ struct WidenedRow {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The sensors of depth_sensor.h: baseline, focal length (0: that of the image), noise, step, window, lateral
+// The sensors of depth_camera.h: baseline, focal length (0: that of the image), noise, step, window, lateral
 // noise, range and angle.
 constexpr Triangulation kStructuredLight{0.075, 580, 0.0625, 0.125, 1, 0.8, 108.75, 80};
 constexpr Triangulation kActiveStereo{0.05, 0, 0.08, 1.0 / 32, 7, 0, 126, 80};

@@ -13,7 +13,7 @@
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

@@ -9,8 +9,8 @@
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "scenarios/scene/scenario.h"
 #include "scenarios/simulated/grid_scenes.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

@@ -11,7 +11,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/noise.h"
 #include "core/points/point_cloud.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

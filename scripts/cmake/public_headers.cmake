@@ -2,17 +2,17 @@
 # runners/interfaces/program/README.md says what they are for.
 
 set(public_headers
-  analysis/comparison/compared_columns.h analysis/storage/result_file.h analysis/trace/measures.h
+  analysis/storage/trace_comparison.h analysis/storage/result_file.h analysis/trace/measures.h
   analysis/storage/hdf5_file.h analysis/trace/trace.h core/beyond/tracked_surface/tracked_renderers.h
   core/dissertation/proxy/proxy_renderer.h core/dissertation/virtual_fixtures/fixture_rules.h core/points/point_cloud.h
-  core/points/vector.h core/kernels/isa.h core/points/noise.h
-  core/parameters/parameter.h core/rendering/frame.h core/rendering/renderer.h
+  core/points/vector.h core/kernels/kernels.h core/points/noise.h
+  core/parameters/parameter.h core/rendering/renderer.h
   core/points/neighbour_search.h
   runners/evaluation/verification/metamorphic_checks.h runners/experiment/catalog/catalog.h
   runners/experiment/catalog/experiment.h runners/experiment/hand/trajectory.h
   runners/experiment/simulation/simulation.h runners/interfaces/cli/program.h
   runners/interfaces/plugins/plugin_library.h runners/interfaces/plugins/remote_touch_plugin.h
-  scenarios/scene/scenario.h)
+  scenarios/simulated/scenario.h)
 if(TARGET runners_evaluation_contract)
   list(APPEND public_headers runners/evaluation/contract/contract_tests.h)
 endif()

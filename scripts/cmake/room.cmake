@@ -3,7 +3,7 @@
 
 set_property(GLOBAL PROPERTY ROOMS "")
 
-# The name of the library of a room: core/dissertation/tool_shape is core_dissertation_tool_shape.
+# The name of the library of a room: core/dissertation/tool_motion is core_dissertation_tool_motion.
 function(room_target path result)
   string(REPLACE "/" "_" name ${path})
   set(${result} ${name} PARENT_SCOPE)

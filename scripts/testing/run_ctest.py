@@ -153,8 +153,8 @@ def cache_of(build):
     """A folder for the tools that tests make, one for each state of the sources that make them: a mistake in these
     sources would else be hidden by tools that were made without it."""
     digest = hashlib.sha256()
-    for folder in ("core/dissertation/tool_motion", "core/dissertation/tool_shape", "core/dissertation/sphere_tree",
-                   "runners/experiment/mesh_files", "runners/experiment/settings"):
+    for folder in ("core/dissertation/tool_motion", "core/mesh", "runners/experiment/mesh_files",
+                   "runners/experiment/settings"):
         for file in sorted((ROOT / folder).rglob("*.[hc]*")):
             digest.update(file.read_bytes())
     here = build / "tools" / digest.hexdigest()[:16]

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/core/dissertation/depth/reference_depth_pipeline.h"
 #include "tests/support/depth_scenes.h"

@@ -11,7 +11,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/trace/measures.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"
 #include "tests/benchmarks/checked_benchmark.h"

@@ -13,7 +13,7 @@
 
 #include "core/dissertation/proxy/proxy_motion.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/points/neighbour_search.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/naive_proxy.h"

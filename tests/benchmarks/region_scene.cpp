@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/dissertation/sphere_tree/sphere_tree.h"
+#include "core/dissertation/tool_motion/sphere_tree.h"
 #include "tests/benchmarks/tool_scene.h"
 
 namespace remote_touch::benchmarks {

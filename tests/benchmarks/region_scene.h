@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/sphere_tree.h"
+#include "core/mesh/voxel_tool.h"
 #include "core/points/point_cloud.h"
 
 namespace remote_touch::benchmarks {

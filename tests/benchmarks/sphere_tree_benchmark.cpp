@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
 #include "core/dissertation/tool_motion/look_ahead_motion.h"
-#include "core/kernels/isa.h"
+#include "core/dissertation/tool_motion/sphere_tree_renderer.h"
+#include "core/kernels/kernels.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/region_scene.h"
 #include "tests/support/cloud_form.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/points/neighbour_search.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/tool_scene.h"

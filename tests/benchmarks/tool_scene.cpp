@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch::benchmarks {
 

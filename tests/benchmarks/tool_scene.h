@@ -7,8 +7,8 @@
 
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
-#include "core/rendering/frame.h"
+#include "core/mesh/voxel_tool.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch::benchmarks {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/points/neighbour_search.h"
 #include "runners/interfaces/plugins/remote_touch_plugin.h"
 

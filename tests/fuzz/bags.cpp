@@ -1,7 +1,7 @@
 // Bags of each kind: a file is opened, and its content read as the program does.
 #include <algorithm>
 
-#include "scenarios/recordings/bag_frames.h"
+#include "scenarios/recordings/bag_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"
 

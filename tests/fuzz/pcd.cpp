@@ -1,5 +1,5 @@
 // PCD files: ascii, binary, binary_compressed.
-#include "scenarios/files/pcd_file.h"
+#include "scenarios/files/depth_images.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"
 

@@ -1,7 +1,7 @@
 // Messages of ROS. The first byte selects the type, and ROS 1 or 2.
 #include <cmath>
 
-#include "scenarios/recordings/bag_frames.h"
+#include "scenarios/recordings/bag_file.h"
 #include "scenarios/recordings/frames_from_messages.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

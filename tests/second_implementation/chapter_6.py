@@ -1,7 +1,7 @@
 """Chapter 6 from its equations: the depth filter of 6.2.1, and a tool turned between walls, 6.3.1.
 
 The tool is turned about the axis along which the walls stand, so the plane across it is enough: the tool is its outline
-there, the hull of four discs (core/dissertation/tool_shape/generated_tools.cpp, "husky" and "block"); a motion is two
+there, the hull of four discs (core/mesh/generated_meshes.cpp, "husky" and "block"); a motion is two
 displacements and a rotation.
 
 Readings, where the print leaves a choice (analysis/theory/README.md has the evidence for each):

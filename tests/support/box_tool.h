@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "core/dissertation/tool_shape/distance_field.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
+#include "core/mesh/distance_field.h"
+#include "core/mesh/voxel_tool.h"
 #include "core/points/point_cloud.h"
 
 namespace remote_touch::scenes {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
+#include "core/dissertation/tool_motion/sphere_tree_renderer.h"
 
 namespace remote_touch {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 
 namespace remote_touch::meshes {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

@@ -1,4 +1,4 @@
-#include "core/beyond/tracked_surface/height_map.h"
+#include "core/beyond/tracked_surface/height_fit.h"
 
 #include <limits>
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/beyond/tracked_surface/height_map.h"
+#include "core/beyond/tracked_surface/height_fit.h"
 
 namespace remote_touch {
 namespace {
@@ -25,7 +25,7 @@ class FarthestPoints {
     ++count_;
   }
   std::size_t farthest() const {
-    return static_cast<std::size_t>(std::max_element(nearest_.begin(), nearest_.end()) - nearest_.begin());
+    return static_cast<std::size_t>(std::ranges::max_element(nearest_) - nearest_.begin());
   }
   double squared_distance(std::size_t point) const { return nearest_[point]; }
   std::size_t chosen_for(std::size_t point) const { return of_[point]; }
@@ -302,8 +302,7 @@ bool SheetPatches::is_face(const SheetTracker& tracker, double sigma) const {
 
 // Starts a patch at the unexplained contact, unless a tracked sheet is there.
 void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& frame, double captured_s) {
-  const auto unused =
-      std::find_if(patches_.begin(), patches_.end(), [](const Patch& p) { return !p.in_use; });
+  const auto unused = std::ranges::find_if(patches_, [](const Patch& p) { return !p.in_use; });
   if (unused == patches_.end()) return;
   SheetTracker& tracker = *unused->tracker;
   const double sigma = patches_.front().tracker->tracks() ? patches_.front().tracker->sigma() : 0;
@@ -311,7 +310,7 @@ void SheetPatches::start_patch(const std::shared_ptr<const NeighbourSearch>& fra
   tracker.begin(unexplained_.p_W, unexplained_.n_W, sigma);
   unused->missing = false, unused->contacts = 0, unused->captured_s = captured_s;
   unused->normal_W = unexplained_.n_W;
-  const bool is_known = std::any_of(patches_.begin(), patches_.end(), [&](const Patch& other) {
+  const bool is_known = std::ranges::any_of(patches_, [&](const Patch& other) {
     return other.in_use && other.tracker->tracks() &&
            other.tracker->region().frame.normal_W().dot(unexplained_.n_W) >= kSameSheet &&
            std::abs(other.tracker->clearance(unexplained_.p_W)) <= 1 + 3.5 * sigma;
@@ -394,7 +393,7 @@ void SheetPatches::note_query(Patch& patch, const ToolPose& pose) const {
 }
 
 bool SheetPatches::must_requery(const ToolPose& pose) const {
-  return std::any_of(patches_.begin(), patches_.end(), [&](const Patch& patch) {
+  return std::ranges::any_of(patches_, [&](const Patch& patch) {
     if (!patch.in_use || patch.missing) return false;
     const double reach_m = patch.tracker->tracks() ? patch.reach_m : unit_m_;
     return !((world(pose, patch.middle_T) - patch.queried_W).squaredNorm() <= reach_m * reach_m);
@@ -427,12 +426,12 @@ Vector6 SheetPatches::requery(const ToolPose& pose, bool held) {
 // --- what is shown ---
 
 bool SheetPatches::changes_points() const {
-  return std::any_of(patches_.begin(), patches_.end(),
-                     [](const Patch& patch) { return patch.in_use && patch.tracker->changes_points(); });
+  return std::ranges::any_of(
+      patches_, [](const Patch& patch) { return patch.in_use && patch.tracker->changes_points(); });
 }
 
 bool SheetPatches::concerns(const BoundingSphere& sphere) const {
-  return std::any_of(patches_.begin(), patches_.end(), [&](const Patch& patch) {
+  return std::ranges::any_of(patches_, [&](const Patch& patch) {
     if (!patch.in_use || !patch.tracker->changes_points()) return false;
     const Ball ball = patch.tracker->region().around();
     const double reach = ball.radius + sphere.radius_m;

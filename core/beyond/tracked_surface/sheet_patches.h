@@ -9,10 +9,10 @@
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 #include "core/dissertation/tool_motion/motion_program.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
-#include "core/dissertation/tool_motion/tiled_cloud.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/mesh/voxel_tool.h"
 #include "core/points/vector.h"
 
 namespace remote_touch {

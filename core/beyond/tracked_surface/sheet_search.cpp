@@ -1,4 +1,4 @@
-#include "core/beyond/tracked_surface/sheet_search.h"
+#include "core/beyond/tracked_surface/sheet_tracker.h"
 
 #include <algorithm>
 #include <cmath>

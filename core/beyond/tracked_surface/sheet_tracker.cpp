@@ -5,8 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/beyond/tracked_surface/height_map.h"
-#include "core/beyond/tracked_surface/sheet_search.h"
+#include "core/beyond/tracked_surface/height_fit.h"
 #include "core/kernels/depth_kernels.h"
 
 namespace remote_touch {

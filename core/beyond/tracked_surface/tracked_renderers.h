@@ -12,11 +12,10 @@
 #include <string>
 
 #include "core/beyond/tracked_surface/sheet_patches.h"
-#include "core/beyond/tracked_surface/sheet_search.h"
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/rendering/surface_velocity.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

@@ -10,14 +10,13 @@
 
 #include "core/kernels/kernels.h"
 #include "core/kernels/point_kernels.h"
-#include "core/kernels/proxy_kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
 #include "core/rendering/renderer.h"
 
 // The equations of 4.2 and 5.3 that a proxy P needs of every point x near it, one statement each. The kernels
-// of core/kernels/proxy_kernels.h compute them for many points at a time and are tested against this form.
+// of core/kernels/point_kernels.h compute them for many points at a time and are tested against this form.
 // Number: double or long double. Positions and radii are in m, directions have unit length.
 namespace remote_touch::equations {
 

@@ -6,11 +6,10 @@
 
 #include "core/dissertation/proxy/proxy_motion.h"
 #include "core/kernels/kernels.h"
-#include "core/kernels/proxy_kernels.h"
+#include "core/kernels/point_kernels.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
 #include "core/rendering/renderer.h"
-#include "core/rendering/surface_velocity.h"
 
 namespace remote_touch {
 

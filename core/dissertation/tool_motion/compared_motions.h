@@ -9,7 +9,7 @@
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
+#include "core/mesh/voxel_tool.h"
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/dissertation/tool_shape/distance_field.h"
+#include "core/mesh/distance_field.h"
 
 namespace remote_touch {
 namespace {

@@ -12,9 +12,9 @@
 #include "core/dissertation/tool_motion/near_points.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
-#include "core/dissertation/tool_shape/distance_field.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/tool_kernels.h"
+#include "core/mesh/distance_field.h"
+#include "core/mesh/voxel_tool.h"
 
 namespace remote_touch {
 

@@ -14,8 +14,8 @@
 
 #include "core/dissertation/tool_motion/motion_program.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/kernels/tool_kernels.h"
+#include "core/mesh/voxel_tool.h"
 #include "core/points/neighbour_search.h"
 #include "core/rendering/renderer.h"
 

@@ -10,7 +10,6 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

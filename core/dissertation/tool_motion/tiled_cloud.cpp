@@ -1,4 +1,4 @@
-#include "core/dissertation/tool_motion/tiled_cloud.h"
+#include "core/dissertation/tool_motion/touch_finder.h"
 
 #include <algorithm>
 #include <cmath>

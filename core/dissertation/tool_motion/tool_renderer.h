@@ -11,7 +11,6 @@
 #include "core/dissertation/tool_motion/motion_program.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/rendering/renderer.h"
-#include "core/rendering/surface_velocity.h"
 
 namespace remote_touch {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/dissertation/tool_shape/distance_field.h"
+#include "core/mesh/distance_field.h"
 
 namespace remote_touch {
 

@@ -284,15 +284,13 @@ std::vector<std::size_t> FixtureAssignment::rules_without_points(const PointClou
   for (std::size_t i = 0; i < rules_.size(); ++i)
     about_rule(i, [&] {
       const std::vector<double> weights = rules_[i]->weights(cloud);
-      if (std::none_of(weights.begin(), weights.end(), [](double weight) { return weight > 0; }))
-        numbers.push_back(i);
+      if (std::ranges::none_of(weights, [](double weight) { return weight > 0; })) numbers.push_back(i);
     });
   return numbers;
 }
 
 bool FixtureAssignment::changes_with_time() const {
-  return switches_ || std::any_of(rules_.begin(), rules_.end(),
-                                  [](const auto& rule) { return rule->changes_with_time(); });
+  return switches_ || std::ranges::any_of(rules_, [](const auto& rule) { return rule->changes_with_time(); });
 }
 
 }  // namespace remote_touch

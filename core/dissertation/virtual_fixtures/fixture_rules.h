@@ -13,7 +13,7 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
-#include "core/rendering/frame.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 

@@ -14,7 +14,6 @@
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/parameters/parameter.h"
-#include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

@@ -16,9 +16,9 @@
 #include <string>
 #include <utility>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/points/neighbour_search.h"
-#include "core/rendering/frame.h"
+#include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/catalog.h"
 
 // A flat cloud as a frame, for tests and benchmarks.

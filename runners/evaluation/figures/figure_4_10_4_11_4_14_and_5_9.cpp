@@ -11,8 +11,8 @@
 
 #include "analysis/theory/surface_contacts.h"
 #include "analysis/trace/contact_measures.h"
-#include "core/dissertation/tool_shape/generated_tools.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/point_cloud.h"
 #include "runners/evaluation/figures/figure_pictures.h"
 #include "runners/evaluation/figures/figure_recipe.h"

@@ -8,12 +8,11 @@
 
 #include "analysis/trace/contact_measures.h"
 #include "analysis/trace/measures.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "runners/evaluation/figures/figure_pictures.h"
 #include "runners/evaluation/figures/figure_recipe.h"
 #include "scenarios/simulated/depth_camera.h"
-#include "scenarios/simulated/depth_sensor.h"
 
 namespace remote_touch {
 

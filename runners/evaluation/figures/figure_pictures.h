@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "analysis/storage/result_file.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
+#include "core/mesh/voxel_tool.h"
 #include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/experiment.h"
 

@@ -7,7 +7,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/trace/measures.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "runners/sweep/sweep_run.h"
 #include "scenarios/files/input_files.h"

@@ -10,7 +10,7 @@
 #include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
-#include "core/dissertation/sphere_tree/sphere_tree.h"
+#include "core/dissertation/tool_motion/sphere_tree.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/figures/figure_pictures.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool_shape/voxel_tool.h"
+#include "core/mesh/voxel_tool.h"
 #include "runners/evaluation/figures/figure_recipe.h"
 #include "scenarios/simulated/camera_scenes.h"
 

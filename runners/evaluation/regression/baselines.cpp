@@ -9,11 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/storage/result_file.h"
+#include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"

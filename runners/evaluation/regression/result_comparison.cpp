@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/result_file.h"
+#include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"

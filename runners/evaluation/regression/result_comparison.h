@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/comparison/compared_columns.h"
-#include "analysis/comparison/sweep_comparison.h"
-#include "analysis/comparison/trace_comparison.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/trace_comparison.h"
+#include "analysis/sweeps/sweep_comparison.h"
 
 namespace remote_touch {
 

@@ -19,11 +19,11 @@
 #include <string_view>
 #include <thread>
 
-#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/other_processes.h"
+#include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/simulation/simulation.h"
 

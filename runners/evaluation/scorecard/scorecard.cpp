@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "analysis/trace/interval_estimates.h"
-#include "analysis/trace/paired_test.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 
 namespace remote_touch {

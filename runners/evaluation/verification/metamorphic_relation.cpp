@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch {
 namespace {

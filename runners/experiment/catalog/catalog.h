@@ -15,11 +15,10 @@
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/noise.h"
-#include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

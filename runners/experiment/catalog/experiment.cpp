@@ -15,7 +15,7 @@
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/simulated/depth_sensor.h"
+#include "scenarios/simulated/depth_camera.h"
 
 namespace remote_touch {
 namespace {

@@ -12,7 +12,7 @@
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/settings/changed_settings.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

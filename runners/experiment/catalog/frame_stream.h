@@ -10,10 +10,9 @@
 #include "core/dissertation/depth/depth_pipeline.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/points/noise.h"
-#include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/sessions/sensor_frame.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

@@ -10,7 +10,7 @@
 #include "core/points/point_cloud.h"
 #include "runners/experiment/hand/image_surface.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

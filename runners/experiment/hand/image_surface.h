@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/points/point_cloud.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

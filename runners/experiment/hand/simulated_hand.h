@@ -12,7 +12,6 @@
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

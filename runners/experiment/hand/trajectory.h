@@ -11,9 +11,9 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "core/rendering/frame.h"
+#include "core/rendering/renderer.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

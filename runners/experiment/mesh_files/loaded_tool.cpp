@@ -4,8 +4,7 @@
 #include <type_traits>
 
 #include "analysis/storage/digest.h"
-#include "core/dissertation/sphere_tree/sphere_tree_renderer.h"
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/dissertation/tool_motion/sphere_tree_renderer.h"
 #include "core/mesh/triangle_mesh.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/settings/cache_file.h"

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/beyond/tracked_surface/tracked_renderers.h"
-#include "core/dissertation/sphere_tree/sphere_tree.h"
 #include "core/dissertation/tool_motion/compared_motions.h"
+#include "core/dissertation/tool_motion/sphere_tree.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
+#include "core/mesh/voxel_tool.h"
 #include "core/parameters/parameter.h"
 #include "core/rivals/inner_sphere_motion.h"
 #include "scenarios/recordings/recording.h"

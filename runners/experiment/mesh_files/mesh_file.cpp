@@ -17,7 +17,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/other_processes.h"
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 

@@ -29,7 +29,7 @@ std::string mesh_reader_version();
 
 // Meshes that a user names: built-in ones and files.
 
-// "dog, husky, ...": the names of the meshes that need no file, see generated_tools.h.
+// "dog, husky, ...": the names of the meshes that need no file, see triangle_mesh.h.
 std::string names_of_built_in_meshes();
 
 // Returns why this can be no name of a mesh, in one line; empty if it can. parameter: its name.

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/mesh/mesh_distance.h"
-#include "core/mesh/mesh_sides.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_file.h"

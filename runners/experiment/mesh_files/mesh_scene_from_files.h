@@ -8,8 +8,8 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
+#include "scenarios/objects/mesh_object.h"
 #include "scenarios/objects/mesh_scene.h"
-#include "scenarios/objects/pose_file.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/recordings/recording.h"
 

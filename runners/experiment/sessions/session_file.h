@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/storage/block_journal.h"
-#include "analysis/storage/hdf5_appender.h"
+#include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"

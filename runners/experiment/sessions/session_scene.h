@@ -9,7 +9,7 @@
 #include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "scenarios/recordings/recording.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

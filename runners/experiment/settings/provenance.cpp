@@ -12,7 +12,7 @@
 
 #include "analysis/storage/digest.h"
 #include "build_info.h"  // written by the build: version, commit, compiler, flags
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "scenarios/files/input_files.h"
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trace/force_fidelity.h"
-#include "analysis/trace/tool_and_slave_measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/force_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/number_columns.h"

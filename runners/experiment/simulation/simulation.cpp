@@ -8,7 +8,7 @@
 #include <set>
 
 #include "analysis/trace/trace.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/hand/teleoperation.h"

@@ -14,7 +14,7 @@
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

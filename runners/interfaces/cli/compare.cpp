@@ -8,10 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "analysis/comparison/compared_columns.h"
-#include "analysis/comparison/trace_comparison.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/result_file.h"
+#include "analysis/storage/trace_comparison.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/comparison_report.h"

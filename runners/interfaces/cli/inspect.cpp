@@ -11,7 +11,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_file.h"

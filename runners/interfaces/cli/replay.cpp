@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/result_file.h"
+#include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/comparison_report.h"

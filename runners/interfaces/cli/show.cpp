@@ -10,7 +10,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/trace.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/regression/result_comparison.h"

@@ -15,7 +15,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"

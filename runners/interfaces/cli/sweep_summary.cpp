@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "core/parameters/parameter.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/sweep/stored_sweep.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/evaluation/scorecard/benchmark.h"

@@ -11,7 +11,7 @@
 #include "core/points/noise.h"
 #include "core/rendering/renderer.h"
 #include "runners/interfaces/python/arrays.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

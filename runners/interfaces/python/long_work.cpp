@@ -10,7 +10,7 @@
 #include <mutex>
 #include <thread>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 

@@ -17,7 +17,7 @@
 #include "runners/interfaces/python/long_work.h"
 #include "scenarios/objects/mesh_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
-#include "scenarios/simulated/depth_sensor.h"
+#include "scenarios/simulated/depth_camera.h"
 
 namespace remote_touch {
 

@@ -11,7 +11,6 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "core/rendering/frame.h"
 #include "core/rendering/renderer.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/live/devices/clock.h"

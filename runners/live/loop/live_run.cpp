@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/simulation/run_notes.h"

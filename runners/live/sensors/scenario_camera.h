@@ -11,7 +11,7 @@
 
 #include "runners/experiment/sessions/sensor_frame.h"
 #include "runners/live/sensors/depth_source.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

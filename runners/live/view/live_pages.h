@@ -15,7 +15,7 @@
 #include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
-#include "core/rendering/frame.h"
+#include "core/rendering/renderer.h"
 #include "runners/live/devices/built_in_devices.h"
 #include "runners/live/devices/haptic_device.h"
 #include "runners/live/loop/live_run.h"

@@ -9,7 +9,7 @@
 #include "runners/presentation/pages/result_pages.h"
 #include "runners/presentation/pages/shown_run.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 namespace {

@@ -4,10 +4,10 @@
 #include <array>
 #include <charconv>
 
-#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "core/parameters/parameter.h"
 #include "runners/sweep/stored_sweep.h"
 

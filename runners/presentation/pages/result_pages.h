@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
+#include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "core/kernels/kernels.h"
 #include "runners/presentation/pages/shown_run.h"

@@ -9,7 +9,7 @@
 #include <queue>
 #include <utility>
 
-#include "analysis/comparison/trace_comparison.h"
+#include "analysis/storage/trace_comparison.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"

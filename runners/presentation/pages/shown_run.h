@@ -12,18 +12,18 @@
 #include <string>
 #include <vector>
 
-#include "analysis/comparison/compared_columns.h"
 #include "analysis/storage/hdf5_file.h"
-#include "core/dissertation/sphere_tree/sphere_tree.h"
+#include "analysis/storage/trace_comparison.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
-#include "core/dissertation/tool_shape/voxel_tool.h"
+#include "core/dissertation/tool_motion/sphere_tree.h"
 #include "core/kernels/kernels.h"
+#include "core/mesh/voxel_tool.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "core/rendering/frame.h"
+#include "core/rendering/renderer.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/scene/scenario.h"
+#include "scenarios/simulated/scenario.h"
 
 namespace remote_touch {
 

@@ -1,12 +1,14 @@
-// A call that the HDF5 library refused becomes an exception with the reason.
-
 #include "analysis/storage/hdf5_values.h"
 
 #include <gtest/gtest.h>
 #include <hdf5_hl.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
 #include <array>
 #include <cerrno>
+#include <cstddef>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -15,8 +17,11 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/result_file.h"
+#include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
+// A call that the HDF5 library refused becomes an exception with the reason.
 namespace remote_touch::hdf5_handle_test {
 namespace {
 
@@ -208,3 +213,96 @@ TEST_F(Hdf5Dimensions, TextsOfFormerFilesComeBack) {
 
 }  // namespace
 }  // namespace remote_touch::hdf5_values_test
+
+// The answer of a child process about an HDF5 file arrives unchanged, or is refused.
+namespace remote_touch::hdf5_source_test {
+namespace {
+
+const Hdf5Summary kSummary{{{"schema", "x"}, {"empty", ""}}, {"/a", "/b/c"}, {-1, 2048}};
+
+std::vector<Column> columns() {
+  return {{"x", "m", "a vector", std::vector<double>{1, -0.0, 5e-324, 1e300, 2, 3}, 3, {}},
+          {"state", "1", "", std::vector<std::int32_t>{0, 1, -7}, 1, {"no", "yes"}},
+          {"hash", "1", "", std::vector<std::uint64_t>{0, ~std::uint64_t{0}}},
+          {"name", "", "", std::vector<std::string>{"", "gr\xc3\xbcn", std::string("a\0b", 3)}},
+          {"none", "s", "", std::vector<double>{}}};
+}
+
+TEST(ChildAnswer, ComesBackAsItWas) {
+  const Hdf5Summary summary = unpacked_summary(packed(kSummary));
+  EXPECT_EQ(summary.attributes, kSummary.attributes);
+  EXPECT_EQ(summary.datasets, kSummary.datasets);
+  EXPECT_EQ(summary.offsets, kSummary.offsets);
+  for (const Column& column : columns()) {
+    const Column again = unpacked_column(packed(column));
+    EXPECT_EQ(again.name, column.name);
+    EXPECT_EQ(again.units, column.units);
+    EXPECT_EQ(again.long_name, column.long_name);
+    EXPECT_EQ(again.values, column.values);
+    EXPECT_EQ(again.width, column.width);
+    EXPECT_EQ(again.value_names, column.value_names);
+  }
+}
+
+TEST(ChildAnswer, IsRefusedIfItIsCutOrTooLong) {
+  const std::string summary = packed(kSummary);
+  for (std::size_t length = 0; length < summary.size(); ++length)
+    EXPECT_THROW(unpacked_summary(summary.substr(0, length)), std::runtime_error) << length;
+  EXPECT_THROW(unpacked_summary(summary + '\0'), std::runtime_error);
+  for (const Column& column : columns()) {
+    const std::string bytes = packed(column);
+    for (std::size_t length = 0; length < bytes.size(); ++length)
+      EXPECT_THROW(unpacked_column(bytes.substr(0, length)), std::runtime_error) << column.name << length;
+    EXPECT_THROW(unpacked_column(bytes + '\0'), std::runtime_error) << column.name;
+  }
+}
+
+TEST(ChildAnswer, IsRefusedIfItsRowsAreNotWhole) {
+  Column column = columns()[0];
+  for (const int width : {0, -1, 4, 7}) {
+    column.width = width;
+    EXPECT_THROW(unpacked_column(packed(column)), std::runtime_error) << width;
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::hdf5_source_test
+
+// Files that cannot be read as results are refused with a message of one line.
+namespace remote_touch::hdf5_reading_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expect_unreadable(const fs::path& file) {
+  const std::string message = refusal([&] { read_hdf5(file); });
+  EXPECT_HAS(message, file.string() + ": ");
+  EXPECT_HAS(message, "expected");
+}
+
+TEST(ReadHdf5, RefusesAMissingFileAndOtherKindsOfFiles) {
+  const TestFolder folder("hdf5_reading_test");
+  expect_unreadable(folder / "missing.h5");
+  expect_unreadable(folder.path());
+  expect_unreadable(folder.write("empty.h5", ""));
+  expect_unreadable(folder.write("text.h5", "{\"seed\": 1}\n"));
+  expect_unreadable(folder.write("signature.h5", "\x89HDF\r\n\x1a\n"));
+  expect_unreadable(folder.write("a file", "") / "inside.h5");
+  expect_unreadable(folder / std::string(300, 'a'));
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);  // nobody writes into it
+  expect_unreadable(folder / "pipe");
+  fs::create_symlink(folder / "loop", folder / "loop");
+  expect_unreadable(folder / "loop");
+}
+
+TEST(ReadHdf5, RefusesATruncatedFile) {
+  const TestFolder folder("hdf5_reading_test");
+  write_trace(folder / "whole.h5", awkward_trace(50), kProvenance, {});
+  const std::string bytes = bytes_of(folder / "whole.h5");
+  for (std::size_t i = 0; i < 200; ++i)
+    expect_unreadable(folder.write("cut.h5", bytes.substr(0, i * bytes.size() / 200)));
+  EXPECT_NO_THROW(read_hdf5(folder.write("cut.h5", bytes)));
+}
+
+}  // namespace
+}  // namespace remote_touch::hdf5_reading_test

@@ -5,14 +5,16 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/digest.h"
+#include "analysis/storage/hdf5_reader.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::other_processes_test {

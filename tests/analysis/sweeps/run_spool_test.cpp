@@ -1,5 +1,5 @@
 // The spool of runs: many parts, larger than its windows, come back in the order of their numbers.
-#include "analysis/sweeps/run_spool.h"
+#include "analysis/sweeps/sweep_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-// Means and paired differences of a sweep, on results made by hand.
 #include "analysis/sweeps/sweep_means.h"
 
 #include <gtest/gtest.h>
@@ -6,13 +5,14 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/interval_estimates.h"
-#include "analysis/trace/paired_test.h"
 
+// Means and paired differences of a sweep, on results made by hand.
 namespace remote_touch::sweep_means_test {
 namespace {
 
@@ -202,3 +202,262 @@ TEST(SweepMeans, CountMoreThanTwoBillionRuns) {
 
 }  // namespace
 }  // namespace remote_touch::sweep_means_test
+
+namespace remote_touch::event_limits_test {
+namespace {
+
+// Limits of an event along an axis, on results made by hand.
+
+constexpr int kRuns = 100;
+
+// A sweep over two methods and these values of x; events[method][i] of 100 runs of a cell have the event.
+SweepResult sweep_of(const std::vector<double>& x, const std::vector<std::vector<int>>& events) {
+  SweepResult result;
+  std::vector<std::int32_t> places;
+  std::vector<std::string> names;
+  for (std::size_t method = 0; method < events.size(); ++method)
+    places.push_back(static_cast<std::int32_t>(method)), names.push_back("m" + std::to_string(method));
+  result.axes = {{"method", "1", "", places, 1, names}, {"x", "m", "", x}};
+  result.replicates = kRuns;
+  result.measures = {{"event", "1", "", {}}};
+  result.start(false);
+  auto& values = std::get<std::vector<double>>(result.measures[0].values);
+  for (std::size_t method = 0; method < events.size(); ++method)
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (int replicate = 0; replicate < kRuns; ++replicate) {
+        const std::size_t run = result.run(result.cell_at({method, i}), replicate);
+        result.state[run] = RunState::done;
+        values[run] = replicate < events[method][i] ? 1 : 0;
+      }
+  return result;
+}
+
+Table limits_of(const SweepResult& result, double level = 0.5, double threshold = 0.5) {
+  return event_limits(result, {"event", threshold, 1, level}, independent_streams(result.cell_count())).table;
+}
+
+std::optional<bool> direction(const SweepResult& result) {
+  return event_limits(result, {"event", 0.5, 1, 0.5}, independent_streams(result.cell_count())).rises;
+}
+
+std::string place(const Table& table, std::size_t row) {
+  for (const Column& column : table.columns)
+    if (column.name == "place")
+      return column
+          .value_names[static_cast<std::size_t>(std::get<std::vector<std::int32_t>>(column.values)[row])];
+  return {};
+}
+
+TEST(EventLimits, AreWhereTheShareCrossesTheLevel) {
+  const Table table = limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}, {20, 60, 100}}));
+  EXPECT_DOUBLE_EQ(numbers(table, "value")[0], 3);
+  EXPECT_DOUBLE_EQ(numbers(table, "value")[1], 1.75);
+  EXPECT_EQ(place(table, 0), "inside");
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}), 0.1), "value")[0], 1.4);
+}
+
+TEST(EventLimits, AnEventMayBecomeLessProbable) {
+  const SweepResult result = sweep_of({1, 2, 4}, {{75, 25, 0}});
+  EXPECT_EQ(direction(result), false);
+  EXPECT_DOUBLE_EQ(numbers(limits_of(result), "value")[0], 1.5);
+  EXPECT_EQ(direction(sweep_of({1, 2, 4}, {{0, 25, 75}})), true);
+}
+
+// The intervals of 25 and 75 of 100 runs with the event are off 0.5, those of 45 and 55 are not.
+TEST(EventLimits, AreEnclosedByTheValuesThatDifferClearlyFromTheLevel) {
+  const Table table =
+      limits_of(sweep_of({1, 2, 4, 8}, {{0, 25, 75, 100}, {0, 45, 55, 100}, {40, 60, 80, 90}}));
+  EXPECT_EQ(numbers(table, "low")[0], 2);
+  EXPECT_EQ(numbers(table, "high")[0], 4);
+  EXPECT_EQ(numbers(table, "low")[1], 1);
+  EXPECT_EQ(numbers(table, "high")[1], 8);
+  const Table falling = limits_of(sweep_of({1, 2, 4}, {{75, 25, 0}, {100, 55, 52}}));
+  EXPECT_EQ(numbers(falling, "low")[0], 1);
+  EXPECT_EQ(numbers(falling, "high")[0], 2);
+  EXPECT_EQ(numbers(falling, "low")[1], 1);
+  EXPECT_TRUE(std::isnan(numbers(falling, "high")[1]));
+}
+
+std::vector<std::int32_t> counts(const Table& table, const std::string& name) {
+  for (const Column& column : table.columns)
+    if (column.name == name) return std::get<std::vector<std::int32_t>>(column.values);
+  return {};
+}
+
+TEST(EventLimits, CountTheRunsWithANote) {
+  SweepResult result = sweep_of({1, 2}, {{25, 75}});
+  EXPECT_TRUE(counts(limits_of(result), "noted_runs").empty());
+  result.note_kinds = {"no contact"};
+  result.notes.assign(result.run_count(), 0);
+  result.notes[0] = result.notes[kRuns] = 1;
+  EXPECT_EQ(counts(limits_of(result), "noted_runs"), std::vector<std::int32_t>{2});
+}
+
+// No run, every run, or a single run has the event: nothing shows a direction, and a stated one is obeyed.
+TEST(EventLimits, HaveNoDirectionWithoutEvidence) {
+  const std::vector<double> x = {1, 2, 3, 4};
+  for (const int events : {0, kRuns}) {
+    const std::vector<int> all(4, events);
+    const SweepResult result = sweep_of(x, {all, all});
+    const Table table = limits_of(result);
+    EXPECT_EQ(direction(result), std::nullopt);
+    EXPECT_EQ(place(table, 0), events == 0 ? "none of the runs" : "all of the runs");
+    EXPECT_TRUE(std::isnan(numbers(table, "low")[0]) && std::isnan(numbers(table, "high")[0]));
+    for (const bool rises : {true, false}) {
+      const Table stated =
+          event_limits(result, {"event", 0.5, 1, 0.5, rises}, independent_streams(result.cell_count())).table;
+      EXPECT_EQ(place(stated, 0), (events == 0) == rises ? "above the last value" : "below the first value");
+      EXPECT_EQ(numbers(stated, (events == 0) == rises ? "low" : "high")[0], (events == 0) == rises ? 4 : 1);
+    }
+  }
+  EXPECT_EQ(direction(sweep_of(x, {{0, 0, 0, 1}})), std::nullopt);
+  EXPECT_EQ(direction(sweep_of(x, {{1, 0, 0, 0}, {0, 0, 0, 1}})), std::nullopt);
+  EXPECT_EQ(direction(sweep_of(x, {{0, 0, 0, 10}})), true);
+}
+
+// An unknown outcome is neither an event nor its absence: the limit is that of the known runs, the interval
+// covers both, and the row counts them.
+TEST(EventLimits, KeepUnknownOutcomesApart) {
+  SweepResult result = sweep_of({1, 2, 3}, {{0, 20, 100}});
+  auto& values = std::get<std::vector<double>>(result.measures[0].values);
+  for (int i = 0; i < 40; ++i) values[result.run(1, kRuns - 1 - i)] = std::nan("");
+  const Table table = limits_of(result);
+  EXPECT_NEAR(numbers(table, "value")[0], 2 + (0.5 - 20. / 60) / (1 - 20. / 60), 1e-12);
+  EXPECT_EQ(numbers(table, "low")[0], 1);
+  EXPECT_EQ(counts(table, "unknown"), std::vector<std::int32_t>{40});
+  EXPECT_EQ(std::get<std::vector<std::string>>(table.columns[table.columns.size() - 2].values)[0],
+            "at one value 40 of 100 runs unknown");
+}
+
+// Fixed cells count as one run, which is certain.
+TEST(EventLimits, OfFixedCellsAreCertain) {
+  const SweepResult result = sweep_of({1, 3, 5, 7, 9}, {{0, 0, 100, 100, 100}});
+  CellStreams fixed = independent_streams(result.cell_count());
+  for (RandomStreams& draws : fixed.draws) draws = {};
+  const EventLimits limits = event_limits(result, {"event", 0.5, 1, 0.5}, fixed);
+  EXPECT_EQ(limits.rises, true);
+  EXPECT_EQ(numbers(limits.table, "low")[0], 3);
+  EXPECT_EQ(numbers(limits.table, "high")[0], 5);
+  EXPECT_EQ(counts(limits.table, "runs"), std::vector<std::int32_t>{5});
+}
+
+// Runs that share random numbers along the axis count as one, also if only counts are known.
+TEST(EventLimits, CountClusters) {
+  const SweepResult result = sweep_of({1, 2, 4}, {{0, 25, 75}, {20, 60, 100}});
+  CellStreams common = independent_streams(result.cell_count()), registered = common;
+  common.noise_cell = {0, 0, 0, 3, 3, 3};
+  for (RandomStreams& draws : registered.draws) draws.of_replicate = true;
+  const LimitQuestion question{"event", 0.5, 1, 0.5};
+  const std::vector<double>& values = result.measure("event");
+  const CellCounts of_cells{[&](std::size_t cell) { return event_counts(result, values, cell); }};
+  for (const CellStreams& streams : {common, registered})
+    for (const Table& table : {event_limits(result, question, streams).table,
+                               event_limits(result, of_cells, question, streams).table}) {
+      EXPECT_EQ(counts(table, "runs"), (std::vector<std::int32_t>{kRuns, kRuns}));
+      EXPECT_EQ(std::get<std::vector<std::string>>(table.columns[table.columns.size() - 2].values)[0],
+                "300 runs share random numbers and count as 100");
+    }
+}
+
+// The shares 0.4 and 0.2 are pooled to 0.3, because the event can only become more probable.
+TEST(EventLimits, IgnoreAStepBack) {
+  const Table table = limits_of(sweep_of({1, 2, 3, 4}, {{0, 40, 20, 70}}));
+  EXPECT_DOUBLE_EQ(numbers(table, "value")[0], 3.5);
+}
+
+TEST(EventLimits, OutsideTheValuesAreNotKnown) {
+  const Table table = limits_of(sweep_of({1, 2}, {{0, 10}, {90, 100}, {0, 100}}));
+  EXPECT_TRUE(std::isnan(numbers(table, "value")[0]));
+  EXPECT_EQ(place(table, 0), "above the last value");
+  EXPECT_TRUE(std::isnan(numbers(table, "value")[1]));
+  EXPECT_EQ(place(table, 1), "below the first value");
+  EXPECT_EQ(place(table, 2), "inside");
+}
+
+TEST(EventLimits, ARowThatChangesTheOtherWayHasNone) {
+  const Table table = limits_of(sweep_of({1, 2, 3}, {{0, 50, 100}, {0, 50, 100}, {100, 100, 0}}));
+  EXPECT_EQ(place(table, 0), "inside");
+  EXPECT_EQ(place(table, 2), "changes the other way");
+  EXPECT_TRUE(std::isnan(numbers(table, "value")[2]));
+}
+
+TEST(EventLimits, ALevelThatIsReachedExactlyIsInside) {
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{0, 90}}), 0.9), "value")[0], 2);
+  EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{70, 100}}), 0.7), "value")[0], 1);
+}
+
+TEST(EventLimits, DoNotDependOnTheOrderOfTheValues) {
+  const Table sorted = limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}));
+  const Table mixed = limits_of(sweep_of({4, 1, 2}, {{75, 0, 25}}));
+  EXPECT_EQ(numbers(mixed, "value"), numbers(sorted, "value"));
+  EXPECT_EQ(numbers(mixed, "high"), numbers(sorted, "high"));
+}
+
+TEST(EventLimits, UseFinishedRunsOnly) {
+  SweepResult result = sweep_of({1, 2, 4}, {{0, 25, 75}});
+  for (int replicate = 0; replicate < kRuns; ++replicate)
+    result.state[result.run(result.cell_at({0, 1}), replicate)] = RunState::failed;
+  const Table table = limits_of(result);
+  EXPECT_DOUBLE_EQ(numbers(table, "value")[0], 3);  // between 1 and 4
+  EXPECT_EQ(counts(table, "runs")[0], 2 * kRuns);
+  for (RunState& state : result.state) state = RunState::pending;
+  EXPECT_EQ(place(limits_of(result), 0), "no runs");
+}
+
+// The last value of the axis has no runs, so it is not known whether the limit is above it.
+TEST(EventLimits, AreNotSaidToBeOutsideAnAxisWhoseEndHasNoRuns) {
+  SweepResult result = sweep_of({1, 2, 4}, {{0, 0, 100}, {0, 0, 0}, {0, 50, 100}});
+  for (int replicate = 0; replicate < kRuns; ++replicate)
+    result.state[result.run(result.cell_at({0, 2}), replicate)] = RunState::pending;
+  EXPECT_EQ(place(limits_of(result), 0), "above the values with runs");
+  EXPECT_EQ(place(limits_of(result), 1), "above the last value");
+  result = sweep_of({1, 2, 4}, {{0, 100, 100}, {0, 50, 100}});
+  for (int replicate = 0; replicate < kRuns; ++replicate)
+    result.state[result.run(result.cell_at({0, 0}), replicate)] = RunState::pending;
+  EXPECT_EQ(place(limits_of(result), 0), "below the values with runs");
+}
+
+TEST(EventLimits, AnEventIsAMeasureAboveTheThreshold) {
+  SweepResult result = sweep_of({1, 2}, {{0, 100}});
+  for (double& value : std::get<std::vector<double>>(result.measures[0].values)) value = 3 + 2 * value;
+  EXPECT_DOUBLE_EQ(numbers(limits_of(result, 0.5, 4), "value")[0], 1.5);
+  EXPECT_EQ(place(limits_of(result, 0.5, 6), 0), "none of the runs");
+}
+
+TEST(EventLimits, OfACurveThatRisesAndFallsAreNone) {
+  const Table table = limits_of(sweep_of({1, 2, 3, 4, 5}, {{0, 100, 100, 100, 0}, {0, 0, 50, 100, 100}}));
+  EXPECT_EQ(place(table, 0), "rises and falls");
+  EXPECT_TRUE(std::isnan(numbers(table, "value")[0]));
+  EXPECT_EQ(place(table, 1), "inside");
+}
+
+// Values with 5 runs borrow from their neighbours only if both curves have independent runs. The second
+// curve draws nothing.
+TEST(EventLimits, AreComparedWithTheRunsOfBothCurves) {
+  SweepResult result = sweep_of({1, 2, 3, 4, 5, 6}, {{0, 0, 0, 100, 100, 100}, {0, 0, 0, 100, 100, 100}});
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    const std::size_t replicate = static_cast<std::size_t>(result.replicate_of(run));
+    const std::size_t cell = result.cell_of(run);
+    if (replicate >= 8 || (cell < 6 && (replicate + cell) % 8 < 3)) result.state[run] = RunState::pending;
+  }
+  const LimitQuestion question{"event", 0.5, 1, 0.5, true};
+  CellStreams streams = independent_streams(result.cell_count());
+  for (std::size_t cell = 6; cell < 12; ++cell) streams.draws[cell] = {};
+  const auto low = [&] {
+    return numbers(limit_comparisons(result, question, 0, streams, LimitComparison::difference), "low")[0];
+  };
+  EXPECT_FALSE(std::isnan(low()));
+  for (std::size_t cell = 0; cell < 6; ++cell) streams.noise_cell[cell] = 0;
+  EXPECT_TRUE(std::isnan(low()));
+}
+
+TEST(EventLimits, HaveTheValuesOfTheOtherAxes) {
+  const Table table = limits_of(sweep_of({1, 2}, {{0, 100}, {0, 100}}));
+  EXPECT_EQ(table.columns[0].name, "method");
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(table.columns[0].values), (std::vector<std::int32_t>{0, 1}));
+  EXPECT_EQ(table.columns[0].value_names[1], "m1");
+  EXPECT_EQ(table.columns[1].units, "m");
+}
+
+}  // namespace
+}  // namespace remote_touch::event_limits_test

@@ -10,7 +10,6 @@
 
 #include "analysis/trace/curve_fits.h"
 #include "analysis/trace/interval_estimates.h"
-#include "analysis/trace/paired_test.h"
 
 namespace remote_touch::coverage_test {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "analysis/trace/curve_fits.h"
 #include "analysis/trace/interval_estimates.h"
-#include "analysis/trace/paired_test.h"
 
 namespace remote_touch::estimates_test {
 namespace {

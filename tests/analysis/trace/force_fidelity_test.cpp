@@ -1,4 +1,4 @@
-#include "analysis/trace/force_fidelity.h"
+#include "analysis/trace/force_measures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,15 @@
 #include "analysis/trace/interval_estimates.h"
 
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <vector>
+
+#include "analysis/trace/curve_fits.h"
 
 namespace remote_touch::means_and_extremes_test {
 namespace {
@@ -119,29 +123,235 @@ TEST(ExactFraction, HasAnIntervalOnlyIfOutcomesAreUnknown) {
   EXPECT_EQ(unknown.high, 7.0 / 8);
 }
 
-TEST(EstimatedQuantile, CoversAsOftenAsItSays) {
-  std::mt19937 random(2);
-  for (const double q : {0.5, 0.95}) {
-    int covered = 0;
-    for (int trial = 0; trial < 2000; ++trial) {
-      std::vector<double> values(90);
-      for (double& v : values) v = std::generate_canonical<double, 53>(random);
-      const Estimate e = estimated_quantile(values, q);
-      covered += !(e.low > q) && !(e.high < q) ? 1 : 0;
+}  // namespace
+}  // namespace remote_touch::interval_estimates_test
+
+// Tests and intervals for pairs: closed forms, published examples, enumeration and simulation.
+namespace remote_touch::paired_test_test {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(RootMeanSquare, NeitherOverflowsNorVanishes) {
+  EXPECT_EQ(root_mean_square({}), 0);
+  EXPECT_EQ(root_mean_square({0, 0}), 0);
+  EXPECT_NEAR(root_mean_square({3, -4}), std::sqrt(12.5), 1e-15);
+  EXPECT_NEAR(root_mean_square({3e300, 4e300}) / 1e300, std::sqrt(12.5), 1e-15);
+  EXPECT_NEAR(root_mean_square({3e-300, 4e-300}) / 1e-300, std::sqrt(12.5), 1e-15);
+  EXPECT_EQ(root_mean_square({1, kInfinity}), kInfinity);
+}
+
+// If all n pairs differ the same way, p is 2 / 2^n.
+TEST(SignTest, IsThatOfAFairCoin) {
+  EXPECT_EQ(sign_test(0, 0), 1);
+  EXPECT_EQ(sign_test(0, 5), 0.0625);
+  for (int n = 1; n <= 900; ++n)
+    EXPECT_NEAR(sign_test(0, n) / std::min(1.0, std::ldexp(2.0, -n)), 1, 1e-12) << n;
+  for (int n = 1; n <= 900; ++n) EXPECT_EQ(sign_test(n, n), 1);
+  for (int n = 1; n <= 900; ++n) EXPECT_EQ(sign_test(n, n - 1), 1);
+}
+
+TEST(SignTest, IsTheSumOfTheTails) {
+  for (int n = 1; n <= 50; ++n) {
+    double choose = 1, tail = 0;  // integers below 2^53
+    for (int k = 0; 2 * k < n; ++k) {
+      tail += choose;
+      const double p = std::min(1.0, std::ldexp(tail, 1 - n));
+      EXPECT_NEAR(sign_test(k, n - k) / p, 1, 1e-13) << k << " " << n;
+      EXPECT_EQ(sign_test(k, n - k), sign_test(n - k, k));
+      choose = choose * (n - k) / (k + 1);
     }
-    EXPECT_GE(covered, 0.94 * 2000) << q;
   }
-  const Estimate few = estimated_quantile({3, 1, kNan, 2, 5, 4}, 0.5);
-  EXPECT_EQ(few.value, 3);
-  EXPECT_TRUE(std::isnan(few.low) && std::isnan(few.high));
-  EXPECT_EQ(few.unknown, 1);
-  const Estimate six = estimated_quantile({3, 1, 2, 5, 4, 6}, 0.5);
-  EXPECT_EQ(six.low, 1);
-  EXPECT_EQ(six.high, 6);
-  std::vector<double> hundred;
-  for (int i = 1; i <= 100; ++i) hundred.push_back(i);
-  EXPECT_EQ(estimated_quantile(hundred, 0.07).value, 7) << "0.07 times 100 is above 7 by a rounding";
+}
+
+// Bentur et al. (2009) and Cavo et al. (2012), as in M. W. Fagerland et al., BMC Med. Res. Methodology 13:91
+// (2013); the example of R's exact2x2; approval in two surveys, A. Agresti, Categorical Data Analysis, whose
+// z = -4.17 is p = 3.1e-5 when approximated.
+TEST(SignTest, IsMcNemarsExactTest) {
+  EXPECT_NEAR(sign_test(1, 7), 0.0703, 5e-5);
+  EXPECT_NEAR(sign_test(6, 16), 0.0525, 5e-5);
+  EXPECT_NEAR(sign_test(2, 9), 0.06543, 5e-6);
+  EXPECT_NEAR(sign_test(86, 150), 3.716e-5, 5e-9);
+}
+
+// The expected values are sums of integers of arbitrary length.
+TEST(SignTest, IsPreciseFarOut) {
+  EXPECT_NEAR(sign_test(86, 150) / 3.715936139571442342e-5, 1, 1e-12);
+  EXPECT_NEAR(sign_test(400, 600) / 2.728464156066018426e-10, 1, 1e-12);
+  EXPECT_NEAR(sign_test(1000, 1500) / 1.332587164837625313e-23, 1, 1e-12);
+  EXPECT_NEAR(sign_test(10000, 10500) / 4.915393992266734560e-4, 1, 1e-12);
+  EXPECT_NEAR(sign_test(24600, 25400) / 3.525014588014972983e-4, 1, 1e-12);
+  EXPECT_NEAR(sign_test(3, 1000) / 3.923720417925806834e-294, 1, 1e-12);
+}
+
+// The expected values are those of the normal distribution with a continuity correction.
+TEST(SignTest, IsNormalForLargeCounts) {
+  for (const std::int64_t n : {10000, 1000000, 20000000})
+    for (const double z : {0.1, 1.0, 2.0, 3.0, 4.0}) {
+      const auto apart = static_cast<std::int64_t>(z * std::sqrt(static_cast<double>(n)) / 2);
+      const double corrected = static_cast<double>(2 * apart - 1) / std::sqrt(static_cast<double>(n));
+      const double normal = std::erfc(corrected / std::sqrt(2.0));
+      EXPECT_NEAR(sign_test(n / 2 - apart, n / 2 + apart) / normal, 1, 3e-7 + 40.0 / static_cast<double>(n))
+          << n << " " << z;
+    }
+}
+
+TEST(SignTest, UnderflowsToZero) {
+  EXPECT_EQ(sign_test(0, 10000000), 0);
+  EXPECT_EQ(sign_test(4000000, 10000000), 0);
+  EXPECT_EQ(sign_test(10000000, 10000000), 1);
+  double before = 1;
+  for (int fewer = 500; fewer >= 0; fewer -= 20) {
+    const double p = sign_test(fewer, 1000 - fewer);
+    EXPECT_LE(p, before);
+    EXPECT_GT(p, 0) << fewer;
+    before = p;
+  }
+}
+
+// The adjusted values are 0.005 * 4, 0.01 * 3, 0.03 * 2, and 0.04 * 1, which is raised to the value before
+// it.
+TEST(HolmAdjusted, EqualsAnExampleComputedByHand) {
+  const std::vector<double> adjusted = holm_adjusted({0.01, 0.04, 0.03, 0.005});
+  const double expected[] = {0.03, 0.06, 0.06, 0.02};
+  ASSERT_EQ(adjusted.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(adjusted[i], expected[i], 1e-15) << i;
+}
+
+TEST(HolmAdjusted, IsNeverAboveOne) {
+  EXPECT_TRUE(holm_adjusted({}).empty());
+  EXPECT_EQ(holm_adjusted({0.02}), std::vector<double>{0.02});
+  EXPECT_EQ(holm_adjusted({1, 0.4, 1, 0.9}), (std::vector<double>{1, 1, 1, 1}));
+  EXPECT_EQ(holm_adjusted({0.25, 0.25}), (std::vector<double>{0.5, 0.5}));
+  EXPECT_EQ(holm_adjusted({0, 0, 1}), (std::vector<double>{0, 0, 1}));
 }
 
 }  // namespace
-}  // namespace remote_touch::interval_estimates_test
+}  // namespace remote_touch::paired_test_test
+
+namespace remote_touch::curve_fits_test {
+namespace {
+
+TEST(PolynomialFit, FindsTheCoefficientsOfAnExactPolynomial) {
+  // The coefficients are of the size of (4.24): from 16 to 3e10 at x below 0.01.
+  const std::vector<int> powers = {5, 4, 3, 2, 1};
+  const std::vector<double> coefficients = {2.9e10, -6.4e8, 4.8e6, -1.2e4, 16};
+  std::vector<double> x, y;
+  for (int i = 1; i <= 40; ++i) {
+    x.push_back(0.01 * i / 40);
+    double sum = 0;
+    for (std::size_t k = 0; k < powers.size(); ++k) sum += coefficients[k] * std::pow(x.back(), powers[k]);
+    y.push_back(sum);
+  }
+  const PolynomialFit fit = fit_polynomial(x, y, powers);
+  for (std::size_t k = 0; k < powers.size(); ++k)
+    EXPECT_NEAR(fit.coefficients[k], coefficients[k], 1e-7 * std::abs(coefficients[k]));
+  EXPECT_LT(fit.residual_rms, 1e-12);
+  EXPECT_LT(fit.half_width(0.005), 1e-10);
+}
+
+// A mean is the fit of the power 0: its standard error is known in closed form.
+TEST(PolynomialFit, ConfidenceOfAMeanIsItsStandardError) {
+  const std::vector<double> y = {1, 4, 2, 8, 5, 7};
+  const PolynomialFit fit = fit_polynomial({1, 2, 3, 4, 5, 6}, y, {0});
+  EXPECT_NEAR(fit.coefficients[0], 4.5, 1e-12);
+  double squares = 0;
+  for (const double value : y) squares += (value - 4.5) * (value - 4.5);
+  EXPECT_NEAR(fit.half_width(3), 1.959963984540054 * std::sqrt(squares / 5 / 6), 1e-12);
+}
+
+// The band holds the truth in 95 % of many repetitions, with scatter that grows with x.
+TEST(PolynomialFit, BandHoldsTheTruthAsOftenAsItSays) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  int held = 0;
+  constexpr int kRepetitions = 1000;
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+    std::vector<double> x, y;
+    for (int i = 0; i < 200; ++i) {
+      x.push_back(0.01 * i);
+      y.push_back(3 * x.back() - x.back() * x.back() + (0.1 + x.back()) * normal(random));
+    }
+    const PolynomialFit fit = fit_polynomial(x, y, {2, 1, 0});
+    held += std::abs(fit.at(1.7) - (3 * 1.7 - 1.7 * 1.7)) < fit.half_width(1.7) ? 1 : 0;
+  }
+  EXPECT_NEAR(held / double{kRepetitions}, 0.95, 0.025);
+}
+
+TEST(FallingCurve, KeepsADecreasingCurve) {
+  const std::vector<double> values = {1, 0.9, 0.9, 0.2, 0};
+  EXPECT_EQ(isotonic_falling(values, {1, 2, 3, 4, 5}), values);
+}
+
+TEST(FallingCurve, PoolsByWeight) {
+  EXPECT_EQ(isotonic_falling({1, 0, 3}, {1, 1, 1}), (std::vector<double>{4.0 / 3, 4.0 / 3, 4.0 / 3}));
+  EXPECT_EQ(isotonic_falling({1, 0, 0.5}, {1, 3, 1}), (std::vector<double>{1, 0.125, 0.125}));
+}
+
+// No decreasing curve in its neighbourhood is nearer to the values.
+TEST(FallingCurve, IsTheNearest) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int repetition = 0; repetition < 50; ++repetition) {
+    std::vector<double> values(8), weights(8);
+    for (double& value : values) value = uniform(random);
+    for (double& weight : weights) weight = 0.1 + uniform(random);
+    const std::vector<double> best = isotonic_falling(values, weights);
+    EXPECT_TRUE(std::is_sorted(best.rbegin(), best.rend()));
+    const auto distance = [&](const std::vector<double>& curve) {
+      double sum = 0;
+      for (std::size_t i = 0; i < curve.size(); ++i)
+        sum += weights[i] * (curve[i] - values[i]) * (curve[i] - values[i]);
+      return sum;
+    };
+    for (int attempt = 0; attempt < 200; ++attempt) {
+      std::vector<double> other = best;
+      for (double& value : other) value += 0.05 * (uniform(random) - 0.5);
+      std::sort(other.rbegin(), other.rend());
+      EXPECT_GE(distance(other), distance(best) - 1e-12);
+    }
+  }
+}
+
+TEST(FallingCurve, CrossesALevelByInterpolation) {
+  const std::vector<double> x = {0, 10, 20};
+  EXPECT_DOUBLE_EQ(crossing(x, {1, 0.75, 0.25}, 0.5), 15);
+  EXPECT_DOUBLE_EQ(crossing(x, {1, 0.5, 0.25}, 0.5), 10);
+  EXPECT_DOUBLE_EQ(crossing(x, {0.4, 0.3, 0.1}, 0.5), 0);
+  EXPECT_DOUBLE_EQ(crossing(x, {1, 0.9, 0.6}, 0.5), 20);
+}
+
+constexpr double kHz = 1.5, kTurn_rad = 2 * std::numbers::pi;
+
+struct Signal {
+  std::vector<double> time_s, values;
+};
+
+// Two periods of 3 + amplitude * cos(2 pi f (t - lag)), and of a part with twice the frequency.
+Signal signal(double amplitude, double lag_of_signal_s) {
+  constexpr int kCount = 400;
+  Signal s;
+  for (int i = 0; i < kCount; ++i) {
+    const double t = 0.7 + 2 / kHz * i / kCount;
+    s.time_s.push_back(t);
+    s.values.push_back(3 + amplitude * std::cos(kTurn_rad * kHz * (t - lag_of_signal_s)) +
+                       0.5 * std::sin(2 * kTurn_rad * kHz * t));
+  }
+  return s;
+}
+
+Sinusoid part_of(const Signal& s) {
+  return sinusoid_in(s.time_s, s.values, kHz);
+}
+
+TEST(Sinusoid, HasTheAmplitudeOfItsFrequencyAlone) {
+  EXPECT_NEAR(part_of(signal(0.2, 0.1)).amplitude, 0.2, 1e-12);
+  EXPECT_NEAR(part_of(signal(0, 0)).amplitude, 0, 1e-12);
+}
+
+TEST(Sinusoid, WithoutValuesIsNan) {
+  EXPECT_TRUE(std::isnan(sinusoid_in({}, {}, kHz).amplitude));
+}
+
+}  // namespace
+}  // namespace remote_touch::curve_fits_test

@@ -1,4 +1,4 @@
-#include "analysis/trace/tool_and_slave_measures.h"
+#include "analysis/trace/contact_measures.h"
 
 #include <gtest/gtest.h>
 

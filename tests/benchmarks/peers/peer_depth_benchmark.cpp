@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peers/peer_depth.h"
 #include "tests/support/depth_scenes.h"

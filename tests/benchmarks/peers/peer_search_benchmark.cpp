@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/point_cloud.h"
 #include "tests/benchmarks/checked_benchmark.h"

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/dissertation/tool_motion/touch_finder.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/mesh/triangle_tree.h"
 #include "tests/benchmarks/checked_benchmark.h"
 #include "tests/benchmarks/peers/peer_tool.h"

@@ -1,3 +1,5 @@
+#include "core/kernels/kernels.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,11 +8,10 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <string>
 
 #include "core/dissertation/proxy/proxy_motion.h"
-#include "core/kernels/isa.h"
 #include "core/kernels/point_kernels.h"
-#include "core/kernels/proxy_kernels.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::kernels_test {
@@ -303,3 +304,19 @@ TEST(AppendWithin, FindsThePointsOfAPlainLoop) {
 
 }  // namespace
 }  // namespace remote_touch::kernels_test
+
+namespace remote_touch::isa_test {
+namespace {
+
+TEST(SupportedKernels, AreTheLevelsUpToTheBestInRisingOrder) {
+  const auto supported = supported_kernels();
+  const std::string names[] = {"x86-64", "x86-64-v3", "x86-64-v4"};
+  ASSERT_EQ(supported.size(), static_cast<std::size_t>(best_isa()) + 1);
+  for (std::size_t i = 0; i < supported.size(); ++i) {
+    EXPECT_EQ(supported[i]->isa, names[i]);
+    EXPECT_EQ(supported[i], &kernels_for(static_cast<Isa>(i)));
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::isa_test

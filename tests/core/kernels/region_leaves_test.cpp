@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/dissertation/sphere_tree/sphere_tree.h"
-#include "core/kernels/isa.h"
+#include "core/dissertation/tool_motion/sphere_tree.h"
+#include "core/kernels/kernels.h"
 #include "core/kernels/point_kernels.h"
 #include "tests/support/scenes.h"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "tests/support/meshes.h"
 
 namespace remote_touch::mesh_shapes {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Two triangles for the cell of a grid whose corners are a, b (next column), c (next row) and d.
 inline void add_cell(TriangleMesh& mesh, int a, int b, int c, int d) {
@@ -167,5 +170,21 @@ inline TriangleMesh with_divided_side(TriangleMesh mesh, int i, int j, const std
     }
   return {};
 }
+
+class RandomVectors {
+ public:
+  explicit RandomVectors(unsigned seed) : random_(seed) {}
+  Vec3 in_box(const BoundingBox& box) {
+    std::uniform_real_distribution<double> any(-0.7, 0.7);
+    return box.center() + box.sizes().cwiseProduct(Vec3(any(random_), any(random_), any(random_)));
+  }
+  Vec3 direction() {
+    std::normal_distribution<double> normal;
+    return Vec3(normal(random_), normal(random_), normal(random_)).normalized();
+  }
+
+ private:
+  std::mt19937 random_;
+};
 
 }  // namespace remote_touch::mesh_shapes

@@ -1,5 +1,5 @@
 #include "core/points/noise.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 
 #include <gtest/gtest.h>
 

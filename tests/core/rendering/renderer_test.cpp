@@ -2,7 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
 #include <limits>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "core/dissertation/virtual_fixtures/fixture_rules.h"
+#include "core/points/vector.h"
+#include "tests/support/scenes.h"
 
 namespace remote_touch::renderer_test {
 namespace {
@@ -28,3 +39,447 @@ TEST(ElapsedTicks, IsNeverBelowOne) {
 
 }  // namespace
 }  // namespace remote_touch::renderer_test
+
+// The target of guidance: the mean of the points of a class, and the plane in which they lie.
+namespace remote_touch::guidance_target_test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Vec3 kCentre(0.3, -0.2, 0.9);
+
+GuidanceTarget whole(const PointCloud& cloud) {
+  return guidance_target(cloud, std::vector<double>(cloud.size(), 1));
+}
+
+// A grid of n x n points, n even, in the plane through kCentre that R turns from x and y. The points lie
+// noise_m above and below it like the fields of a chessboard, which changes neither the mean nor the plane.
+PointCloud chessboard(const Eigen::Matrix3d& R, int n, double noise_m) {
+  PointCloud cloud;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      cloud.append(kCentre + R * Vec3(0.01 * (i - 0.5 * (n - 1)), 0.02 * (j - 0.5 * (n - 1)),
+                                      (i + j) % 2 == 0 ? noise_m : -noise_m));
+  return cloud;
+}
+
+Eigen::Matrix3d turn(const Vec3& vector) {
+  return rotation(vector).toRotationMatrix();
+}
+
+// The corners of a box: spread along its axes like its sides.
+PointCloud box(const Vec3& half_m, const Eigen::Matrix3d& R) {
+  PointCloud cloud;
+  for (int i = 0; i < 8; ++i)
+    cloud.append(kCentre + R * Vec3(i & 1 ? half_m.x() : -half_m.x(), i & 2 ? half_m.y() : -half_m.y(),
+                                    i & 4 ? half_m.z() : -half_m.z()));
+  return cloud;
+}
+
+PointCloud picked(const PointCloud& from, const std::vector<std::size_t>& order) {
+  PointCloud cloud;
+  for (const std::size_t i : order) cloud.append(from.point(i));
+  cloud.image = from.image;
+  return cloud;
+}
+
+// --- mean ---
+
+TEST(GuidanceTarget, TheMeanIsThatOfTheShares) {
+  PointCloud cloud;
+  for (const Vec3& p : {Vec3(1, 0, 0), Vec3(0, 2, 0), Vec3(0, 0, 4), Vec3(100, 100, 100)}) cloud.append(p);
+  const GuidanceTarget target = guidance_target(cloud, {1, 0.5, 0.25, 0});
+  EXPECT_EQ(target.points, 3u);
+  EXPECT_LT((target.mean_W - Vec3(1, 1, 1) / 1.75).norm(), 1e-15);
+}
+
+TEST(GuidanceTarget, IsNotVisibleIfNoPointIsPicked) {
+  EXPECT_FALSE(guidance_target({}, {}).is_visible());
+  const GuidanceTarget none = guidance_target(scenes::flat_grid(3), std::vector<double>(9, 0));
+  EXPECT_FALSE(none.is_visible() || none.is_flat());
+  EXPECT_EQ(none.mean_W, Vec3::Zero());
+}
+
+TEST(GuidanceTarget, OneOrTwoPointsHaveAPlaceAndNoPlane) {
+  PointCloud cloud;
+  cloud.append({1, 2, 3});
+  EXPECT_EQ(whole(cloud).mean_W, Vec3(1, 2, 3));
+  EXPECT_FALSE(whole(cloud).is_flat());
+  cloud.append({2, 2, 5});
+  EXPECT_EQ(whole(cloud).mean_W, Vec3(1.5, 2, 4));
+  EXPECT_FALSE(whole(cloud).is_flat());
+}
+
+// Two points lie on a line, except for rounding. Points that nearly coincide differ by nothing but rounding.
+TEST(GuidanceTarget, TwoPointsHaveNoPlaneHoweverNearTheyAre) {
+  std::mt19937 random(21);
+  const auto share = [&] { return (random() + 1.0) / 4294967296.0; };
+  for (int run = 0; run < 1000; ++run) {
+    const Vec3 p = kCentre + 0.1 * Vec3(share(), share(), share());
+    PointCloud pair;
+    pair.append(p), pair.append(p + 0x1p-52 * Vec3(share(), share(), share()));
+    EXPECT_FALSE(guidance_target(pair, {share(), share()}).is_flat()) << run;
+  }
+}
+
+TEST(GuidanceTarget, ThreePointsHaveThePlaneThroughThem) {
+  for (const Vec3& turned : {Vec3(0, 0, 0), Vec3(0.7, -0.3, 0.2), Vec3(-1.1, 0.4, 2)}) {
+    const Eigen::Matrix3d R = turn(turned);
+    PointCloud cloud;
+    for (const Vec3& p : {Vec3(0.05, 0.01, 0), Vec3(-0.02, 0.03, 0), Vec3(-0.04, -0.06, 0)})
+      cloud.append(kCentre + R * p);
+    const GuidanceTarget target = guidance_target(cloud, {1, 0.5, 0.25});
+    EXPECT_NEAR(std::abs(target.normal_W.dot(R.col(2))), 1, 1e-12);
+  }
+}
+
+TEST(GuidanceTarget, MissingPointsDoNotCount) {
+  PointCloud cloud = chessboard(turn({0.4, 0.1, 0}), 4, 0);
+  const GuidanceTarget expected = whole(cloud);
+  for (const Vec3& p : {Vec3(kNaN, kNaN, kNaN), Vec3(kInfinity, 0, 0), Vec3(0, kNaN, 0)}) cloud.append(p);
+  const GuidanceTarget target = whole(cloud);
+  EXPECT_EQ(target.points, 16u);
+  EXPECT_EQ(target.mean_W, expected.mean_W);
+  EXPECT_EQ(target.normal_W, expected.normal_W);
+}
+
+// --- plane ---
+
+TEST(GuidanceTarget, ThePlaneOfATiltedBoardIsFoundThroughItsNoise) {
+  for (const double noise_m : {0.0, 1e-4, 2e-3}) {
+    const Eigen::Matrix3d R = turn({0.7, -0.3, 0.2});
+    const GuidanceTarget target = whole(chessboard(R, 10, noise_m));
+    EXPECT_LT((target.mean_W - kCentre).norm(), 1e-14);
+    EXPECT_NEAR(std::abs(target.normal_W.dot(R.col(2))), 1, 1e-12) << noise_m;
+    EXPECT_NEAR(target.normal_W.norm(), 1, 1e-14);
+  }
+}
+
+// Brute force: no other direction has a smaller weighted sum of squared distances.
+TEST(GuidanceTarget, NoOtherPlaneIsNearerToTheWeightedPoints) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int run = 0; run < 10; ++run) {
+    const Eigen::Matrix3d R = turn({normal(random), normal(random), normal(random)});
+    PointCloud cloud;
+    std::vector<double> weights;
+    for (int i = 0; i < 60; ++i) {
+      cloud.append(kCentre + R * Vec3(0.1 * normal(random), 0.05 * normal(random), 0.004 * normal(random)));
+      weights.push_back(random() / 4294967296.0);
+    }
+    const GuidanceTarget target = guidance_target(cloud, weights);
+    ASSERT_TRUE(target.is_flat());
+    const auto distance = [&](const Vec3& n, const Vec3& place_W) {
+      double sum = 0;
+      for (std::size_t i = 0; i < 60; ++i) sum += weights[i] * std::pow(n.dot(cloud.point(i) - place_W), 2);
+      return sum;
+    };
+    const double min = distance(target.normal_W, target.mean_W);
+    for (int i = 0; i < 300; ++i) {
+      const double far = std::pow(10, -4.0 * i / 300);
+      const Vec3 aside = far * Vec3(normal(random), normal(random), normal(random));
+      EXPECT_GE(distance((target.normal_W + aside).normalized(), target.mean_W), min * (1 - 1e-12));
+      EXPECT_GE(distance(target.normal_W, target.mean_W + aside), min * (1 - 1e-12));
+    }
+  }
+}
+
+TEST(GuidanceTarget, ABallHasNoPlane) {
+  PointCloud ball;
+  for (int k = 0; k < 500; ++k) {
+    const double v = 2 * (k + 0.5) / 500 - 1, w = std::sqrt(1 - v * v);
+    ball.append(kCentre + 0.1 * Vec3(w * std::cos(2.399963 * k), v, w * std::sin(2.399963 * k)));
+  }
+  const GuidanceTarget target = whole(ball);
+  EXPECT_FALSE(target.is_flat());
+  EXPECT_LT((target.mean_W - kCentre).norm(), 1e-4);
+}
+
+TEST(GuidanceTarget, IsFlatUpToAQuarterOfTheShorterSide) {
+  const Eigen::Matrix3d R = turn({-0.5, 0.8, 1.2});
+  EXPECT_TRUE(whole(box({0.3, 0.08, 0.0199}, R)).is_flat());
+  EXPECT_FALSE(whole(box({0.3, 0.08, 0.0201}, R)).is_flat());
+}
+
+TEST(GuidanceTarget, PointsInALineHaveNoPlane) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  for (int run = 0; run < 200; ++run) {
+    const Vec3 from(normal(random), normal(random), normal(random));
+    const Vec3 along(normal(random), normal(random), normal(random));
+    PointCloud line;
+    for (int i = 0; i < 3 + run % 30; ++i) line.append(from + 0.013 * i * along);
+    EXPECT_FALSE(whole(line).is_flat()) << run;
+  }
+  PointCloud same;
+  for (int i = 0; i < 30; ++i) same.append(kCentre);
+  EXPECT_FALSE(whole(same).is_flat());
+  EXPECT_TRUE(whole(same).mean_W.isApprox(kCentre, 1e-15));
+}
+
+TEST(GuidanceTarget, TheNormalIsTowardsTheSensor) {
+  const Eigen::Matrix3d R = turn({0.7, -0.3, 0.2});
+  PointCloud board = chessboard(R, 6, 1e-4);
+  EXPECT_LT(whole(board).normal_W.dot(kCentre), 0) << "in the origin without an image";
+  for (const double side : {1.0, -1.0}) {
+    board.image.emplace();
+    board.image->X_WC =
+        Eigen::Translation3d(kCentre + 0.5 * side * R.col(2) + 0.2 * R.col(0)) * rotation({1, 0, 0});
+    EXPECT_NEAR(whole(board).normal_W.dot(R.col(2)), side, 1e-12);
+  }
+}
+
+// --- invariance ---
+
+TEST(GuidanceTarget, MovesWithTheScene) {
+  const RigidTransform X = Eigen::Translation3d(0.3, -1.2, 2.5) * rotation({0.4, -1.7, 0.2});
+  PointCloud board = chessboard(turn({0.1, 0.6, 0}), 8, 1e-3), moved;
+  board.image.emplace();
+  board.image->X_WC = RigidTransform(Eigen::Translation3d(0.1, 0.2, -0.3));
+  for (std::size_t i = 0; i < board.size(); ++i) moved.append(X * board.point(i));
+  moved.image = board.image;
+  moved.image->X_WC = X * board.image->X_WC;
+  const GuidanceTarget a = whole(board), b = whole(moved);
+  EXPECT_LT((X * a.mean_W - b.mean_W).norm(), 1e-14);
+  EXPECT_LT((X.linear() * a.normal_W - b.normal_W).norm(), 1e-12);
+}
+
+TEST(GuidanceTarget, TheOrderOfThePointsDoesNotMatter) {
+  const PointCloud board = chessboard(turn({0.1, 0.6, 0}), 8, 1e-3);
+  std::vector<std::size_t> order(board.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::mt19937 random(8);
+  const GuidanceTarget expected = whole(board);
+  for (int run = 0; run < 20; ++run) {
+    std::shuffle(order.begin(), order.end(), random);
+    const GuidanceTarget target = whole(picked(board, order));
+    EXPECT_LT((target.mean_W - expected.mean_W).norm(), 1e-15);
+    EXPECT_LT((target.normal_W - expected.normal_W).norm(), 1e-12);
+  }
+}
+
+// --- of an assignment ---
+
+std::unique_ptr<const FixtureRule> near(const Vec3& point_m, FixtureRole role, double strength = 1) {
+  NearPoint::Settings settings;
+  settings.values.role = role;
+  settings.values.schedule = {0, strength};
+  settings.point_m = point_m, settings.inner_radius_m = 0.1;
+  return std::make_unique<NearPoint>(settings);
+}
+
+TEST(GuidanceTarget, EveryGuidanceRuleHasATargetInTheOrderOfTheRules) {
+  PointCloud cloud;
+  for (int i = 0; i < 5; ++i) cloud.append({1.0 * i, 0, 0});
+  cloud.append({kNaN, kNaN, kNaN});
+  std::vector<std::unique_ptr<const FixtureRule>> rules;
+  rules.push_back(near({3, 0, 0}, FixtureRole::guidance));
+  rules.push_back(near({0, 0, 0}, FixtureRole::forbidden));
+  rules.push_back(near({1, 0, 0}, FixtureRole::guidance));
+  rules.push_back(near({2, 0, 0}, FixtureRole::guidance, 0));
+  const FixtureAssignment assignment(std::move(rules));
+  const std::vector<GuidanceTarget> targets = assignment.targets(cloud, 0);
+  ASSERT_EQ(targets.size(), 3u);
+  EXPECT_EQ(targets[0].mean_W, Vec3(3, 0, 0));
+  EXPECT_EQ(targets[1].mean_W, Vec3(1, 0, 0));
+  EXPECT_FALSE(targets[2].is_visible()) << "a rule of no strength";
+  // Only the forbidden rule makes a region.
+  assignment.assign(cloud, 0);
+  EXPECT_EQ(cloud.fixture_radius_m, (std::vector<double>{0.02, 0, 0, 0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace remote_touch::guidance_target_test
+
+namespace remote_touch::surface_velocity_test {
+namespace {
+
+const Vec3 kUp = Vec3::UnitY();
+constexpr double kInterval = 1.0 / 32;  // exact in binary, so that sums of it are too
+
+TEST(SurfaceVelocity, FirstFrameNeitherMovesTheProxyNorChangesTheEstimate) {
+  SurfaceVelocity velocity(1);
+  EXPECT_EQ(velocity.on_frame(7, kUp), Vec3(0, 0, 0));
+  velocity.on_step(0.003 * kUp);
+  EXPECT_EQ(velocity.m_per_s(), 0);
+  EXPECT_EQ(velocity.on_frame(7 + kInterval, kUp), Vec3(0, 0, 0));
+}
+
+// A step before any frame has no interval to be divided by.
+TEST(SurfaceVelocity, StepsBeforeTheFirstFrameAreIgnored) {
+  SurfaceVelocity velocity(1);
+  velocity.on_step(kUp);
+  EXPECT_EQ(velocity.m_per_s(), 0);
+  EXPECT_EQ(velocity.vector(), Vec3(0, 0, 0));
+}
+
+TEST(SurfaceVelocity, EvenMotionIsKnownAfterOneUpdate) {
+  const double v = 0.1;
+  SurfaceVelocity velocity(1);
+  double surface = 0, proxy = 0;
+  for (int frame = 0; frame < 6; ++frame) {
+    surface = frame * v * kInterval;
+    proxy += velocity.on_frame(frame * kInterval, kUp).y();
+    const double step = surface - proxy;  // distance back to the surface
+    if (frame == 1) {
+      EXPECT_NEAR(step, v * kInterval, 1e-17);
+    }
+    if (frame >= 2) {
+      EXPECT_NEAR(step, 0, 1e-16) << frame;
+    }
+    velocity.on_step({0.5, step, -0.25});  // the tangential part gives no information
+    proxy = surface;
+    EXPECT_NEAR(velocity.m_per_s(), frame == 0 ? 0 : v, 1e-15) << frame;
+  }
+}
+
+// The estimate lags one frame under acceleration a: the correction misses a / f_c^2, the bound of (4.14).
+TEST(SurfaceVelocity, AccelerationIsMissedByOneFrame) {
+  const double a = 3;
+  SurfaceVelocity velocity(1);
+  double surface = 0, speed = 0, proxy = 0;
+  for (int frame = 0; frame < 10; ++frame) {
+    if (frame > 0) speed += a * kInterval, surface += speed * kInterval;
+    proxy += velocity.on_frame(frame * kInterval, kUp).y();
+    if (frame > 0) {
+      EXPECT_NEAR(surface - proxy, a * kInterval * kInterval, 1e-15) << frame;
+    }
+    velocity.on_step((surface - proxy) * kUp);
+    proxy = surface;
+    EXPECT_NEAR(velocity.m_per_s(), speed, 1e-14) << frame;
+  }
+}
+
+TEST(SurfaceVelocity, NormalOfTheFrameIsUsedUntilTheNext) {
+  const Vec3 tilted = Vec3(1, 2, 2) / 3;
+  SurfaceVelocity velocity(1);
+  velocity.on_frame(0, kUp);
+  velocity.on_frame(kInterval, tilted);
+  velocity.on_step({0.003, 0.006, 0.006});  // 0.009 along the normal
+  EXPECT_NEAR(velocity.m_per_s(), 0.009 / kInterval, 1e-15);
+  EXPECT_LT((velocity.vector() - 0.009 / kInterval * tilted).norm(), 1e-15);
+  const Vec3 correction = velocity.on_frame(2 * kInterval, kUp);
+  EXPECT_LT((correction - 0.009 * kUp).norm(), 1e-16) << "(4.3) is along the newest normal";
+}
+
+TEST(SurfaceVelocity, OnlyTheFirstStepAfterAFrameCounts) {
+  SurfaceVelocity velocity(1);
+  velocity.on_frame(0, kUp);
+  velocity.on_frame(kInterval, kUp);
+  velocity.on_step(0.001 * kUp);
+  const double first = velocity.m_per_s();
+  EXPECT_NEAR(first, 0.001 / kInterval, 1e-16);
+  velocity.on_step(0.002 * kUp);
+  velocity.on_step(-0.5 * kUp);
+  EXPECT_EQ(velocity.m_per_s(), first);
+  velocity.on_frame(2 * kInterval, kUp);
+  velocity.on_step(0.002 * kUp);
+  EXPECT_NEAR(velocity.m_per_s(), 0.003 / kInterval, 1e-15);
+}
+
+TEST(SurfaceVelocity, IsNeverNegativeAndNeverReset) {
+  SurfaceVelocity velocity(1);
+  velocity.on_frame(0, kUp);
+  velocity.on_frame(kInterval, kUp);
+  velocity.on_step(-0.004 * kUp);
+  EXPECT_EQ(velocity.m_per_s(), 0);
+  velocity.on_frame(2 * kInterval, kUp);
+  velocity.on_step(0.004 * kUp);
+  const double v = velocity.m_per_s();
+  EXPECT_NEAR(v, 0.004 / kInterval, 1e-16) << "a clamped estimate owes nothing";
+  velocity.on_frame(3 * kInterval, kUp);
+  velocity.on_step(Vec3::Zero());
+  EXPECT_EQ(velocity.m_per_s(), v) << "a zero step confirms the estimate";
+  velocity.on_frame(4 * kInterval, kUp);
+  velocity.on_step(-0.001 * kUp);
+  EXPECT_NEAR(velocity.m_per_s(), 0.003 / kInterval, 1e-15);
+}
+
+TEST(SurfaceVelocity, IntervalIsBetweenTheCaptures) {
+  SurfaceVelocity velocity(1);
+  velocity.on_frame(0, kUp);
+  velocity.on_frame(kInterval, kUp);
+  velocity.on_step(0.002 * kUp);
+  // One frame is lost: twice the time, twice the way.
+  EXPECT_NEAR(velocity.on_frame(3 * kInterval, kUp).y(), 0.004, 1e-17);
+  velocity.on_step(0.002 * kUp);
+  EXPECT_NEAR(velocity.m_per_s(), 0.002 / kInterval + 0.002 / (2 * kInterval), 1e-15);
+}
+
+TEST(SurfaceVelocity, PredictionIsBoundedWhenFramesStayAway) {
+  const double max_length = 0.1;
+  SurfaceVelocity velocity(max_length);
+  velocity.on_frame(0, kUp);
+  velocity.on_frame(kInterval, kUp);
+  velocity.on_step(0.005 * kUp);
+  const double v = velocity.m_per_s();
+  EXPECT_NEAR(velocity.on_frame(kInterval + 60, kUp).y(), v * max_length, 1e-16);
+  velocity.on_step(0.001 * kUp);
+  // The velocity is the carried distance plus the step, over the true time.
+  EXPECT_NEAR(velocity.m_per_s(), (v * max_length + 0.001) / 60, 1e-15);
+  EXPECT_NEAR(velocity.on_frame(2 * kInterval + 60, kUp).y(), velocity.m_per_s() * kInterval, 1e-15);
+}
+
+// The next frame of a slow stream comes later than max_interval_s, and until then v_hat is all that is known.
+TEST(SurfaceVelocity, IsTrustedForAFrameIntervalOfASlowStream) {
+  SurfaceVelocity estimated(0.1), measured(0.1);
+  double time_s = 3;
+  const auto horizon_after = [&](double interval_s) {
+    time_s += interval_s;
+    estimated.on_frame(time_s, kUp), estimated.on_step(Vec3::Zero());
+    measured.on_measured(time_s, 0.2, kUp);
+    EXPECT_EQ(measured.horizon_s(), estimated.horizon_s());
+    return estimated.horizon_s();
+  };
+  EXPECT_EQ(estimated.horizon_s(), 0.1);
+  EXPECT_EQ(horizon_after(0), 0.1) << "the first frame has no interval";
+  for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(horizon_after(0.25), 0.25);
+  for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(horizon_after(kInterval), 0.1);
+}
+
+// Returns the horizon after a first frame and frames at these intervals. The estimated and the measured
+// velocity must agree on it.
+double horizon_after(std::initializer_list<double> intervals_s) {
+  SurfaceVelocity estimated(0.1), measured(0.1);
+  double time_s = 3;
+  const auto add_frame = [&] {
+    estimated.on_frame(time_s, kUp), estimated.on_step(0.001 * kUp);
+    measured.on_measured(time_s, 0.2, kUp);
+  };
+  add_frame();
+  for (const double interval_s : intervals_s) time_s += interval_s, add_frame();
+  EXPECT_EQ(measured.horizon_s(), estimated.horizon_s());
+  return estimated.horizon_s();
+}
+
+// If the stream stops again right after a pause of a minute, (4.15) must not grow for another minute.
+TEST(SurfaceVelocity, APauseOfTheStreamIsNoInterval) {
+  EXPECT_EQ(horizon_after({kInterval, kInterval, 60}), 0.1);
+  EXPECT_EQ(horizon_after({0.25, 0.25, 60}), 0.75) << "three of its intervals";
+  EXPECT_EQ(horizon_after({0.25, 0.25, 60, 0.25}), 0.25);
+  EXPECT_EQ(horizon_after({0.25, 60, 0, 60}), 2.25)
+      << "frames without an interval say nothing about the rate";
+}
+
+TEST(SurfaceVelocity, LostFramesAndASlowerStreamAreIntervals) {
+  for (const double lost : {0.25, 0.5, 0.75}) EXPECT_EQ(horizon_after({0.25, lost}), lost);
+  EXPECT_EQ(horizon_after({60}), 60) << "nothing is known of a stream with two frames";
+  EXPECT_EQ(horizon_after({0.125, 2, 2, 2}), 2) << "0.375, 1.125, 2";
+}
+
+// More frames than steps: they count as one, over their whole time.
+TEST(SurfaceVelocity, FramesWithoutAStepBetweenThemCountAsOne) {
+  SurfaceVelocity velocity(0.1);
+  velocity.on_frame(0, kUp);
+  velocity.on_frame(0.001, kUp);
+  velocity.on_frame(0.002, kUp);
+  velocity.on_step(0.0002 * kUp);
+  EXPECT_NEAR(velocity.m_per_s(), 0.1, 1e-15);
+  const double first = velocity.on_frame(0.003, kUp).y(), second = velocity.on_frame(0.004, kUp).y();
+  EXPECT_NEAR(first + second, 0.0002, 1e-17);
+  velocity.on_step(Vec3::Zero());
+  EXPECT_NEAR(velocity.m_per_s(), 0.1, 1e-15);
+}
+
+}  // namespace
+}  // namespace remote_touch::surface_velocity_test

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/core/dissertation/tool_motion/free_space.h"

@@ -1,5 +1,5 @@
 // The packing compared with closed forms for a cube and a ball, and with every pair of spheres.
-#include "core/rivals/inner_spheres.h"
+#include "core/rivals/inner_sphere_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/parameters/parameter.h"
 #include "tests/support/box_tool.h"

@@ -1,6 +1,6 @@
 // The moving least squares surface against closed forms (plane, quadric, sphere, noise) and against sums and
 // solvers written without the product's code.
-#include "core/rivals/mls_projection.h"
+#include "core/rivals/mls_surface_renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -11,13 +11,61 @@
 #include <vector>
 
 #include "core/points/vector.h"
-#include "tests/core/rivals/mls_clouds.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::mls_projection_test {
 namespace {
 
-using namespace mls_clouds;
+// Points of smooth surfaces, and positions near them.
+
+constexpr double kH = 0.0045;
+constexpr double kPi = 3.14159265358979323846;
+const Vec3 kNone = Vec3::Zero(), kUp = Vec3::UnitY();
+
+Neighbourhood near_of(const PointCloud& cloud, double h = kH) {
+  return scenes::neighbourhood(make_search(cloud), MlsProjection::kSupportInWidths * h);
+}
+
+// Normally distributed numbers; their bits need not be the same everywhere.
+class Normals {
+ public:
+  explicit Normals(unsigned seed) : random_(seed) {}
+  double next() { return distribution_(random_); }
+
+ private:
+  std::mt19937 random_;
+  std::normal_distribution<double> distribution_;
+};
+
+// A smooth surface over an irregular sample of x and z, with noise along y.
+PointCloud bumps(unsigned seed, double noise_m = 0) {
+  PointCloud cloud = scenes::random_cloud(4000, 0.04, seed);
+  Normals noise(seed);
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.y[i] = 0.002 * std::sin(cloud.x[i] / 0.012) * std::cos(cloud.z[i] / 0.015) + noise_m * noise.next();
+  return cloud;
+}
+
+// Positions up to height_m from the plane y = 0, away from the border of bumps().
+std::vector<Vec3> positions(int count, double height_m, unsigned seed) {
+  const PointCloud cloud = scenes::random_cloud(count, 1, seed);
+  std::vector<Vec3> list;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    list.push_back(cloud.point(i).cwiseProduct(Vec3(0.02, height_m, 0.02)));
+  return list;
+}
+
+// A sphere around the origin: points of a Fibonacci lattice, about spacing_m apart.
+PointCloud sphere(double radius_m, double spacing_m) {
+  const int count = static_cast<int>(4 * kPi * radius_m * radius_m / (spacing_m * spacing_m));
+  const double turn = kPi * (3 - std::sqrt(5.0));
+  PointCloud cloud;
+  for (int i = 0; i < count; ++i) {
+    const double y = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - y * y);
+    cloud.append(radius_m * Vec3(r * std::cos(turn * i), y, r * std::sin(turn * i)));
+  }
+  return cloud;
+}
 
 // --- sums and solvers without the product's code ---
 

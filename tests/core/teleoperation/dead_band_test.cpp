@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "core/points/noise.h"
 #include "core/points/vector.h"
 

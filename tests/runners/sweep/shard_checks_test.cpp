@@ -8,7 +8,7 @@
 
 #include "analysis/storage/other_processes.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/sweep_run.h"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/sweeps/tally_file.h"
+#include "analysis/sweeps/sweep_tally.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_session.h"
 #include "tests/runners/sweep/quick_sweeps.h"

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 
 namespace remote_touch::mesh_object_test {

@@ -1,5 +1,5 @@
 // Files of poses: what is read, and what is refused with its line.
-#include "scenarios/objects/pose_file.h"
+#include "scenarios/objects/mesh_object.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The frames of a bag: topics, cameras, order, coordinate frames.
-#include "scenarios/recordings/bag_frames.h"
+#include "scenarios/recordings/bag_file.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/image_folders.h"
 #include "tests/support/note_kinds.h"
 #include "tests/support/test_files.h"
 

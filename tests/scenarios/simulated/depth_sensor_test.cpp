@@ -1,6 +1,6 @@
 // The sensor models against their formulas: noise, steps, shadows and ranges; and their promises: pure
 // functions, and the simple sensor is the depth camera.
-#include "scenarios/simulated/depth_sensor.h"
+#include "scenarios/simulated/depth_camera.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>

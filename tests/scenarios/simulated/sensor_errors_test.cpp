@@ -1,4 +1,4 @@
-#include "scenarios/simulated/depth_sensor.h"
+#include "scenarios/simulated/depth_camera.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -1,6 +1,6 @@
 // The method alone, in a loop of a user's own: it uses no experiment and no file.
 #include <core/dissertation/proxy/proxy_renderer.h>
-#include <core/kernels/isa.h>
+#include <core/kernels/kernels.h>
 
 #include <cstdio>
 

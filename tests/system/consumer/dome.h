@@ -2,7 +2,7 @@
 #pragma once
 
 #include <core/parameters/parameter.h>
-#include <scenarios/scene/scenario.h>
+#include <scenarios/simulated/scenario.h>
 
 namespace lab {
 

@@ -3,7 +3,7 @@
 
 #include <core/parameters/parameter.h>
 #include <runners/experiment/hand/trajectory.h>
-#include <scenarios/scene/scenario.h>
+#include <scenarios/simulated/scenario.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/neighbour_search.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"

@@ -1,13 +1,16 @@
-// Points that a SheetTracker shows for a sheet which it tracks from frame to frame.
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+#include <set>
+#include <utility>
 
+#include "core/beyond/tracked_surface/height_fit.h"
 #include "tests/support/scenes.h"
 
+// Points that a SheetTracker shows for a sheet which it tracks from frame to frame.
 namespace remote_touch::sheet_tracker_test {
 namespace {
 
@@ -145,3 +148,262 @@ TEST(SheetTracker, ShowsAPointOnTheSheetOrNotAtAll) {
 
 }  // namespace
 }  // namespace remote_touch::sheet_tracker_test
+
+namespace remote_touch::sheet_search_test {
+namespace {
+
+// Registration of a frame's sheet to that of the frame before, from points alone.
+
+constexpr double kHalfRange = 8;
+constexpr double kStandardError = 0.029;  // standard error of a mean over some 1200 points, in sigma
+const PatchPlace kProxy{0, 0, 1};
+
+// A sheet at height + slope_u u + slope_v v with noise, and a second one below it if second_below is not 0.
+PatchPoints sheet(double height, double slope_u, double slope_v, double sigma, unsigned seed,
+                  double second_below = 0) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  PatchPoints points(scenes::kernels());
+  points.reserve(10000);
+  for (double v = -7; v <= 7; v += 0.3)
+    for (double u = -7; u <= 7; u += 0.3)
+      for (const double below : {0.0, second_below}) {
+        const double h = height + slope_u * u + slope_v * v - below + sigma * normal(random);
+        points.add({PatchFrame::rounded(u), PatchFrame::rounded(v), PatchFrame::rounded(h)}, true);
+        if (second_below == 0) break;
+      }
+  return points;
+}
+
+HeightMap flat_map() {
+  HeightMap map;
+  map.set_plane(0, 0, 0, 12);
+  return map;
+}
+
+// Shift of `now` against the frame before, in which the same sheets lie at height 0.
+SheetShift shift_of(PatchPoints now, double gate, double sigma, double second_below = 0) {
+  PatchPoints before = sheet(0, 0, 0, sigma, 99, second_below);
+  before.set_residuals(flat_map());
+  const HeightProfile profile = before.profile_near(kProxy, kRegistrationReach, kHalfRange).smoothed(0.1);
+  now.set_residuals(flat_map());
+  return register_sheet(now, profile, kProxy, gate, kHalfRange, sigma);
+}
+
+TEST(SheetRegistration, FindsHowFarASheetMovedAndTurned) {
+  for (const double height : {-2.5, -0.4, 0.0, 1.7, 2.8}) {
+    const SheetShift shift = shift_of(sheet(height, 0.05, -0.1, 0, 1), 3, 0);
+    EXPECT_NEAR(shift.height, height, 2e-3);
+    EXPECT_NEAR(shift.slope_u, 0.05, 1e-3);
+    EXPECT_NEAR(shift.slope_v, -0.1, 1e-3);
+  }
+}
+
+// The height is a mean over n points, with the standard error sigma / sqrt(n). One of ten draws is off by
+// four standard errors in 1 of 1500 cases.
+TEST(SheetRegistration, NoiseMovesItByItsStandardErrorAlone) {
+  for (unsigned seed = 1; seed <= 10; ++seed)
+    EXPECT_NEAR(shift_of(sheet(1.3, 0, 0, 1, seed), 3, 1).height, 1.3, 4 * kStandardError) << seed;
+}
+
+// The sheets rise by 2.5 contact radii, so the lower one, which is 3 below, comes close to where the upper
+// one was.
+TEST(SheetRegistration, ASecondSheetAtThePositionOfTheFirstIsRejected) {
+  EXPECT_NEAR(shift_of(sheet(2.5, 0, 0, 0.1, 1, 3), 3, 0.1, 3).height, 2.5, 4 * 0.1 * kStandardError);
+}
+
+// Points on a line do not determine the slope across it. A few points determine no slope at all.
+TEST(SheetRegistration, PointsThatDetermineNoPlaneGiveNoSlope) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  PatchPoints line(scenes::kernels()), few(scenes::kernels());
+  line.reserve(100), few.reserve(100);
+  for (double u = -4; u <= 4; u += 0.1)
+    line.add(
+        {PatchFrame::rounded(u), PatchFrame::rounded(0.5 * u), PatchFrame::rounded(1 + 0.3 * normal(random))},
+        true);
+  for (const double u : {-3.0, 0.0, 3.0})
+    for (const double v : {-3.0, 0.0, 3.0}) few.add({u, v, PatchFrame::rounded(1 + 0.2 * u)}, true);
+  for (PatchPoints* points : {&line, &few}) {
+    const SheetShift shift = shift_of(std::move(*points), 3, 0.3);
+    EXPECT_NEAR(shift.height, 1, 4 * 0.3 / std::sqrt(81));  // four standard errors of the line's 81 points
+    EXPECT_EQ(shift.slope_u, 0);
+    EXPECT_EQ(shift.slope_v, 0);
+  }
+}
+
+TEST(SheetRegistration, FindsNoMotionIfThereAreNoPoints) {
+  const SheetShift shift = shift_of(PatchPoints(scenes::kernels()), 3, 0.1);
+  EXPECT_EQ(shift.slope_u, 0);
+  EXPECT_EQ(shift.slope_v, 0);
+  EXPECT_EQ(shift.height, 0);
+}
+
+// SheetSearch: a frame's points outside a tracked sheet's region, and the points shown within it.
+// StrayPoints: stray points that form a surface.
+
+constexpr double kUnit = 0.005;
+
+std::set<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball) {
+  const GatheredPoints out = scenes::gathered(search, ball);
+  std::set<std::uint32_t> numbers;
+  for (std::size_t i = 0; i < out.size(); ++i) EXPECT_TRUE(numbers.insert(out.index()[i]).second);
+  return numbers;
+}
+
+// If all points of the region are shown where they are, SheetSearch finds what the frame's search finds.
+TEST(SheetSearch, FindsThePointsOfTheFrameIfNoneIsMoved) {
+  PointCloud cloud = scenes::random_cloud(3000, 0.08, 3);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.fixture_radius_m.push_back(i % 7 == 0 ? 0.004 : 0);
+    cloud.stiffness_N_per_m.push_back(100.0 + static_cast<double>(i));
+  }
+  const std::shared_ptr<const NeighbourSearch> frame = make_search(cloud);
+  const PatchRegion region{PatchFrame(Vec3(0.01, 0, -0.01), Vec3(1, 2, 3).normalized(), kUnit), 8, 6};
+  const GatheredPoints gathered = scenes::gathered(*frame, region.around());
+  PatchPoints points(scenes::kernels());
+  points.reserve(gathered.size());
+  points.set_points(gathered, region);
+  ASSERT_GT(points.size(), 100u);
+  SheetSearch shown;
+  shown.reserve(frame->size(), true, true);
+  const auto buffer = std::make_shared<GatheredPoints>();
+  buffer->reserve(frame->size(), true, true);
+  shown.start(region, frame, buffer);
+  for (std::size_t i = 0; i < points.size(); ++i) shown.add(points.place(i), gathered, points.source(i));
+  shown.finish();
+  shown.reserve(2 * frame->size(), true, true);  // keeps the shown points
+  for (int i = 0; i < 200; ++i) {
+    // Shown positions are rounded to a micrometre, so balls that are 3 um smaller and larger bound the
+    // result.
+    const Ball ball{Vec3(0.0007 * (i % 100) - 0.03, 0.0003 * i - 0.03, 0.001 * (i % 50) - 0.02),
+                    0.004 + 0.0002 * (i % 90)};
+    const auto less = found(*frame, {ball.centre, ball.radius - 3e-6}),
+               more = found(*frame, {ball.centre, ball.radius + 3e-6}), here = found(shown, ball);
+    for (const std::uint32_t number : less) EXPECT_TRUE(here.contains(number)) << i;
+    for (const std::uint32_t number : here) EXPECT_TRUE(more.contains(number)) << i;
+  }
+}
+
+TEST(SheetSearch, ContainsOnlyAddedPointsInTheRegion) {
+  const std::shared_ptr<const NeighbourSearch> frame = make_search(scenes::flat_grid(100));
+  const PatchRegion region{PatchFrame(Vec3::Zero(), Vec3::UnitY(), kUnit), 8, 4};
+  const auto buffer = std::make_shared<GatheredPoints>();
+  buffer->reserve(frame->size(), true, true);
+  SheetSearch shown;
+  shown.reserve(frame->size(), false, false);
+  shown.start(region, frame, buffer);
+  shown.finish();
+  EXPECT_TRUE(found(shown, {Vec3::Zero(), 0.03}).empty());
+  EXPECT_TRUE(found(shown, {Vec3(std::nan(""), 0, 0), 1}).empty());
+  const auto outside = found(shown, {Vec3(0.05, 0, 0), 0.03});
+  EXPECT_FALSE(outside.empty());
+  const PointCloud cloud = scenes::flat_grid(100);
+  for (const std::uint32_t number : outside) EXPECT_GE(cloud.point(number).norm(), 0.04 - 1e-5);
+}
+
+TEST(PatchFrame, PositionsSurviveARoundTrip) {
+  const PatchFrame frame(Vec3(0.1, -0.2, 0.3), Vec3(-1, 0.5, 2).normalized(), kUnit);
+  for (const Vec3& p : {Vec3(0.11, -0.19, 0.31), Vec3(0.1, -0.2, 0.3), Vec3(0.05, -0.25, 0.28)})
+    EXPECT_LT((frame.world(frame.place(p)) - p).norm(), 2e-6);
+  EXPECT_NEAR(frame.place(frame.origin_W() + 2 * kUnit * frame.normal_W()).h, 2, 1e-3);
+  // A slope of 1 along u leans the normal by 45 degrees against u.
+  EXPECT_NEAR(frame.normal_W(1, 0).dot(frame.normal_W()), std::sqrt(0.5), 1e-12);
+}
+
+TEST(StrayPoints, ASecondSheetIsASurfaceAndScatteredPointsAreNot) {
+  PatchPoints points(scenes::kernels());
+  points.reserve(4000);
+  const auto add = [&](double u, double v, double h, bool member) { points.add({u, v, h}, member); };
+  for (double v = -6; v < 6; v += 0.3)
+    for (double u = -6; u < 6; u += 0.3) {
+      add(u, v, 0, true);
+      if (u > 0) add(u, v, -3, false);
+    }
+  for (int i = 0; i < 40; ++i) add(-5 + 0.12 * i, 3 - 0.15 * i, 1.5 + 0.06 * i, false);
+  StrayPoints strays;
+  strays.count(points, {PatchFrame(), 8, 6}, 0.1, 11);
+  EXPECT_TRUE(strays.is_surface({3, 1, -3}));
+  EXPECT_FALSE(strays.is_surface({-3, 0.5, 2.5}));
+  EXPECT_FALSE(strays.is_surface({-4, 0, -3}));
+}
+
+}  // namespace
+}  // namespace remote_touch::sheet_search_test
+
+namespace remote_touch::sheet_acquisition_test {
+namespace {
+
+// Finding a sheet in one frame, before there is a track.
+
+constexpr double kUnit = 0.005;
+
+// Planes y = -depth + 0.3 x, with points 1.5 mm apart and noise of standard deviation sigma in contact radii.
+PointCloud planes(const std::vector<double>& depths_m, double sigma, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  PointCloud cloud;
+  for (const double depth : depths_m)
+    for (int j = -40; j <= 40; ++j)
+      for (int i = -40; i <= 40; ++i) {
+        const Vec3 off(normal(random), normal(random), normal(random));
+        cloud.append(Vec3(0.0015 * i, -depth + 0.3 * 0.0015 * i, 0.0015 * j) + sigma * kUnit * off);
+      }
+  return cloud;
+}
+
+std::optional<FoundSheet> found(const PointCloud& cloud, const Vec3& proxy_W) {
+  const BruteForceSearch frame(cloud);
+  GatheredPoints gathered;
+  gathered.reserve(cloud.size(), false, false);
+  PatchPoints points(scenes::kernels());
+  points.reserve(cloud.size());
+  HeightFit fit;
+  return find_sheet(frame, proxy_W, kUnit, scenes::kernels(), {gathered, points, fit});
+}
+
+const Vec3 kNormal = Vec3(-0.3, 1, 0).normalized();
+
+double height_above(const FoundSheet& sheet, double depth_m) {
+  const Vec3 origin = sheet.frame.origin_W();
+  return (origin - Vec3(0, -depth_m, 0)).dot(kNormal) / kUnit;
+}
+
+TEST(SheetAcquisition, FindsPlaceNormalAndNoise) {
+  for (const double sigma : {0.0, 0.2, 0.6, 1.0}) {
+    const auto sheet = found(planes({0}, sigma, 3), Vec3(0, 0.01, 0));
+    ASSERT_TRUE(sheet) << sigma;
+    EXPECT_GT(sheet->frame.normal_W().dot(kNormal), std::cos(0.1)) << sigma;
+    EXPECT_NEAR(height_above(*sheet, 0), 0, 0.02 + 0.2 * sigma) << sigma;
+    EXPECT_NEAR(sheet->sigma.value_or(-1), sigma, 0.01 + 0.2 * sigma) << sigma;
+  }
+}
+
+TEST(SheetAcquisition, FacesDownIfItIsFoundFromBelow) {
+  const auto sheet = found(planes({0}, 0.2, 3), Vec3(0, -0.01, 0));
+  ASSERT_TRUE(sheet);
+  EXPECT_LT(sheet->frame.normal_W().dot(kNormal), -std::cos(0.1));
+}
+
+// Two planes, 4 contact radii apart: the sheet is the one that is nearer to the proxy.
+TEST(SheetAcquisition, TheNearerOfTwoIsTheSheet) {
+  const PointCloud cloud = planes({0, 0.02}, 0.2, 5);
+  const auto upper = found(cloud, Vec3(0, 0.006, 0)), lower = found(cloud, Vec3(0, -0.028, 0));
+  ASSERT_TRUE(upper && lower);
+  EXPECT_NEAR(height_above(*upper, 0), 0, 0.1);
+  EXPECT_NEAR(height_above(*lower, 0.02), 0, 0.1);
+}
+
+TEST(SheetAcquisition, FindsNoSheetIfThereIsNoSurface) {
+  EXPECT_FALSE(found(PointCloud(), Vec3::Zero()));
+  EXPECT_FALSE(found(planes({0}, 0, 1), Vec3(0, 0.5, 0))) << "too far away";
+  PointCloud few;
+  for (const Vec3& p : {Vec3(0, 0, 0), Vec3(0.001, 0, 0), Vec3(0, 0, 0.001)}) few.append(p);
+  EXPECT_FALSE(found(few, Vec3(0, 0.005, 0)));
+  PointCloud lost;
+  for (int i = 0; i < 100; ++i) lost.append(Vec3::Constant(std::nan("")));
+  EXPECT_FALSE(found(lost, Vec3::Zero()));
+}
+
+}  // namespace
+}  // namespace remote_touch::sheet_acquisition_test

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/dissertation/depth/depth_pipeline.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "tests/support/depth_scenes.h"
 
 namespace remote_touch::depth_cases {

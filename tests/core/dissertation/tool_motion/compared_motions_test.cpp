@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 #include "tests/core/dissertation/tool_motion/free_space.h"
 #include "tests/support/box_tool.h"

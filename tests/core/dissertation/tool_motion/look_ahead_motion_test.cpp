@@ -11,7 +11,7 @@
 
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/cloud_form.h"

@@ -12,7 +12,7 @@
 
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/contact_thinning.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/cloud_form.h"
 #include "tests/support/scenes.h"

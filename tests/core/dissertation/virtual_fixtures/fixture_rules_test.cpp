@@ -26,14 +26,10 @@ void expect_near(const Shares& weights, const Shares& expected) {
   for (std::size_t i = 0; i < weights.size(); ++i) EXPECT_NEAR(weights[i], expected[i], 1e-12) << i;
 }
 
-// --- everywhere ---
-
 TEST(Everywhere, PicksWhatWasMeasured) {
   EXPECT_EQ(Everywhere({}).weights(cloud_of({{0, 0, 0}, kMissing, {1e6, -1e6, 3}})), (Shares{1, 0, 1}));
   EXPECT_EQ(Everywhere({}).weights({}), Shares{});
 }
-
-// --- half-space ---
 
 TEST(HalfSpace, ThePlaneBelongsToIt) {
   HalfSpace::Settings s;
@@ -77,8 +73,6 @@ TEST(HalfSpace, ANormalWithoutLengthIsRefused) {
   s.normal = {0, 0, 0};
   EXPECT_HAS(validate(s), "normal: expected longer than 0");
 }
-
-// --- near-point ---
 
 TEST(NearPoint, PicksPointsUpToItsRadius) {
   NearPoint::Settings s;
@@ -177,8 +171,6 @@ TEST(NearPoint, ARowNeedsItsColumn) {
   s.row = -1;
   EXPECT_HAS(validate(s), "row and column");
 }
-
-// --- hue-range ---
 
 Shares of_colours(const HueRange::Settings& s, const std::vector<std::uint32_t>& colours) {
   PointCloud cloud;
@@ -295,8 +287,6 @@ void expect_near(const Column& column, const Column& expected) {
   for (std::size_t i = 0; i < column.size(); ++i) EXPECT_NEAR(column[i], expected[i], 1e-15) << i;
 }
 
-// --- columns ---
-
 TEST(FixtureAssignment, ChangesNothingIfThereAreNoRules) {
   const PointCloud plain = assigned({}, points(2));
   EXPECT_TRUE(plain.fixture_radius_m.empty() && plain.stiffness_N_per_m.empty());
@@ -366,8 +356,6 @@ TEST(FixtureAssignment, ARuleWithoutAStiffnessLeavesThatOfTheRuleBefore) {
   EXPECT_EQ(assigned({{{0.02, 100}, {1}}, {{0.03}, {1}}}, points(1)).stiffness_N_per_m, Column{100});
 }
 
-// --- order and blending ---
-
 TEST(FixtureAssignment, ALaterRuleOverridesAnEarlierOne) {
   const Rule first{{0.02, 100}, {1, 1, 0, 0}}, second{{0.05, 300}, {0, 1, 1, 0}};
   const PointCloud one = assigned({first, second}, points(4));
@@ -401,8 +389,6 @@ TEST(FixtureAssignment, AValueThatIsReachedIsReachedExactly) {
   EXPECT_EQ(result.stiffness_N_per_m, Column{0.3});
 }
 
-// --- strength over time ---
-
 FixtureValues scheduled(Column rows) {
   FixtureValues values{0.02};
   values.schedule = std::move(rows);
@@ -420,12 +406,11 @@ TEST(Schedule, IsEvenBetweenRowsAndConstantOutside) {
   for (const auto& [time_s, value] : expected) EXPECT_NEAR(strength(rows, time_s), value, 1e-15) << time_s;
 }
 
-TEST(Schedule, StrengthIsAlwaysOneIfThereAreNoRows) {
-  for (const double time_s : {-1.0, 0.0, 1e6}) EXPECT_EQ(strength({}, time_s), 1);
-}
-
-TEST(Schedule, StrengthIsConstantIfThereIsOneRow) {
-  for (const double time_s : {-1.0, 2.0, 1e6}) EXPECT_EQ(strength({2, 0.5}, time_s), 0.5);
+TEST(Schedule, StrengthIsOneWithoutRowsAndConstantWithOne) {
+  for (const double time_s : {-1.0, 0.0, 2.0, 1e6}) {
+    EXPECT_EQ(strength({}, time_s), 1);
+    EXPECT_EQ(strength({2, 0.5}, time_s), 0.5);
+  }
 }
 
 TEST(Schedule, JumpsWhereTwoRowsHaveTheSameTime) {
@@ -463,8 +448,6 @@ TEST(Schedule, AssignmentChangesWithTimeIfTheStrengthChanges) {
   EXPECT_TRUE(changes({{}, {0, 0.5, 9, 0.6}, {}}));
   EXPECT_TRUE(changes({{0, 0.5, 1, 0.5, 1, 0.4}}));
 }
-
-// --- what is refused ---
 
 TEST(FixtureValues, AreRefusedIfOutOfRangeOrOutOfOrder) {
   EXPECT_EQ(validate(FixtureValues{}), "");

@@ -9,7 +9,7 @@
 
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/spread.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/result_file.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "scenarios/files/input_files.h"
 #include "tests/support/test_files.h"

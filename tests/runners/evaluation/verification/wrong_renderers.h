@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "core/dissertation/proxy/proxy_renderer.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
 

@@ -12,8 +12,8 @@
 #include <random>
 #include <vector>
 
-#include "analysis/trace/force_fidelity.h"
-#include "analysis/trace/tool_and_slave_measures.h"
+#include "analysis/trace/contact_measures.h"
+#include "analysis/trace/force_measures.h"
 #include "analysis/trace/trace.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/catalog/experiment.h"

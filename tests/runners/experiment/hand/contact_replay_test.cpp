@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "analysis/trace/force_fidelity.h"
+#include "analysis/trace/force_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
 #include "scenarios/simulated/grid_scenes.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "analysis/trace/tool_and_slave_measures.h"
+#include "analysis/trace/contact_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/contract/allocation_counter.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 
 namespace remote_touch::teleoperation_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dissertation/tool_shape/generated_tools.h"
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
 #include "runners/experiment/mesh_files/mesh_scene_from_files.h"
 #include "tests/support/scenes.h"

@@ -1,8 +1,8 @@
 // Meshes that are kept outside of the repository; the tests are skipped if they are missing.
 #include <gtest/gtest.h>
 
-#include "core/dissertation/tool_shape/voxel_tool.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/mesh/voxel_tool.h"
 #include "runners/experiment/mesh_files/mesh_file.h"
 #include "tests/support/recorded_data.h"
 

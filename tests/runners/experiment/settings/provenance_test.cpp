@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/trace/trace.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/sweep/sweep_session.h"
 #include "tests/support/test_files.h"

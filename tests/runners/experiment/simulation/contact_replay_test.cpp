@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trace/force_fidelity.h"
 #include "analysis/trace/force_measures.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/support/test_files.h"

@@ -14,7 +14,7 @@
 #include "analysis/trace/measures.h"
 #include "analysis/trace/trace.h"
 #include "core/beyond/tracked_surface/tracked_renderers.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/experiment/simulation/simulation.h"
 
 namespace remote_touch::tracked_sheet_test {

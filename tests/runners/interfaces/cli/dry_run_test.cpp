@@ -1,7 +1,7 @@
 // The estimate of `sweep --dry-run`.
 #include <gtest/gtest.h>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/interfaces/cli/program.h"
 #include "tests/support/test_files.h"
 

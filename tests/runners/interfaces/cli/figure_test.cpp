@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/evaluation/figures/figure_recipe.h"
 #include "tests/support/test_files.h"
 

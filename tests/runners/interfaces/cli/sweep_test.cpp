@@ -4,7 +4,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "core/kernels/isa.h"
+#include "core/kernels/kernels.h"
 #include "runners/interfaces/cli/program.h"
 #include "tests/support/test_files.h"
 

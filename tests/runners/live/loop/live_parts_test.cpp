@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "analysis/storage/digest.h"
-#include "analysis/trace/tool_and_slave_measures.h"
-#include "core/dissertation/tool_motion/tiled_cloud.h"
+#include "analysis/trace/contact_measures.h"
+#include "core/dissertation/tool_motion/touch_finder.h"
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/live/loop/pressed_hand.h"
