@@ -1,9 +1,9 @@
 #include "analysis/sweeps/sweep_comparison.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "analysis/storage/digest.h"
 #include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch {
@@ -246,14 +246,6 @@ Judgement judgement_by_pairs(const RegionComparison& c, const MeasureComparison&
 
 using Problems = std::vector<std::string>;
 
-bool same_values(const Column& a, const Column& b) {
-  const auto* numbers = std::get_if<std::vector<double>>(&a.values);
-  const auto* others = std::get_if<std::vector<double>>(&b.values);
-  if (numbers == nullptr || others == nullptr) return a.values == b.values;
-  return std::ranges::equal(*numbers, *others, {}, std::bit_cast<std::uint64_t, double>,
-                            std::bit_cast<std::uint64_t, double>);
-}
-
 void expect_same(const std::string& what, const std::string& a, const std::string& b, Problems& problems) {
   if (a != b) problems.push_back(what + ": " + a + " against " + b);
 }
@@ -264,7 +256,7 @@ void check_axis(const Column& a, const Column& b, Problems& problems) {
   expect_same(label + ", parameter", a.long_name, b.long_name, problems);
   expect_same(label + ", unit", a.units, b.units, problems);
   expect_same(label + ", values", std::to_string(a.length()), std::to_string(b.length()), problems);
-  if (a.length() == b.length() && !(same_values(a, b) && a.value_names == b.value_names))
+  if (a.length() == b.length() && (digest({a}) != digest({b}) || a.value_names != b.value_names))
     problems.push_back(label + ": the values differ");
 }
 

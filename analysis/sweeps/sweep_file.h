@@ -97,12 +97,10 @@ class SweepInProgress {
   std::int64_t state_offset_ = 0, checksum_offset_ = 0, notes_offset_ = 0;
 };
 
-// The runs of several parts of a sweep, on the disk, in the order of their numbers.
-
-// Holds the runs of parts that together may be larger than the memory. add() copies each part to a temporary
-// file, which has no name and so vanishes with the program. After complete(), values() returns blocks over
-// all runs. The memory grows with the number of parts and of failed runs, and without `is_whole` with that of
-// all runs.
+// The runs of several parts of a sweep, in the order of their numbers; together they may be larger than the
+// memory. add() copies each part to a temporary file on the disk, which has no name and so vanishes with the
+// program. After complete(), values() returns blocks over all runs. The memory grows with the number of parts
+// and of failed runs, and without `is_whole` with that of all runs.
 class RunSpool {
  public:
   // Blocks of this many places, from multiples of it on, are read fastest.

@@ -243,6 +243,31 @@ namespace {
 
 using Numbers = std::vector<std::int32_t>;
 
+// Rounds to 16 significant bits, 1 in 130 000. The other bits would make the file larger, and nobody needs
+// them: the sums have all of them.
+double in_16_bits(double value) {
+  constexpr std::uint64_t kDropped = std::uint64_t{1} << 37;
+  if (!std::isfinite(value)) return value;
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(value) + kDropped / 2) & ~(kDropped - 1));
+}
+
+// Returns how far the stored rows reach from the bucket of the median: to the farthest bucket, but at most so
+// far that the array has four values for each bucket in use.
+std::int32_t reach_of(const SweepTally& tally, std::size_t measure) {
+  std::size_t used = 0;
+  std::int32_t farthest = 0;
+  for (const CellTally& cell : tally.tallies) {
+    const QuantileSketch& sketch = cell.measures[measure].sketch;
+    const auto pairs = sketch.pairs();
+    if (pairs.empty()) continue;
+    const std::int32_t median = sketch.bucket_at(0.5);
+    used += pairs.size();
+    farthest = std::max({farthest, median - pairs.front().first, pairs.back().first - median});
+  }
+  const std::size_t rows = std::max<std::size_t>(1, 4 * used / std::max<std::size_t>(1, tally.cells.size()));
+  return std::min(farthest, static_cast<std::int32_t>((rows - 1) / 2));
+}
+
 // Builds the arrays of a tally; `over_cells` are the axes of an array with one value for each cell.
 class ArrayBuilder {
  public:
@@ -280,200 +305,166 @@ class ArrayBuilder {
     arrays_.scales.push_back({name, "1", meaning, std::move(numbers), 1, std::move(value_names)});
   }
 
-  void add_scales();
-  void add_counts();
-  void add_notes();
-  void add_measure(std::size_t measure);
+  void add_scales() {
+    arrays_.scales = tally_.axes;
+    if (tally_.cells.size() == tally_.cell_count()) {
+      over_cells_ = names_of(tally_.axes);
+    } else {
+      arrays_.scales.push_back({"cell", "1", "number of the cell, the last axis runs fastest", tally_.cells});
+      over_cells_ = {"cell"};
+    }
+    for (const CellTally& cell : tally_.tallies)
+      for (const MeasureTally& measure : cell.measures)
+        parts_ = std::max({parts_, measure.sum.parts().size(), measure.squares.parts().size()});
+    add_scale("part", "number of the part of an exact sum", 0, static_cast<std::int32_t>(parts_) - 1);
+    if (!tally_.note_kinds.empty())
+      add_scale("note_kind", "kind of note on a run", 0,
+                static_cast<std::int32_t>(tally_.note_kinds.size()) - 1, tally_.note_kinds);
+  }
+
+  void add_counts() {
+    add_array("runs", "1", "number of runs of the cell that were made, failed ones included",
+              of_cells<std::int32_t>([](const CellTally& cell) { return cell.runs(); }));
+    add_array("failed", "1", "number of runs that failed",
+              of_cells<std::int32_t>([](const CellTally& cell) { return cell.failed; }));
+  }
+
+  void add_notes() {
+    if (tally_.note_kinds.empty()) return;
+    Numbers runs;
+    std::vector<std::uint64_t> first;
+    for (std::size_t kind = 0; kind < tally_.note_kinds.size(); ++kind)
+      for (const CellTally& cell : tally_.tallies) {
+        runs.push_back(static_cast<std::int32_t>(cell.notes[kind].runs));
+        first.push_back(cell.notes[kind].first);
+      }
+    add_array("note_runs", "1", "number of runs with a note of this kind", std::move(runs), "note_kind");
+    add_array("note_first", "1", "number of the first such run; 0 without such runs", std::move(first),
+              "note_kind");
+  }
+
+  void add_measure(std::size_t measure) {
+    const Column& about = tally_.measures[measure];
+    const auto path = [&](const char* name) { return about.name + '/' + name; };
+    const auto count = [&](const char* name, const char* meaning, std::int64_t MeasureTally::*member) {
+      Numbers numbers =
+          of_cells<std::int32_t>([&](const CellTally& cell) { return cell.measures[measure].*member; });
+      const bool is_seldom_needed = member != &MeasureTally::values;
+      if (is_seldom_needed && std::count(numbers.begin(), numbers.end(), 0) == std::ssize(numbers)) return;
+      add_array(path(name), "1", meaning, std::move(numbers));
+    };
+    const auto number = [&](const char* name, const std::string& meaning, auto&& of) {
+      const auto of_values = [&](const CellTally& cell) {
+        const MeasureTally& tally = cell.measures[measure];
+        return tally.values == 0 ? std::numeric_limits<double>::quiet_NaN() : of(tally);
+      };
+      add_array(path(name), about.units, meaning, of_cells<double>(of_values));
+    };
+    count("values", "number of runs with a finite value", &MeasureTally::values);
+    count("unknown", "number of runs whose value is unknown (NaN)", &MeasureTally::unknown);
+    count("infinite", "number of runs whose value is infinite", &MeasureTally::infinite);
+    number("least", "least finite value", [](const MeasureTally& tally) { return tally.least; });
+    number("greatest", "greatest finite value", [](const MeasureTally& tally) { return tally.greatest; });
+    number("mean", "mean of the finite values", [](const MeasureTally& tally) { return tally.mean(); });
+    number("standard_deviation", "standard deviation of the finite values, with n - 1, rounded to 16 bits",
+           [](const MeasureTally& tally) { return in_16_bits(tally.standard_deviation()); });
+    add_sums("sum", "sum of the finite values: the exact sum of the parts", measure, &MeasureTally::sum);
+    add_sums("sum_of_squares", "sum of the squares of the finite values: the exact sum of the parts", measure,
+             &MeasureTally::squares);
+    add_sketch(measure);
+    add_events(measure);
+  }
+
   void add_sums(const std::string& name, const std::string& meaning, std::size_t measure,
-                UnroundedSum MeasureTally::*sum);
-  void add_sketch(std::size_t measure);
-  void add_events(std::size_t measure);
-  void add_runs();
+                UnroundedSum MeasureTally::*sum) {
+    const std::size_t cells = tally_.tallies.size();
+    std::vector<double> values(parts_ * cells, 0.0);
+    for (std::size_t i = 0; i < cells; ++i) {
+      const std::vector<double> parts = (tally_.tallies[i].measures[measure].*sum).parts();
+      for (std::size_t part = 0; part < parts.size(); ++part) values[part * cells + i] = parts[part];
+    }
+    const Column& about = tally_.measures[measure];
+    const std::string unit =
+        sum == &MeasureTally::sum || about.units == "1" ? about.units : "(" + about.units + ")^2";
+    add_array(about.name + '/' + name, unit, meaning, std::move(values), "part");
+  }
+
+  // The counts of all cells at the same distance from their medians follow each other: they are similar,
+  // which makes the compressed file smaller.
+  void add_sketch(std::size_t measure) {
+    const std::string group = tally_.measures[measure].name;
+    const std::int32_t reach = reach_of(tally_, measure);
+    const std::size_t cells = tally_.cells.size();
+    Numbers counts((2 * static_cast<std::size_t>(reach) + 1) * cells, 0);
+    Numbers medians, far_buckets, far_counts;
+    std::vector<std::uint64_t> far_cells;
+    for (std::size_t i = 0; i < cells; ++i) {
+      const QuantileSketch& sketch = tally_.tallies[i].measures[measure].sketch;
+      medians.push_back(sketch.bucket_at(0.5));
+      for (const auto& [bucket, count] : sketch.pairs()) {
+        const std::int32_t row = bucket - medians.back() + reach;
+        const auto values = static_cast<std::int32_t>(count);
+        if (row >= 0 && row <= 2 * reach)
+          counts[static_cast<std::size_t>(row) * cells + i] = values;
+        else
+          far_cells.push_back(tally_.cells[i]), far_buckets.push_back(bucket), far_counts.push_back(values);
+      }
+    }
+    add_scale(group + "/bucket_offset", "number of a bucket minus that of the bucket of the median", -reach,
+              reach);
+    add_array(
+        group + "/median_bucket", "1",
+        "bucket of the median: 0 has the value 0; b > 0 the doubles whose bits >> 47 are b - 1; -b their "
+        "negatives",
+        std::move(medians));
+    add_array(group + "/bucket_values", "1", "number of values in the bucket median_bucket + bucket_offset",
+              std::move(counts), group + "/bucket_offset");
+    if (far_cells.empty()) return;
+    arrays_.groups.push_back({group + "/far_buckets",
+                              {{"cell", "1", "number of the cell", std::move(far_cells)},
+                               {"bucket", "1", "number of the bucket", std::move(far_buckets)},
+                               {"values", "1", "number of values in the bucket", std::move(far_counts)}}});
+  }
+
+  void add_events(std::size_t measure) {
+    const TallyLayout layout = tally_.layout();
+    const auto at = std::find(layout.events.begin(), layout.events.end(), measure);
+    if (at == layout.events.end()) return;
+    std::vector<std::uint64_t> runs;
+    for (const CellTally& cell : tally_.tallies) {
+      const auto& of_cell = cell.events[static_cast<std::size_t>(at - layout.events.begin())];
+      runs.insert(runs.end(), of_cell.begin(), of_cell.end());
+    }
+    if (runs.empty()) return;
+    arrays_.groups.push_back({tally_.measures[measure].name + "/events",
+                              {{"run", "1",
+                                "number of a run in which the event happened: the cell times the replicates "
+                                "plus the replicate",
+                                std::move(runs)}}});
+  }
+
+  void add_runs() {
+    std::vector<std::uint64_t> held, failed;
+    std::vector<std::string> errors;
+    for (const RunRange& range : tally_.held.ranges())
+      held.push_back(range.first), held.push_back(range.end - 1);
+    arrays_.scales.push_back(
+        {"held_runs", "1", "first and last number of each range of runs that were made, one after the other",
+         std::move(held)});
+    for (const CellTally& cell : tally_.tallies)
+      if (cell.failed > 0) failed.push_back(cell.first_failed), errors.push_back(cell.first_error);
+    if (failed.empty()) return;
+    arrays_.groups.push_back(
+        {"errors",
+         {{"run", "1", "number of the first run of a cell that failed", std::move(failed)},
+          {"error", "1", "why that run failed", std::move(errors)}}});
+  }
 
   const SweepTally& tally_;
   TallyArrays arrays_;
   std::vector<std::string> over_cells_;
   std::size_t parts_ = 1;  // largest number of parts of a sum
 };
-
-void ArrayBuilder::add_scales() {
-  arrays_.scales = tally_.axes;
-  if (tally_.cells.size() == tally_.cell_count()) {
-    over_cells_ = names_of(tally_.axes);
-  } else {
-    arrays_.scales.push_back({"cell", "1", "number of the cell, the last axis runs fastest", tally_.cells});
-    over_cells_ = {"cell"};
-  }
-  for (const CellTally& cell : tally_.tallies)
-    for (const MeasureTally& measure : cell.measures)
-      parts_ = std::max({parts_, measure.sum.parts().size(), measure.squares.parts().size()});
-  add_scale("part", "number of the part of an exact sum", 0, static_cast<std::int32_t>(parts_) - 1);
-  if (!tally_.note_kinds.empty())
-    add_scale("note_kind", "kind of note on a run", 0,
-              static_cast<std::int32_t>(tally_.note_kinds.size()) - 1, tally_.note_kinds);
-}
-
-void ArrayBuilder::add_counts() {
-  add_array("runs", "1", "number of runs of the cell that were made, failed ones included",
-            of_cells<std::int32_t>([](const CellTally& cell) { return cell.runs(); }));
-  add_array("failed", "1", "number of runs that failed",
-            of_cells<std::int32_t>([](const CellTally& cell) { return cell.failed; }));
-}
-
-void ArrayBuilder::add_notes() {
-  if (tally_.note_kinds.empty()) return;
-  Numbers runs;
-  std::vector<std::uint64_t> first;
-  for (std::size_t kind = 0; kind < tally_.note_kinds.size(); ++kind)
-    for (const CellTally& cell : tally_.tallies) {
-      runs.push_back(static_cast<std::int32_t>(cell.notes[kind].runs));
-      first.push_back(cell.notes[kind].first);
-    }
-  add_array("note_runs", "1", "number of runs with a note of this kind", std::move(runs), "note_kind");
-  add_array("note_first", "1", "number of the first such run; 0 without such runs", std::move(first),
-            "note_kind");
-}
-
-// Rounds to 16 significant bits, 1 in 130 000. The other bits would make the file larger, and nobody needs
-// them: the sums have all of them.
-double in_16_bits(double value) {
-  constexpr std::uint64_t kDropped = std::uint64_t{1} << 37;
-  if (!std::isfinite(value)) return value;
-  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(value) + kDropped / 2) & ~(kDropped - 1));
-}
-
-void ArrayBuilder::add_measure(std::size_t measure) {
-  const Column& about = tally_.measures[measure];
-  const auto path = [&](const char* name) { return about.name + '/' + name; };
-  const auto count = [&](const char* name, const char* meaning, std::int64_t MeasureTally::*member) {
-    Numbers numbers =
-        of_cells<std::int32_t>([&](const CellTally& cell) { return cell.measures[measure].*member; });
-    const bool is_seldom_needed = member != &MeasureTally::values;
-    if (is_seldom_needed && std::count(numbers.begin(), numbers.end(), 0) == std::ssize(numbers)) return;
-    add_array(path(name), "1", meaning, std::move(numbers));
-  };
-  const auto number = [&](const char* name, const std::string& meaning, auto&& of) {
-    const auto of_values = [&](const CellTally& cell) {
-      const MeasureTally& tally = cell.measures[measure];
-      return tally.values == 0 ? std::numeric_limits<double>::quiet_NaN() : of(tally);
-    };
-    add_array(path(name), about.units, meaning, of_cells<double>(of_values));
-  };
-  count("values", "number of runs with a finite value", &MeasureTally::values);
-  count("unknown", "number of runs whose value is unknown (NaN)", &MeasureTally::unknown);
-  count("infinite", "number of runs whose value is infinite", &MeasureTally::infinite);
-  number("least", "least finite value", [](const MeasureTally& tally) { return tally.least; });
-  number("greatest", "greatest finite value", [](const MeasureTally& tally) { return tally.greatest; });
-  number("mean", "mean of the finite values", [](const MeasureTally& tally) { return tally.mean(); });
-  number("standard_deviation", "standard deviation of the finite values, with n - 1, rounded to 16 bits",
-         [](const MeasureTally& tally) { return in_16_bits(tally.standard_deviation()); });
-  add_sums("sum", "sum of the finite values: the exact sum of the parts", measure, &MeasureTally::sum);
-  add_sums("sum_of_squares", "sum of the squares of the finite values: the exact sum of the parts", measure,
-           &MeasureTally::squares);
-  add_sketch(measure);
-  add_events(measure);
-}
-
-void ArrayBuilder::add_sums(const std::string& name, const std::string& meaning, std::size_t measure,
-                            UnroundedSum MeasureTally::*sum) {
-  const std::size_t cells = tally_.tallies.size();
-  std::vector<double> values(parts_ * cells, 0.0);
-  for (std::size_t i = 0; i < cells; ++i) {
-    const std::vector<double> parts = (tally_.tallies[i].measures[measure].*sum).parts();
-    for (std::size_t part = 0; part < parts.size(); ++part) values[part * cells + i] = parts[part];
-  }
-  const Column& about = tally_.measures[measure];
-  const std::string unit =
-      sum == &MeasureTally::sum || about.units == "1" ? about.units : "(" + about.units + ")^2";
-  add_array(about.name + '/' + name, unit, meaning, std::move(values), "part");
-}
-
-// Returns how far the stored rows reach from the bucket of the median: to the farthest bucket, but at most so
-// far that the array has four values for each bucket in use.
-std::int32_t reach_of(const SweepTally& tally, std::size_t measure) {
-  std::size_t used = 0;
-  std::int32_t farthest = 0;
-  for (const CellTally& cell : tally.tallies) {
-    const QuantileSketch& sketch = cell.measures[measure].sketch;
-    const auto pairs = sketch.pairs();
-    if (pairs.empty()) continue;
-    const std::int32_t median = sketch.bucket_at(0.5);
-    used += pairs.size();
-    farthest = std::max({farthest, median - pairs.front().first, pairs.back().first - median});
-  }
-  const std::size_t rows = std::max<std::size_t>(1, 4 * used / std::max<std::size_t>(1, tally.cells.size()));
-  return std::min(farthest, static_cast<std::int32_t>((rows - 1) / 2));
-}
-
-// The counts of all cells at the same distance from their medians follow each other: they are similar, which
-// makes the compressed file smaller.
-void ArrayBuilder::add_sketch(std::size_t measure) {
-  const std::string group = tally_.measures[measure].name;
-  const std::int32_t reach = reach_of(tally_, measure);
-  const std::size_t cells = tally_.cells.size();
-  Numbers counts((2 * static_cast<std::size_t>(reach) + 1) * cells, 0);
-  Numbers medians, far_buckets, far_counts;
-  std::vector<std::uint64_t> far_cells;
-  for (std::size_t i = 0; i < cells; ++i) {
-    const QuantileSketch& sketch = tally_.tallies[i].measures[measure].sketch;
-    medians.push_back(sketch.bucket_at(0.5));
-    for (const auto& [bucket, count] : sketch.pairs()) {
-      const std::int32_t row = bucket - medians.back() + reach;
-      const auto values = static_cast<std::int32_t>(count);
-      if (row >= 0 && row <= 2 * reach)
-        counts[static_cast<std::size_t>(row) * cells + i] = values;
-      else
-        far_cells.push_back(tally_.cells[i]), far_buckets.push_back(bucket), far_counts.push_back(values);
-    }
-  }
-  add_scale(group + "/bucket_offset", "number of a bucket minus that of the bucket of the median", -reach,
-            reach);
-  add_array(group + "/median_bucket", "1",
-            "bucket of the median: 0 has the value 0; b > 0 the doubles whose bits >> 47 are b - 1; -b their "
-            "negatives",
-            std::move(medians));
-  add_array(group + "/bucket_values", "1", "number of values in the bucket median_bucket + bucket_offset",
-            std::move(counts), group + "/bucket_offset");
-  if (far_cells.empty()) return;
-  arrays_.groups.push_back({group + "/far_buckets",
-                            {{"cell", "1", "number of the cell", std::move(far_cells)},
-                             {"bucket", "1", "number of the bucket", std::move(far_buckets)},
-                             {"values", "1", "number of values in the bucket", std::move(far_counts)}}});
-}
-
-void ArrayBuilder::add_events(std::size_t measure) {
-  const TallyLayout layout = tally_.layout();
-  const auto at = std::find(layout.events.begin(), layout.events.end(), measure);
-  if (at == layout.events.end()) return;
-  std::vector<std::uint64_t> runs;
-  for (const CellTally& cell : tally_.tallies) {
-    const auto& of_cell = cell.events[static_cast<std::size_t>(at - layout.events.begin())];
-    runs.insert(runs.end(), of_cell.begin(), of_cell.end());
-  }
-  if (runs.empty()) return;
-  arrays_.groups.push_back({tally_.measures[measure].name + "/events",
-                            {{"run", "1",
-                              "number of a run in which the event happened: the cell times the replicates "
-                              "plus the replicate",
-                              std::move(runs)}}});
-}
-
-void ArrayBuilder::add_runs() {
-  std::vector<std::uint64_t> held, failed;
-  std::vector<std::string> errors;
-  for (const RunRange& range : tally_.held.ranges())
-    held.push_back(range.first), held.push_back(range.end - 1);
-  arrays_.scales.push_back({"held_runs", "1",
-                            "first and last number of each range of runs that were made, one after the other",
-                            std::move(held)});
-  for (const CellTally& cell : tally_.tallies)
-    if (cell.failed > 0) failed.push_back(cell.first_failed), errors.push_back(cell.first_error);
-  if (failed.empty()) return;
-  arrays_.groups.push_back({"errors",
-                            {{"run", "1", "number of the first run of a cell that failed", std::move(failed)},
-                             {"error", "1", "why that run failed", std::move(errors)}}});
-}
-
 }  // namespace
 
 bool is_free_in_tallies(const std::string& name) {

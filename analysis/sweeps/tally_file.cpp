@@ -146,175 +146,165 @@ class TallyReader {
   Int32s counts_or_zeros(const std::string& name) const {
     return has(name) ? values<std::int32_t>(name, cells_) : Int32s(cells_, 0);
   }
-  void require_digest() const;
-  void read_plan();
-  void read_runs();
-  void read_notes();
-  void read_measure(std::size_t measure);
-  void read_sums(const std::string& name, std::size_t measure, UnroundedSum MeasureTally::*sum);
-  void read_sketch(std::size_t measure);
-  void read_lists();
-  CellTally& tally_of_run(std::uint64_t run);
+
+  void read_plan() {
+    for (const std::string& name : split_names(text("axes"))) tally_.axes.push_back(column(name));
+    std::uint64_t runs = 1;
+    for (const Column& axis : tally_.axes)
+      if (__builtin_mul_overflow(runs, axis.length(), &runs)) hdf5_.damaged("its axes have too many values");
+    const std::string replicates = text("replicates");
+    const char* const end = replicates.data() + replicates.size();
+    if (std::from_chars(replicates.data(), end, tally_.replicates).ptr != end || tally_.replicates < 1)
+      hdf5_.damaged("its attribute replicates is not a number of runs");
+    if (__builtin_mul_overflow(runs, static_cast<std::uint64_t>(tally_.replicates), &runs) || runs == 0)
+      hdf5_.damaged("its axes have too many values, or none");
+    tally_.keeps_events = text("keep") == "events";
+    if (text("keep") != keep_of(tally_)) hdf5_.damaged("its attribute keep is unknown");
+    const std::vector<std::string> names = split_names(text("measures"));
+    const std::vector<std::string> units = split_lines(text("measure_units"));
+    const std::vector<std::string> meanings = split_lines(text("measure_meanings"));
+    if (names.empty() || units.size() != names.size() || meanings.size() != names.size())
+      hdf5_.damaged("it names no measures, or not all their units and meanings");
+    for (std::size_t i = 0; i < names.size(); ++i)
+      tally_.measures.push_back({names[i], units[i], meanings[i], std::vector<double>()});
+    if (has("note_kind")) tally_.note_kinds = column("note_kind").value_names;
+  }
+
+  void read_runs() {
+    if (has("cell")) {
+      tally_.cells = values<std::uint64_t>("cell");
+    } else {
+      const auto cells = values<std::int32_t>("runs");
+      if (cells.size() != tally_.cell_count()) hdf5_.damaged("/tally/runs has another length");
+      for (std::uint64_t cell = 0; cell < cells.size(); ++cell) tally_.cells.push_back(cell);
+    }
+    cells_ = tally_.cells.size();
+    if (cells_ == 0) hdf5_.damaged("it has no cells");
+    const auto runs = values<std::int32_t>("runs", cells_), failed = values<std::int32_t>("failed", cells_);
+    tally_.tallies.assign(cells_, CellTally(tally_.layout()));
+    for (std::size_t i = 0; i < cells_; ++i) {
+      tally_.tallies[i].failed = failed[i];
+      tally_.tallies[i].done = std::int64_t{runs[i]} - failed[i];
+    }
+    read_notes();
+    const auto held = values<std::uint64_t>("held_runs");
+    if (held.size() % 2 != 0) hdf5_.damaged("/tally/held_runs has another length");
+    for (std::size_t i = 0; i < held.size(); i += 2) {
+      const std::uint64_t first = held[i], last = held[i + 1];
+      if (last < first || last >= tally_.run_count() || (i > 0 && first <= held[i - 1]))
+        hdf5_.damaged("its ranges of runs are not increasing");
+      tally_.held.add({first, last + 1});
+    }
+  }
+
+  void read_notes() {
+    const std::size_t kinds = tally_.note_kinds.size();
+    if (kinds == 0) return;
+    const auto runs = values<std::int32_t>("note_runs", kinds * cells_);
+    const auto first = values<std::uint64_t>("note_first", kinds * cells_);
+    for (std::size_t kind = 0; kind < kinds; ++kind)
+      for (std::size_t i = 0; i < cells_; ++i)
+        tally_.tallies[i].notes[kind] = {runs[kind * cells_ + i], first[kind * cells_ + i]};
+  }
+
+  void read_measure(std::size_t measure) {
+    const std::string group = tally_.measures[measure].name + '/';
+    const auto finite = values<std::int32_t>(group + "values", cells_);
+    const auto unknown = counts_or_zeros(group + "unknown");
+    const auto infinite = counts_or_zeros(group + "infinite");
+    const auto least = values<double>(group + "least", cells_);
+    const auto greatest = values<double>(group + "greatest", cells_);
+    for (std::size_t i = 0; i < cells_; ++i) {
+      MeasureTally& tally = tally_.tallies[i].measures[measure];
+      tally.values = finite[i], tally.unknown = unknown[i], tally.infinite = infinite[i];
+      if (finite[i] > 0) tally.least = least[i], tally.greatest = greatest[i];
+    }
+    read_sums(group + "sum", measure, &MeasureTally::sum);
+    read_sums(group + "sum_of_squares", measure, &MeasureTally::squares);
+    read_sketch(measure);
+  }
+
+  void read_sums(const std::string& name, std::size_t measure, UnroundedSum MeasureTally::*sum) {
+    const auto all = values<double>(name);
+    if (all.empty() || all.size() % cells_ != 0) hdf5_.damaged("/tally/" + name + " has another length");
+    for (std::size_t i = 0; i < cells_; ++i) {
+      std::vector<double> parts;
+      for (std::size_t at = i; at < all.size() && all[at] != 0; at += cells_) parts.push_back(all[at]);
+      std::optional<UnroundedSum> read = UnroundedSum::from_parts(parts);
+      if (!read) hdf5_.damaged("/tally/" + name + " is not a sum");
+      tally_.tallies[i].measures[measure].*sum = std::move(*read);
+    }
+  }
+
+  void read_sketch(std::size_t measure) {
+    using Buckets = std::vector<std::pair<std::int32_t, std::int64_t>>;
+    const std::string group = tally_.measures[measure].name + '/';
+    const auto offsets = values<std::int32_t>(group + "bucket_offset");
+    const auto medians = values<std::int32_t>(group + "median_bucket", cells_);
+    const auto counts = values<std::int32_t>(group + "bucket_values");
+    if (counts.size() / cells_ != offsets.size() || counts.size() % cells_ != 0)
+      hdf5_.damaged("/tally/" + group + "bucket_values has another length");
+    std::vector<Buckets> pairs(cells_);
+    for (std::size_t row = 0; row < offsets.size(); ++row)
+      for (std::size_t i = 0; i < cells_; ++i)
+        if (const std::int32_t count = counts[row * cells_ + i]; count != 0)
+          pairs[i].emplace_back(static_cast<std::int32_t>(std::int64_t{medians[i]} + offsets[row]), count);
+    if (const std::string far = group + "far_buckets/"; has(far + "cell")) {
+      const auto cells = values<std::uint64_t>(far + "cell");
+      const auto buckets = values<std::int32_t>(far + "bucket", cells.size());
+      const auto in_bucket = values<std::int32_t>(far + "values", cells.size());
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto at = std::lower_bound(tally_.cells.begin(), tally_.cells.end(), cells[i]);
+        if (at == tally_.cells.end()) hdf5_.damaged("/tally/" + far + "cell is not in the tally");
+        pairs[static_cast<std::size_t>(at - tally_.cells.begin())].emplace_back(buckets[i], in_bucket[i]);
+      }
+    }
+    for (std::size_t i = 0; i < cells_; ++i) {
+      std::sort(pairs[i].begin(), pairs[i].end());
+      std::optional<QuantileSketch> read = QuantileSketch::from_pairs(pairs[i]);
+      if (!read) hdf5_.damaged("/tally/" + group + "bucket_values is not a sketch");
+      tally_.tallies[i].measures[measure].sketch = std::move(*read);
+    }
+  }
+
+  CellTally& tally_of_run(std::uint64_t run) {
+    const std::uint64_t cell = run / static_cast<std::uint64_t>(tally_.replicates);
+    const auto at = std::lower_bound(tally_.cells.begin(), tally_.cells.end(), cell);
+    if (at == tally_.cells.end() || *at != cell) hdf5_.damaged("a run belongs to a cell without a tally");
+    return tally_.tallies[static_cast<std::size_t>(at - tally_.cells.begin())];
+  }
+
+  void read_lists() {
+    if (has("errors/run")) {
+      const auto runs = values<std::uint64_t>("errors/run");
+      const auto errors = values<std::string>("errors/error", runs.size());
+      for (std::size_t i = 0; i < runs.size(); ++i) {
+        CellTally& cell = tally_of_run(runs[i]);
+        cell.first_failed = runs[i], cell.first_error = errors[i];
+      }
+    }
+    const TallyLayout layout = tally_.layout();
+    for (std::size_t i = 0; i < layout.events.size(); ++i) {
+      const std::string name = tally_.measures[layout.events[i]].name + "/events/run";
+      if (!has(name)) continue;
+      for (const std::uint64_t run : values<std::uint64_t>(name)) tally_of_run(run).events[i].push_back(run);
+    }
+  }
+
+  // The stored arrays have the digest, and are those of the tally that was read: the means, too.
+  void require_digest() const {
+    const std::vector<Column> expected = columns_of(arrays_of(tally_));
+    std::vector<Column> read;
+    for (const Column& each : expected) read.push_back(column(each.name));
+    if (digest(read) != text("digest") || digest(expected) != text("digest"))
+      hdf5_.damaged("its digest does not match");
+  }
 
   const Hdf5Reader& hdf5_;
   std::set<std::string> datasets_;
   SweepTally tally_;
   std::size_t cells_ = 0;  // number of cells with runs
 };
-
-void TallyReader::read_plan() {
-  for (const std::string& name : split_names(text("axes"))) tally_.axes.push_back(column(name));
-  std::uint64_t runs = 1;
-  for (const Column& axis : tally_.axes)
-    if (__builtin_mul_overflow(runs, axis.length(), &runs)) hdf5_.damaged("its axes have too many values");
-  const std::string replicates = text("replicates");
-  const char* const end = replicates.data() + replicates.size();
-  if (std::from_chars(replicates.data(), end, tally_.replicates).ptr != end || tally_.replicates < 1)
-    hdf5_.damaged("its attribute replicates is not a number of runs");
-  if (__builtin_mul_overflow(runs, static_cast<std::uint64_t>(tally_.replicates), &runs) || runs == 0)
-    hdf5_.damaged("its axes have too many values, or none");
-  tally_.keeps_events = text("keep") == "events";
-  if (text("keep") != keep_of(tally_)) hdf5_.damaged("its attribute keep is unknown");
-  const std::vector<std::string> names = split_names(text("measures"));
-  const std::vector<std::string> units = split_lines(text("measure_units"));
-  const std::vector<std::string> meanings = split_lines(text("measure_meanings"));
-  if (names.empty() || units.size() != names.size() || meanings.size() != names.size())
-    hdf5_.damaged("it names no measures, or not all their units and meanings");
-  for (std::size_t i = 0; i < names.size(); ++i)
-    tally_.measures.push_back({names[i], units[i], meanings[i], std::vector<double>()});
-  if (has("note_kind")) tally_.note_kinds = column("note_kind").value_names;
-}
-
-void TallyReader::read_runs() {
-  if (has("cell")) {
-    tally_.cells = values<std::uint64_t>("cell");
-  } else {
-    const auto cells = values<std::int32_t>("runs");
-    if (cells.size() != tally_.cell_count()) hdf5_.damaged("/tally/runs has another length");
-    for (std::uint64_t cell = 0; cell < cells.size(); ++cell) tally_.cells.push_back(cell);
-  }
-  cells_ = tally_.cells.size();
-  if (cells_ == 0) hdf5_.damaged("it has no cells");
-  const auto runs = values<std::int32_t>("runs", cells_), failed = values<std::int32_t>("failed", cells_);
-  tally_.tallies.assign(cells_, CellTally(tally_.layout()));
-  for (std::size_t i = 0; i < cells_; ++i) {
-    tally_.tallies[i].failed = failed[i];
-    tally_.tallies[i].done = std::int64_t{runs[i]} - failed[i];
-  }
-  read_notes();
-  const auto held = values<std::uint64_t>("held_runs");
-  if (held.size() % 2 != 0) hdf5_.damaged("/tally/held_runs has another length");
-  for (std::size_t i = 0; i < held.size(); i += 2) {
-    const std::uint64_t first = held[i], last = held[i + 1];
-    if (last < first || last >= tally_.run_count() || (i > 0 && first <= held[i - 1]))
-      hdf5_.damaged("its ranges of runs are not increasing");
-    tally_.held.add({first, last + 1});
-  }
-}
-
-void TallyReader::read_notes() {
-  const std::size_t kinds = tally_.note_kinds.size();
-  if (kinds == 0) return;
-  const auto runs = values<std::int32_t>("note_runs", kinds * cells_);
-  const auto first = values<std::uint64_t>("note_first", kinds * cells_);
-  for (std::size_t kind = 0; kind < kinds; ++kind)
-    for (std::size_t i = 0; i < cells_; ++i)
-      tally_.tallies[i].notes[kind] = {runs[kind * cells_ + i], first[kind * cells_ + i]};
-}
-
-void TallyReader::read_measure(std::size_t measure) {
-  const std::string group = tally_.measures[measure].name + '/';
-  const auto finite = values<std::int32_t>(group + "values", cells_);
-  const auto unknown = counts_or_zeros(group + "unknown");
-  const auto infinite = counts_or_zeros(group + "infinite");
-  const auto least = values<double>(group + "least", cells_);
-  const auto greatest = values<double>(group + "greatest", cells_);
-  for (std::size_t i = 0; i < cells_; ++i) {
-    MeasureTally& tally = tally_.tallies[i].measures[measure];
-    tally.values = finite[i], tally.unknown = unknown[i], tally.infinite = infinite[i];
-    if (finite[i] > 0) tally.least = least[i], tally.greatest = greatest[i];
-  }
-  read_sums(group + "sum", measure, &MeasureTally::sum);
-  read_sums(group + "sum_of_squares", measure, &MeasureTally::squares);
-  read_sketch(measure);
-}
-
-void TallyReader::read_sums(const std::string& name, std::size_t measure, UnroundedSum MeasureTally::*sum) {
-  const auto all = values<double>(name);
-  if (all.empty() || all.size() % cells_ != 0) hdf5_.damaged("/tally/" + name + " has another length");
-  for (std::size_t i = 0; i < cells_; ++i) {
-    std::vector<double> parts;
-    for (std::size_t at = i; at < all.size() && all[at] != 0; at += cells_) parts.push_back(all[at]);
-    std::optional<UnroundedSum> read = UnroundedSum::from_parts(parts);
-    if (!read) hdf5_.damaged("/tally/" + name + " is not a sum");
-    tally_.tallies[i].measures[measure].*sum = std::move(*read);
-  }
-}
-
-void TallyReader::read_sketch(std::size_t measure) {
-  using Buckets = std::vector<std::pair<std::int32_t, std::int64_t>>;
-  const std::string group = tally_.measures[measure].name + '/';
-  const auto offsets = values<std::int32_t>(group + "bucket_offset");
-  const auto medians = values<std::int32_t>(group + "median_bucket", cells_);
-  const auto counts = values<std::int32_t>(group + "bucket_values");
-  if (counts.size() / cells_ != offsets.size() || counts.size() % cells_ != 0)
-    hdf5_.damaged("/tally/" + group + "bucket_values has another length");
-  std::vector<Buckets> pairs(cells_);
-  for (std::size_t row = 0; row < offsets.size(); ++row)
-    for (std::size_t i = 0; i < cells_; ++i)
-      if (const std::int32_t count = counts[row * cells_ + i]; count != 0)
-        pairs[i].emplace_back(static_cast<std::int32_t>(std::int64_t{medians[i]} + offsets[row]), count);
-  if (const std::string far = group + "far_buckets/"; has(far + "cell")) {
-    const auto cells = values<std::uint64_t>(far + "cell");
-    const auto buckets = values<std::int32_t>(far + "bucket", cells.size());
-    const auto in_bucket = values<std::int32_t>(far + "values", cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto at = std::lower_bound(tally_.cells.begin(), tally_.cells.end(), cells[i]);
-      if (at == tally_.cells.end()) hdf5_.damaged("/tally/" + far + "cell is not in the tally");
-      pairs[static_cast<std::size_t>(at - tally_.cells.begin())].emplace_back(buckets[i], in_bucket[i]);
-    }
-  }
-  for (std::size_t i = 0; i < cells_; ++i) {
-    std::sort(pairs[i].begin(), pairs[i].end());
-    std::optional<QuantileSketch> read = QuantileSketch::from_pairs(pairs[i]);
-    if (!read) hdf5_.damaged("/tally/" + group + "bucket_values is not a sketch");
-    tally_.tallies[i].measures[measure].sketch = std::move(*read);
-  }
-}
-
-CellTally& TallyReader::tally_of_run(std::uint64_t run) {
-  const std::uint64_t cell = run / static_cast<std::uint64_t>(tally_.replicates);
-  const auto at = std::lower_bound(tally_.cells.begin(), tally_.cells.end(), cell);
-  if (at == tally_.cells.end() || *at != cell) hdf5_.damaged("a run belongs to a cell without a tally");
-  return tally_.tallies[static_cast<std::size_t>(at - tally_.cells.begin())];
-}
-
-void TallyReader::read_lists() {
-  if (has("errors/run")) {
-    const auto runs = values<std::uint64_t>("errors/run");
-    const auto errors = values<std::string>("errors/error", runs.size());
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      CellTally& cell = tally_of_run(runs[i]);
-      cell.first_failed = runs[i], cell.first_error = errors[i];
-    }
-  }
-  const TallyLayout layout = tally_.layout();
-  for (std::size_t i = 0; i < layout.events.size(); ++i) {
-    const std::string name = tally_.measures[layout.events[i]].name + "/events/run";
-    if (!has(name)) continue;
-    for (const std::uint64_t run : values<std::uint64_t>(name)) tally_of_run(run).events[i].push_back(run);
-  }
-}
-
-// The stored arrays have the digest, and are those of the tally that was read: the means, too.
-void TallyReader::require_digest() const {
-  const std::vector<Column> expected = columns_of(arrays_of(tally_));
-  std::vector<Column> read;
-  for (const Column& each : expected) read.push_back(column(each.name));
-  if (digest(read) != text("digest") || digest(expected) != text("digest"))
-    hdf5_.damaged("its digest does not match");
-}
-
 // Returns the attributes that write_root() does not add itself.
 TextAttributes of_caller(const TextAttributes& all) {
   static const std::set<std::string> added = {"measure_units", "measure_meanings", "replicates", "keep"};

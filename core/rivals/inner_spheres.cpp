@@ -31,8 +31,35 @@ constexpr double kRounding = 1e-6;  // relative rounding of a radius that is sto
 
 class Packing {
  public:
-  explicit Packing(const VoxelTool& tool);
-  std::vector<Sphere> packed(std::size_t max);
+  explicit Packing(const VoxelTool& tool)
+      : tool_(tool), boundary_(tool.mesh), smallest_m_(kSmallest * tool.grid.size_m) {
+    for (int axis = 0; axis < 3; ++axis)
+      mirrored_[static_cast<std::size_t>(axis)] = equals_mirror_image(axis);
+    gather_nodes();
+  }
+
+  // The room of a node never grows, so a number in the queue is an upper bound. Only the node on top has to
+  // be evaluated again.
+  std::vector<Sphere> packed(std::size_t max) {
+    while (!candidates_.empty() && spheres_.size() < max) {
+      const Candidate best = candidates_.top();
+      candidates_.pop();
+      max_room_m_ = static_cast<double>(best.room_m);
+      float& room_m = room_m_[best.node];
+      if (room_m == best.room_m) {
+        const Vec3 p = position(best.node);
+        gather_near(p, max_room_m_);
+        // Deep inside, the field can be too large by a voxel.
+        const double exact_m = room_around(p).radius_m;
+        if (exact_m < (1 - kRounding) * max_room_m_)
+          room_m = static_cast<float>(std::max(0.0, exact_m));
+        else if (!add_with_images(fitted(p), max))
+          room_m = 0;
+      }
+      if (static_cast<double>(room_m) >= smallest_m_) candidates_.push({room_m, best.node});
+    }
+    return std::move(spheres_);
+  }
 
  private:
   using Axes = std::array<bool, 3>;
@@ -50,16 +77,165 @@ class Packing {
     Vec3 away;
   };
 
-  void gather_nodes();
-  bool equals_mirror_image(int axis) const;
-  Vec3 position(std::uint32_t node) const;
-  void gather_near(const Vec3& p, double reach_m);
-  Vec3 away_from_mesh(const Vec3& p) const;
-  Room room_around(const Vec3& p) const;
-  Sphere climbed(const Vec3& start, const Axes& on_plane);
-  Sphere fitted(const Vec3& start);
-  bool add_with_images(const Sphere& sphere, std::size_t max);
-  void take_room(const Sphere& sphere);
+  // Tests the vertices and the middles of the triangles.
+  bool equals_mirror_image(int axis) const {
+    const double max_m = kMirrored * tool_.grid.size_m;
+    const auto is_on_mesh = [&](Vec3 p) {
+      p[axis] = -p[axis];
+      return boundary_.nearest(p, 0).squared_m2 <= max_m * max_m;
+    };
+    const std::vector<Vec3>& vertices = tool_.mesh.vertices;
+    const auto corner = [&](int i) -> const Vec3& { return vertices[static_cast<std::size_t>(i)]; };
+    return std::all_of(vertices.begin(), vertices.end(), is_on_mesh) &&
+           std::all_of(tool_.mesh.triangles.begin(), tool_.mesh.triangles.end(), [&](const auto& t) {
+             return is_on_mesh((corner(t[0]) + corner(t[1]) + corner(t[2])) / 3);
+           });
+  }
+
+  void gather_nodes() {
+    const VoxelGrid& grid = tool_.grid;
+    const auto inside = static_cast<std::size_t>(std::count_if(
+        tool_.distance_m.begin(), tool_.distance_m.end(), [](float distance_m) { return distance_m < 0; }));
+    std::size_t stride = 1;
+    while (inside > kMaxNodes * stride * stride * stride) ++stride;
+    spacing_m_ = static_cast<double>(stride) * grid.size_m;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      nodes_[axis] = grid.cells[axis] / static_cast<int>(stride) + 1;
+    const std::size_t row = static_cast<std::size_t>(grid.cells[0]) + 1,
+                      layer = row * (static_cast<std::size_t>(grid.cells[1]) + 1);
+    std::vector<Candidate> candidates;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(nodes_[2]); ++k)
+      for (std::size_t j = 0; j < static_cast<std::size_t>(nodes_[1]); ++j)
+        for (std::size_t i = 0; i < static_cast<std::size_t>(nodes_[0]); ++i) {
+          const float room_m = std::max(0.0f, -tool_.distance_m[stride * (i + row * j + layer * k)]);
+          if (static_cast<double>(room_m) >= smallest_m_)
+            candidates.push_back({room_m, static_cast<std::uint32_t>(room_m_.size())});
+          room_m_.push_back(room_m);
+        }
+    candidates_ = std::priority_queue<Candidate>({}, std::move(candidates));
+  }
+
+  Vec3 position(std::uint32_t node) const {
+    const auto columns = static_cast<std::uint32_t>(nodes_[0]), rows = static_cast<std::uint32_t>(nodes_[1]);
+    const std::uint32_t line = node / columns, layer = line / rows;
+    return tool_.grid.origin_T + spacing_m_ * Vec3(node % columns, line % rows, layer);
+  }
+
+  // Gathers the packed spheres that are less than reach_m away from p.
+  void gather_near(const Vec3& p, double reach_m) {
+    near_.clear();
+    for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+      const double reach_of_centre_m = spheres_[i].radius_m + reach_m;
+      if ((spheres_[i].centre - p).squaredNorm() < reach_of_centre_m * reach_of_centre_m) near_.push_back(i);
+    }
+  }
+
+  // Returns the direction in which the distance to the mesh grows, by differences over a voxel. On the ridges
+  // of the distance the gradient of the field is that of one side only.
+  Vec3 away_from_mesh(const Vec3& p) const {
+    Vec3 away;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 half = 0.5 * tool_.grid.size_m * Vec3::Unit(axis);
+      away[axis] = sample_field(tool_, p - half).distance_m - sample_field(tool_, p + half).distance_m;
+    }
+    return away;
+  }
+
+  Room room_around(const Vec3& p) const {
+    const double field_m = sample_field(tool_, p).distance_m;
+    const bool is_outside = field_m > 0;
+    Room room{is_outside ? -field_m : std::sqrt(boundary_.nearest(p, 0).squared_m2), away_from_mesh(p)};
+    for (const std::uint32_t i : near_) {
+      const Vec3 offset = p - spheres_[i].centre;
+      const double gap_m = offset.norm() - spheres_[i].radius_m;
+      if (gap_m < room.radius_m) room = {gap_m, offset};
+    }
+    const double length = room.away.norm();
+    room.away = length > 0 ? Vec3(room.away / length) : Vec3::Zero();
+    return room;
+  }
+
+  // Returns the largest sphere on the way of a prototype. The coordinates along the axes on_plane stay 0.
+  Sphere climbed(const Vec3& start, const Axes& on_plane) {
+    gather_near(start, max_room_m_ + 2 * kTravel * spacing_m_);
+    Sphere best{start, -1};
+    Vec3 p = start;
+    double step_m = spacing_m_;
+    for (int i = 0; i < kSteps; ++i, step_m *= kCooling) {
+      Room room = room_around(p);
+      if (room.radius_m > best.radius_m) best = {p, room.radius_m};
+      for (int axis = 0; axis < 3; ++axis)
+        if (on_plane[static_cast<std::size_t>(axis)]) room.away[axis] = 0;
+      p += step_m * room.away;
+    }
+    return best;
+  }
+
+  // Returns a large sphere near a node. Its mirror images overlap it little, or it lies on the mirror plane.
+  Sphere fitted(const Vec3& start) {
+    Axes on_plane{};
+    Sphere best = climbed(start, on_plane);
+    for (bool is_moved = true; is_moved;) {
+      is_moved = false;
+      for (int axis = 0; axis < 3; ++axis) {
+        bool& is_on_plane = on_plane[static_cast<std::size_t>(axis)];
+        if (is_on_plane || !mirrored_[static_cast<std::size_t>(axis)]) continue;
+        if (std::abs(best.centre[axis]) >= kShrunk * best.radius_m) continue;
+        best.centre[axis] = 0;
+        is_on_plane = is_moved = true;
+      }
+      if (is_moved) best = climbed(best.centre, on_plane);
+    }
+    return best;
+  }
+
+  // Adds a sphere and its mirror images, all with the radius for which each of them has room. Images beyond
+  // `max` spheres are left out. Returns false if that radius is too small.
+  bool add_with_images(const Sphere& sphere, std::size_t max) {
+    std::vector<Vec3> centres{sphere.centre};
+    double radius_m = sphere.radius_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!mirrored_[static_cast<std::size_t>(axis)] || sphere.centre[axis] == 0) continue;
+      radius_m = std::min(radius_m, std::abs(sphere.centre[axis]));
+      for (std::size_t i = 0, count = centres.size(); i < count; ++i) {
+        centres.push_back(centres[i]);
+        centres.back()[axis] = -centres[i][axis];
+      }
+    }
+    for (const Vec3& centre : centres) {
+      gather_near(centre, radius_m);
+      radius_m = std::min(radius_m, room_around(centre).radius_m);
+    }
+    if (radius_m < smallest_m_) return false;
+    for (const Vec3& centre : centres) {
+      if (spheres_.size() == max) break;
+      spheres_.push_back({centre, radius_m});
+      take_room(spheres_.back());
+    }
+    return true;
+  }
+
+  // Reduces the room of the nodes around a new sphere.
+  void take_room(const Sphere& sphere) {
+    const double reach_m = sphere.radius_m + max_room_m_;
+    std::array<std::int64_t, 3> first{}, last{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      const double at_m = sphere.centre[axis] - tool_.grid.origin_T[axis];
+      first[i] =
+          std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil((at_m - reach_m) / spacing_m_)));
+      last[i] = std::min<std::int64_t>(nodes_[i] - 1,
+                                       static_cast<std::int64_t>(std::floor((at_m + reach_m) / spacing_m_)));
+    }
+    for (std::int64_t k = first[2]; k <= last[2]; ++k)
+      for (std::int64_t j = first[1]; j <= last[1]; ++j)
+        for (std::int64_t i = first[0]; i <= last[0]; ++i) {
+          const auto node = static_cast<std::uint32_t>((k * nodes_[1] + j) * nodes_[0] + i);
+          if (!(room_m_[node] > 0)) continue;
+          const double gap_m = (position(node) - sphere.centre).norm() - sphere.radius_m;
+          room_m_[node] = std::min(room_m_[node], static_cast<float>(std::max(0.0, gap_m)));
+        }
+  }
 
   const VoxelTool& tool_;
   const TriangleTree boundary_;
@@ -73,193 +249,6 @@ class Packing {
   std::vector<Sphere> spheres_;
   std::vector<std::uint32_t> near_;  // spheres near the prototype
 };
-
-Packing::Packing(const VoxelTool& tool)
-    : tool_(tool), boundary_(tool.mesh), smallest_m_(kSmallest * tool.grid.size_m) {
-  for (int axis = 0; axis < 3; ++axis) mirrored_[static_cast<std::size_t>(axis)] = equals_mirror_image(axis);
-  gather_nodes();
-}
-
-// Tests the vertices and the middles of the triangles.
-bool Packing::equals_mirror_image(int axis) const {
-  const double max_m = kMirrored * tool_.grid.size_m;
-  const auto is_on_mesh = [&](Vec3 p) {
-    p[axis] = -p[axis];
-    return boundary_.nearest(p, 0).squared_m2 <= max_m * max_m;
-  };
-  const std::vector<Vec3>& vertices = tool_.mesh.vertices;
-  const auto corner = [&](int i) -> const Vec3& { return vertices[static_cast<std::size_t>(i)]; };
-  return std::all_of(vertices.begin(), vertices.end(), is_on_mesh) &&
-         std::all_of(tool_.mesh.triangles.begin(), tool_.mesh.triangles.end(), [&](const auto& t) {
-           return is_on_mesh((corner(t[0]) + corner(t[1]) + corner(t[2])) / 3);
-         });
-}
-
-void Packing::gather_nodes() {
-  const VoxelGrid& grid = tool_.grid;
-  const auto inside = static_cast<std::size_t>(std::count_if(
-      tool_.distance_m.begin(), tool_.distance_m.end(), [](float distance_m) { return distance_m < 0; }));
-  std::size_t stride = 1;
-  while (inside > kMaxNodes * stride * stride * stride) ++stride;
-  spacing_m_ = static_cast<double>(stride) * grid.size_m;
-  for (std::size_t axis = 0; axis < 3; ++axis) nodes_[axis] = grid.cells[axis] / static_cast<int>(stride) + 1;
-  const std::size_t row = static_cast<std::size_t>(grid.cells[0]) + 1,
-                    layer = row * (static_cast<std::size_t>(grid.cells[1]) + 1);
-  std::vector<Candidate> candidates;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(nodes_[2]); ++k)
-    for (std::size_t j = 0; j < static_cast<std::size_t>(nodes_[1]); ++j)
-      for (std::size_t i = 0; i < static_cast<std::size_t>(nodes_[0]); ++i) {
-        const float room_m = std::max(0.0f, -tool_.distance_m[stride * (i + row * j + layer * k)]);
-        if (static_cast<double>(room_m) >= smallest_m_)
-          candidates.push_back({room_m, static_cast<std::uint32_t>(room_m_.size())});
-        room_m_.push_back(room_m);
-      }
-  candidates_ = std::priority_queue<Candidate>({}, std::move(candidates));
-}
-
-Vec3 Packing::position(std::uint32_t node) const {
-  const auto columns = static_cast<std::uint32_t>(nodes_[0]), rows = static_cast<std::uint32_t>(nodes_[1]);
-  const std::uint32_t line = node / columns, layer = line / rows;
-  return tool_.grid.origin_T + spacing_m_ * Vec3(node % columns, line % rows, layer);
-}
-
-// Gathers the packed spheres that are less than reach_m away from p.
-void Packing::gather_near(const Vec3& p, double reach_m) {
-  near_.clear();
-  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
-    const double reach_of_centre_m = spheres_[i].radius_m + reach_m;
-    if ((spheres_[i].centre - p).squaredNorm() < reach_of_centre_m * reach_of_centre_m) near_.push_back(i);
-  }
-}
-
-// Returns the direction in which the distance to the mesh grows, by differences over a voxel. On the ridges
-// of the distance the gradient of the field is that of one side only.
-Vec3 Packing::away_from_mesh(const Vec3& p) const {
-  Vec3 away;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 half = 0.5 * tool_.grid.size_m * Vec3::Unit(axis);
-    away[axis] = sample_field(tool_, p - half).distance_m - sample_field(tool_, p + half).distance_m;
-  }
-  return away;
-}
-
-Packing::Room Packing::room_around(const Vec3& p) const {
-  const double field_m = sample_field(tool_, p).distance_m;
-  const bool is_outside = field_m > 0;
-  Room room{is_outside ? -field_m : std::sqrt(boundary_.nearest(p, 0).squared_m2), away_from_mesh(p)};
-  for (const std::uint32_t i : near_) {
-    const Vec3 offset = p - spheres_[i].centre;
-    const double gap_m = offset.norm() - spheres_[i].radius_m;
-    if (gap_m < room.radius_m) room = {gap_m, offset};
-  }
-  const double length = room.away.norm();
-  room.away = length > 0 ? Vec3(room.away / length) : Vec3::Zero();
-  return room;
-}
-
-// Returns the largest sphere on the way of a prototype. The coordinates along the axes on_plane stay 0.
-Sphere Packing::climbed(const Vec3& start, const Axes& on_plane) {
-  gather_near(start, max_room_m_ + 2 * kTravel * spacing_m_);
-  Sphere best{start, -1};
-  Vec3 p = start;
-  double step_m = spacing_m_;
-  for (int i = 0; i < kSteps; ++i, step_m *= kCooling) {
-    Room room = room_around(p);
-    if (room.radius_m > best.radius_m) best = {p, room.radius_m};
-    for (int axis = 0; axis < 3; ++axis)
-      if (on_plane[static_cast<std::size_t>(axis)]) room.away[axis] = 0;
-    p += step_m * room.away;
-  }
-  return best;
-}
-
-// Returns a large sphere near a node. Its mirror images overlap it little, or it lies on the mirror plane.
-Sphere Packing::fitted(const Vec3& start) {
-  Axes on_plane{};
-  Sphere best = climbed(start, on_plane);
-  for (bool is_moved = true; is_moved;) {
-    is_moved = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      bool& is_on_plane = on_plane[static_cast<std::size_t>(axis)];
-      if (is_on_plane || !mirrored_[static_cast<std::size_t>(axis)]) continue;
-      if (std::abs(best.centre[axis]) >= kShrunk * best.radius_m) continue;
-      best.centre[axis] = 0;
-      is_on_plane = is_moved = true;
-    }
-    if (is_moved) best = climbed(best.centre, on_plane);
-  }
-  return best;
-}
-
-// Adds a sphere and its mirror images, all with the radius for which each of them has room. Images beyond
-// `max` spheres are left out. Returns false if that radius is too small.
-bool Packing::add_with_images(const Sphere& sphere, std::size_t max) {
-  std::vector<Vec3> centres{sphere.centre};
-  double radius_m = sphere.radius_m;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!mirrored_[static_cast<std::size_t>(axis)] || sphere.centre[axis] == 0) continue;
-    radius_m = std::min(radius_m, std::abs(sphere.centre[axis]));
-    for (std::size_t i = 0, count = centres.size(); i < count; ++i) {
-      centres.push_back(centres[i]);
-      centres.back()[axis] = -centres[i][axis];
-    }
-  }
-  for (const Vec3& centre : centres) {
-    gather_near(centre, radius_m);
-    radius_m = std::min(radius_m, room_around(centre).radius_m);
-  }
-  if (radius_m < smallest_m_) return false;
-  for (const Vec3& centre : centres) {
-    if (spheres_.size() == max) break;
-    spheres_.push_back({centre, radius_m});
-    take_room(spheres_.back());
-  }
-  return true;
-}
-
-// Reduces the room of the nodes around a new sphere.
-void Packing::take_room(const Sphere& sphere) {
-  const double reach_m = sphere.radius_m + max_room_m_;
-  std::array<std::int64_t, 3> first{}, last{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
-    const double at_m = sphere.centre[axis] - tool_.grid.origin_T[axis];
-    first[i] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil((at_m - reach_m) / spacing_m_)));
-    last[i] = std::min<std::int64_t>(nodes_[i] - 1,
-                                     static_cast<std::int64_t>(std::floor((at_m + reach_m) / spacing_m_)));
-  }
-  for (std::int64_t k = first[2]; k <= last[2]; ++k)
-    for (std::int64_t j = first[1]; j <= last[1]; ++j)
-      for (std::int64_t i = first[0]; i <= last[0]; ++i) {
-        const auto node = static_cast<std::uint32_t>((k * nodes_[1] + j) * nodes_[0] + i);
-        if (!(room_m_[node] > 0)) continue;
-        const double gap_m = (position(node) - sphere.centre).norm() - sphere.radius_m;
-        room_m_[node] = std::min(room_m_[node], static_cast<float>(std::max(0.0, gap_m)));
-      }
-}
-
-// The room of a node never grows, so a number in the queue is an upper bound. Only the node on top has to be
-// evaluated again.
-std::vector<Sphere> Packing::packed(std::size_t max) {
-  while (!candidates_.empty() && spheres_.size() < max) {
-    const Candidate best = candidates_.top();
-    candidates_.pop();
-    max_room_m_ = static_cast<double>(best.room_m);
-    float& room_m = room_m_[best.node];
-    if (room_m == best.room_m) {
-      const Vec3 p = position(best.node);
-      gather_near(p, max_room_m_);
-      // Deep inside, the field can be too large by a voxel.
-      const double exact_m = room_around(p).radius_m;
-      if (exact_m < (1 - kRounding) * max_room_m_)
-        room_m = static_cast<float>(std::max(0.0, exact_m));
-      else if (!add_with_images(fitted(p), max))
-        room_m = 0;
-    }
-    if (static_cast<double>(room_m) >= smallest_m_) candidates_.push({room_m, best.node});
-  }
-  return std::move(spheres_);
-}
 
 struct Neighbours {
   std::uint32_t a, b;
