@@ -1,5 +1,5 @@
 # The public headers: those that are named here, and what they include. Only these are installed.
-# runners/interfaces/program/README.md says what they are for.
+# runners/interfaces/cli/own_program.md says what they are for.
 
 set(public_headers
   analysis/storage/trace_comparison.h analysis/storage/result_file.h analysis/trace/measures.h

@@ -44,7 +44,7 @@ function(room)
   links_of(${path} ${ROOM_LINKS})
 endfunction()
 
-# links_of(runners/presentation/pages ZLIB::ZLIB ...): what a program has to link that uses this room installed.
+# links_of(runners/presentation ZLIB::ZLIB ...): what a program has to link that uses this room installed.
 function(links_of path)
   string(REGEX MATCH "^[a-z]+" top ${path})
   set_property(GLOBAL APPEND PROPERTY LINKS_OF_${top} ${ARGN})

@@ -5,15 +5,16 @@ option(REMOTE_TOUCH_SANITIZED_TESTS "Build tests of some rooms under sanitizers"
 
 # Rooms that read what others wrote or call libraries of others, and rooms where a sanitizer or a crash found a mistake.
 set(rooms_under_address
-  analysis/storage core/points runners/experiment/opencl runners/experiment/mesh_files runners/interfaces/plugins
+  analysis/storage core/points runners/experiment/mesh_files runners/interfaces/plugins
   runners/libraries runners/live/devices runners/live/sensors scenarios/recordings
   scenarios/files)
 # Rooms whose threads share memory.
 set(rooms_under_thread
-  runners/experiment/opencl runners/libraries runners/live/devices runners/live/loop runners/live/sensors)
-# haply_link.cpp includes Boost.Beast and takes half a minute to compile. It is left out under the address sanitizer; the
-# thread sanitizer and the test tests_under_sanitizers cover it.
+  runners/libraries runners/live/devices runners/live/loop runners/live/sensors)
+# These include Boost.Beast and take half a minute to compile. haply_link.cpp is covered by the thread sanitizer, and both by
+# the test tests_under_sanitizers.
 set(sources_not_under_address haply_link)
+set(sources_not_under_thread view_server)
 # The other checks take a third of the time to compile, and the fuzz targets have them. Asserts are on; those of Eigen are
 # not, since rooms without a sanitizer share its functions.
 set(flags_for_address -UNDEBUG -DEIGEN_NO_DEBUG -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer

@@ -25,7 +25,7 @@ RC = {
     "agg.path.chunksize": 20000,  # without it a long dense line can overflow the rasteriser
 }
 
-# The colours of hip to estimate are those of the viewer on a light ground: runners/presentation/pages/page/src/colours.ts.
+# The colours of hip to estimate are those of the viewer on a light ground: runners/presentation/page/src/colours.ts.
 COLOURS = {"hip": "#c08800", "proxy": "#146bab", "truth": "#3691ba", "force": "#b34c00", "normal": "#00a67c",
            "points": "#81939f", "estimate": "#822055", "limit": "#000000", "fixture": "#452700", "measured": "#1b2a83",
            "region": "#8a3ffc",

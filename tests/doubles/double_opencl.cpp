@@ -39,7 +39,7 @@ using std::sqrt;
 #define restrict __restrict
 #define FILTER_HALF filter_half
 #define NORMAL_HALF normal_half
-#include "runners/experiment/opencl/depth_kernels.cl"
+#include "runners/libraries/depth_kernels.cl"
 #undef restrict
 }  // namespace kernels
 

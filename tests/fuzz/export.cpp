@@ -1,5 +1,5 @@
 // The content of result files as tables for other programs.
-#include "runners/presentation/export/export_formats.h"
+#include "runners/presentation/export_formats.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

@@ -18,8 +18,8 @@
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/hand/simulated_hand.h"
 #include "runners/experiment/hand/teleoperation.h"
-#include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/sessions/session_file.h"
+#include "runners/libraries/depth_device.h"
 #include "scenarios/simulated/sensor_faults.h"
 
 namespace remote_touch {

@@ -18,17 +18,17 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
 #include "core/parameters/parameter.h"
-#include "runners/experiment/opencl/depth_device.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
+#include "runners/libraries/depth_device.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/loop/live_report.h"
 #include "runners/live/loop/live_run.h"
+#include "runners/live/loop/live_view.h"
 #include "runners/live/sensors/sensor_table.h"
-#include "runners/live/view/live_view.h"
 
 namespace remote_touch {
 namespace {

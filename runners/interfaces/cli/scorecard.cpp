@@ -16,7 +16,7 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/presentation/pages/result_pages.h"
+#include "runners/presentation/result_pages.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/work_pool.h"
 

@@ -23,9 +23,9 @@
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/descriptions/descriptions.h"
-#include "runners/presentation/export/export_formats.h"
-#include "runners/presentation/pages/result_pages.h"
+#include "runners/presentation/descriptions.h"
+#include "runners/presentation/export_formats.h"
+#include "runners/presentation/result_pages.h"
 #include "runners/sweep/stored_sweep.h"
 #include "scenarios/files/input_files.h"
 

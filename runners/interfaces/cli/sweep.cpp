@@ -21,7 +21,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/presentation/export/export_formats.h"
+#include "runners/presentation/export_formats.h"
 #include "runners/sweep/answer_display.h"
 #include "runners/sweep/shard_merge.h"
 #include "runners/sweep/stored_sweep.h"

@@ -20,8 +20,8 @@
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/interfaces/descriptions/descriptions.h"
 #include "runners/interfaces/python/long_work.h"
+#include "runners/presentation/descriptions.h"
 
 namespace remote_touch {
 

@@ -1,0 +1,169 @@
+#include "runners/presentation/result_pages.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "analysis/sweeps/sweep_file.h"
+#include "analysis/trace/trace.h"
+#include "runners/experiment/settings/provenance.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "runners/sweep/sweep_run.h"
+#include "tests/runners/presentation/read_page.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
+
+namespace remote_touch::sweep_page_test {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// A sweep with axes of these lengths, whose runs are all done with these values.
+SweepResult sweep_of(std::vector<std::size_t> lengths, int replicates, std::vector<double> values) {
+  SweepResult result;
+  for (const std::size_t length : lengths)
+    result.axes.push_back({"axis", "1", "", std::vector<double>(length, 0.0), 1, {}});
+  result.replicates = replicates;
+  result.measures.push_back({"popped_through", "1", "", std::vector<double>(), 1, {}});
+  result.start(false);
+  result.measures.front().values = std::move(values);
+  result.state.assign(result.run_count(), RunState::done);
+  return result;
+}
+
+std::vector<std::size_t> chosen(const SweepResult& result, std::size_t max = 6) {
+  return default_runs(result, result.measure("popped_through"), 0.5, max);
+}
+
+// 0: holds, 1: fails. Rows of the first axis.
+//   0 0 1 1
+//   0 1 1 1
+//   0 0 0 1
+TEST(DefaultRuns, AreFailedCellsBesideCellsThatHold) {
+  EXPECT_EQ(chosen(sweep_of({3, 4}, 1, {0, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1})),
+            (std::vector<std::size_t>{2, 5, 6, 11}));
+}
+
+TEST(DefaultRuns, AreSpreadEvenlyWhereThereAreMany) {
+  std::vector<double> values;
+  for (int row = 0; row < 20; ++row)
+    for (const double value : {0.0, 1.0}) values.push_back(value);
+  EXPECT_EQ(chosen(sweep_of({20, 2}, 1, values), 3), (std::vector<std::size_t>{1, 19, 39}));
+  EXPECT_EQ(chosen(sweep_of({20, 2}, 1, values), 1), (std::vector<std::size_t>{1}));
+}
+
+TEST(DefaultRuns, UseTheFirstFailedReplicateOfACellThatMostlyFails) {
+  EXPECT_EQ(chosen(sweep_of({3}, 3, {0, 0, 0, 0, 1, 1, 1, 1, 1})), (std::vector<std::size_t>{4}));
+  // One of three is not most, so the limit comes after that cell.
+  EXPECT_EQ(chosen(sweep_of({3}, 3, {0, 0, 0, 0, 1, 0, 1, 1, 1})), (std::vector<std::size_t>{6}));
+}
+
+// Refinement leaves cells out; the next one that was run counts.
+TEST(DefaultRuns, ANeighbourIsTheNextCellWithRuns) {
+  SweepResult result = sweep_of({5}, 1, {0, kNaN, kNaN, 1, 1});
+  result.state[1] = result.state[2] = RunState::not_sampled;
+  EXPECT_EQ(chosen(result), (std::vector<std::size_t>{3}));
+}
+
+TEST(DefaultRuns, AreAnyFailuresOrElseTheExtremesIfThereIsNoLimit) {
+  EXPECT_EQ(chosen(sweep_of({3}, 1, {1, 1, 1})), (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(chosen(sweep_of({4}, 1, {0.2, 0.4, 0.1, kNaN})), (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(chosen(sweep_of({4}, 1, {0.2, 0.4, 0.1, kNaN}), 1), (std::vector<std::size_t>{1}));
+  EXPECT_EQ(chosen(sweep_of({2}, 1, {kNaN, kNaN})), (std::vector<std::size_t>{0}));
+  SweepResult none = sweep_of({2}, 1, {kNaN, kNaN});
+  none.state.assign(2, RunState::failed);
+  EXPECT_TRUE(chosen(none).empty());
+}
+
+constexpr const char* kSweep = R"({"title": "few lifts", "experiment": "fig4.12", "set": {"duration_s": 0.7},
+  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.003, "count": 2},
+           {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 20, "count": 3}],
+  "measures": ["popped_through", "max_penetration"]})";
+
+class SweepPageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (viewer_script().empty()) GTEST_SKIP() << "built without the viewer";
+    options_.kernels = &scenes::kernels();
+    stored_ = run_sweep(sweep_, {});
+    write(stored_);
+  }
+  void write(const SweepResult& result) {
+    write_sweep(folder_ / "map.h5", result, provenance(sweep_.to_json(), "a test", ""));
+  }
+  ReadPage page(const std::vector<std::string>& cells) {
+    return ReadPage(sweep_page(folder_ / "map.h5", cells, options_).html);
+  }
+
+  const Sweep sweep_ = Sweep::from_json(kSweep, "a test");
+  SweepResult stored_;
+  ViewOptions options_;
+  TestFolder folder_{"sweep_page"};
+};
+
+TEST_F(SweepPageTest, HasTheMapAndTheRunsOfTheNamedCells) {
+  const ReadPage read = page({"1,2", "0,0"});
+  const nlohmann::ordered_json& map = read.json["sweep"];
+  EXPECT_EQ(map["runs"], (std::vector<int>{0, 5}));
+  EXPECT_EQ(map["axes"][0]["values"], (std::vector<double>{0, 0.003}));
+  EXPECT_EQ(map["axes"][1]["name"], "acceleration_m_per_s2");
+  EXPECT_EQ(map["done"], (std::vector<int>(6, 1)));
+  EXPECT_EQ(read.numbers<double>(map["measures"][1]["numbers"]), stored_.measure("max_penetration"));
+  ASSERT_EQ(read.json["runs"].size(), 2u);
+  const Trace again = simulate(sweep_.experiment(5, 0));
+  EXPECT_EQ(read.numbers<std::int32_t>(read.column("contact_count", 1)), again.contact_count);
+  EXPECT_EQ(read.json["runs"][1]["note"], "");
+}
+
+TEST_F(SweepPageTest, ShowsFailuresWhereNoneAreNamed) {
+  const auto failed = stored_.measure("popped_through");
+  const ReadPage read = page({});
+  ASSERT_FALSE(read.json["sweep"]["runs"].empty());
+  for (const std::size_t run : read.json["sweep"]["runs"]) EXPECT_EQ(failed[run], 1) << run;
+}
+
+// A mean can then state how many of the runs have no value.
+TEST_F(SweepPageTest, HasTheNumberOfFinishedRunsOfEachCell) {
+  SweepResult failed = stored_;
+  failed.state[2] = RunState::failed, failed.error[2] = "no memory";
+  for (Column& measure : failed.measures) std::get<std::vector<double>>(measure.values)[2] = std::nan("");
+  write(failed);
+  EXPECT_EQ(page({"0,0"}).json["sweep"]["done"], (std::vector<int>{1, 1, 0, 1, 1, 1}));
+}
+
+TEST_F(SweepPageTest, ReportsARunThatDiffersFromTheStoredOne) {
+  SweepResult other = stored_;
+  std::get<std::vector<double>>(other.measures[1].values)[5] += 1e-9;
+  write(other);
+  const ViewPage page = sweep_page(folder_ / "map.h5", {"1,2", "0,0"}, options_);
+  EXPECT_HAS(page.shown, "its measures differ");
+  const ReadPage read(page.html);
+  EXPECT_EQ(read.json["runs"][0]["note"], "");
+  EXPECT_HAS(read.json["runs"][1]["note"].get<std::string>(), "its measures differ");
+}
+
+// Every run of this sweep ends at 0.3 s, before the press begins.
+TEST_F(SweepPageTest, ShowsNotesAsCountsAndAtTheirRun) {
+  const Sweep ends_before = Sweep::from_json(kSweep, "a test", {"duration_s=0.3"});
+  const SweepResult result = run_sweep(ends_before, {});
+  write_sweep(folder_ / "map.h5", result, provenance(ends_before.to_json(), "a test", ""));
+  const ReadPage read = page({"1,2"});
+  EXPECT_HAS(read.json["sweep"]["notes"].dump(), "6 of 6 runs: phase not reached: ");
+  EXPECT_HAS(read.json["runs"][0]["note"].get<std::string>(), "before the press begins at 0.5 s");
+}
+
+TEST_F(SweepPageTest, RefusesWhatItCannotShow) {
+  EXPECT_HAS(refusal([&] { page({"7,0"}); }), "expected 0..1,0..2");
+  SweepResult pending = stored_;
+  pending.state[5] = RunState::failed, pending.error[5] = "no memory";
+  write(pending);
+  EXPECT_HAS(refusal([&] { page({"1,2"}); }), "has no finished run");
+  pending.state[5] = RunState::pending;
+  write_sweep_in_progress(folder_ / "map.h5", pending, provenance(sweep_.to_json(), "a test", ""));
+  EXPECT_HAS(refusal([&] { page({}); }), "is not finished");
+}
+
+}  // namespace
+}  // namespace remote_touch::sweep_page_test
