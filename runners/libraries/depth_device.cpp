@@ -15,7 +15,7 @@
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
-#include "runners/libraries/device_frames.h"
+#include "runners/libraries/opencl_devices.h"
 
 namespace remote_touch {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/simulation/simulation.h"
-#include "runners/presentation/shown_run.h"
+#include "runners/presentation/result_pages.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/presentation/shown_run.h"
+#include "runners/presentation/result_pages.h"
 
 #include <algorithm>
 #include <cmath>

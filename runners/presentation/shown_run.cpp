@@ -1,4 +1,4 @@
-#include "runners/presentation/shown_run.h"
+#include "runners/presentation/result_pages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,6 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
-#include "runners/presentation/result_pages.h"
 
 namespace remote_touch {
 namespace {

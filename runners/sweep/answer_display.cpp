@@ -1,4 +1,4 @@
-#include "runners/sweep/answer_display.h"
+#include "runners/sweep/sweep_answer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runners/sweep/shard_checks.h"
+#include "runners/sweep/sweep_session.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -17,7 +17,6 @@
 #include "core/parameters/parameter.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_run.h"
-#include "runners/sweep/sweep_session.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {

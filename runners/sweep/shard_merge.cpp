@@ -1,4 +1,4 @@
-#include "runners/sweep/shard_merge.h"
+#include "runners/sweep/sweep_session.h"
 
 #include <algorithm>
 #include <map>
@@ -12,8 +12,7 @@
 #include "analysis/sweeps/sweep_tally.h"
 #include "core/parameters/parameter.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep_parts.h"
-#include "runners/sweep/sweep_session.h"
+#include "runners/sweep/sweep.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {

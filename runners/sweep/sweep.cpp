@@ -15,8 +15,6 @@
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/simulation/run_notes.h"
-#include "runners/sweep/sweep_axis.h"
-#include "runners/sweep/sweep_parts.h"
 
 namespace remote_touch {
 namespace {

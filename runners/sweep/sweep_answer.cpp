@@ -12,9 +12,8 @@
 #include "analysis/sweeps/sweep_means.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/sweep/answer_display.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep_parts.h"
+#include "runners/sweep/sweep.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/sweep/sweep_axis.h"
+#include "runners/sweep/sweep.h"
 
 #include <algorithm>
 #include <cctype>

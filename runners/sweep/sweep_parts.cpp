@@ -1,4 +1,4 @@
-#include "runners/sweep/sweep_parts.h"
+#include "runners/sweep/sweep.h"
 
 #include <algorithm>
 #include <charconv>

@@ -12,7 +12,7 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep_parts.h"
+#include "runners/sweep/sweep.h"
 
 namespace remote_touch {
 namespace {

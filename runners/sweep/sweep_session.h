@@ -3,19 +3,21 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/other_processes.h"
 #include "analysis/sweeps/sweep_file.h"
+#include "analysis/sweeps/sweep_result.h"
 #include "analysis/sweeps/sweep_tally.h"
 #include "core/kernels/kernels.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep.h"
-#include "runners/sweep/sweep_parts.h"
 #include "runners/sweep/sweep_run.h"
 
 namespace remote_touch {
@@ -121,5 +123,101 @@ class SweepSession {
   SweepResult batch_;          // runs that a tally does not have yet
   std::size_t next_cell_ = 0;  // index, within the shard, of the first cell that may lack runs in the tally
 };
+
+// Merges the shards of a sweep into one file, with its runs or with a tally.
+
+// yes: shards may be missing or unfinished. The merged file then is a part of the sweep: it states its
+// shards, and can be merged with others unless some of its runs are pending.
+enum class Partial { no, yes };
+
+struct MergeRequest {
+  std::vector<std::string> shards;  // files of shards, or of parts that were merged from some
+  std::string output;
+  Partial partial = Partial::no;
+  bool force = false;  // an output that is no sweep may be replaced
+  // Called with a line about each shard that has runs with a wrong checksum, see damage_text(). May be empty.
+  std::function<void(const std::string& line)> note = {};
+};
+
+// Called before the file is written, at least once, with the runs in increasing order; each block is a part
+// of the result, whose runs may be more than the memory holds.
+using EachBlock = std::function<void(const SweepResult& block)>;
+
+// Writes the merged file and returns its digest. A whole sweep has the bytes that one process would have
+// written. A merge that fails changes no file. pre: the caller holds the lock of the output. Throws
+// InputError, which names the file, for a shard that is missing, given twice, damaged, unfinished or of
+// another sweep, build or recording, and, unless forced, for an output that cannot be read. Throws KeptFile,
+// also if forced, for an output that holds runs that the shards do not, because it was refined or continued.
+std::string merge_shards(const MergeRequest& request, const EachBlock& each_block);
+// The same for a sweep that keeps a tally, which is returned. Throws InputError also for a shard some of
+// whose runs are known to be wrong, see require_trusted(). The memory holds the whole tally and one shard.
+SweepTally merge_tallies(const MergeRequest& request);
+
+// Checks of shards: their progress in a folder, and some runs of a sweep made again.
+
+// The progress of the shards in a folder.
+
+// running: a process of this machine writes the file, or it was written in the last minute. stopped: neither,
+// so its process was ended or lost; the same sweep command continues it. absent: there is no file.
+enum class ShardState { finished, running, stopped, absent };
+
+struct ShardProgress {
+  ShardSet shards;
+  std::string file;  // name in the folder; empty if absent
+  ShardState state = ShardState::absent;
+  std::size_t runs = 0, done = 0, failed = 0;  // runs that the file holds
+  double written_s_ago = 0;                    // time since the file was written last
+  double runs_per_s = 0;                       // mean since the file was made; 0 if it is not known
+  std::string distrust = {};                   // see distrust_of()
+};
+
+// The shards of one sweep, sorted by their lowest index. Each is in one file.
+struct SweepProgress {
+  std::string title;
+  int shard_count = 1;
+  std::size_t runs = 0;  // number of runs of the whole sweep
+  std::vector<ShardProgress> files;
+  std::vector<std::string> unread;  // one line for each file that could not be read, with the reason
+
+  std::size_t count(ShardState state) const;  // number of shards in that state
+  std::size_t done() const;
+  std::size_t failed() const;
+  // Time until all runs are done if the shards that run now do the rest at their speed, seconds; none if no
+  // speed is known.
+  std::optional<double> left_s() const;
+};
+
+// Reads the files *.h5 of the folder. Files without an attribute `shard` are left out. Throws InputError if
+// there is no shard, or if there are shards of several sweeps.
+SweepProgress progress_of_shards(const std::filesystem::path& folder);
+
+// Makes some runs of a stored sweep again: a machine that computes wrongly is found by another one.
+
+// True for one number in each thousand; its place differs from one thousand to the next.
+constexpr bool is_rechecked(std::uint64_t number) {
+  return number % 1000 == (99 + 7 * (number / 1000)) % 1000;
+}
+
+struct RecheckOptions {
+  const Kernels* kernels = nullptr;         // null: the machine's best
+  const std::atomic<bool>* stop = nullptr;  // when set, the check ends with Interrupted
+  std::function<void(std::size_t done, std::size_t total)> progress = {};
+};
+struct Recheck {
+  std::size_t made = 0;                 // number of runs that were made again
+  std::size_t cells = 0, cells_in = 0;  // number of cells of a tally that were made again; of all its cells
+  // A text for each run that differs, with the first difference, such as "run 99: max_force = 1.5, now 1.25".
+  // For a tally a text for each cell that differs, such as "cell 3: mean of max_force = 1.5, now 1.25".
+  std::vector<std::string> different = {};
+};
+
+// Makes the finished and failed runs with is_rechecked() again, or the first run if there is no such run.
+// Compares state, values and notes, bit for bit. part: a shard or a whole sweep. sweep: read from the
+// configuration of the file. Throws Interrupted, and std::bad_alloc.
+Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options);
+
+// The same for a tally, which does not keep single runs. Makes all runs of the cells with is_rechecked()
+// again, or of the cell in the middle if there is no such cell, and compares the tally of each cell.
+Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOptions& options);
 
 }  // namespace remote_touch

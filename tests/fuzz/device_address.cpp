@@ -1,5 +1,5 @@
 // Addresses of devices and sensors, SCHEME:PLACE?KEY=VALUE&..., and the address of a Haply service.
-#include "runners/live/devices/device_connection.h"
+#include "runners/live/devices/device_table.h"
 
 #include "runners/live/devices/haply.h"
 #include "tests/fuzz/shared/fuzz_target.h"

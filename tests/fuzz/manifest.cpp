@@ -1,5 +1,5 @@
 // The list of baselines. An accepted list is written, and comes back the same.
-#include "runners/evaluation/regression/stored_result.h"
+#include "runners/evaluation/regression/baselines.h"
 
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"

@@ -1,5 +1,5 @@
 // Reads the messages that a page sends while it shows a live run.
-#include "runners/live/loop/live_pages.h"
+#include "runners/live/loop/live_view.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Two results of any kind, as text (content_text.h), separated by a line "---": they are read and compared.
 // Traces are also hashed, and compared within tolerances.
-#include "runners/evaluation/regression/comparison_report.h"
+#include "runners/evaluation/regression/result_comparison.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

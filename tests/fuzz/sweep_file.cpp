@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "runners/evaluation/regression/comparison_report.h"
+#include "runners/evaluation/regression/result_comparison.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 

@@ -17,7 +17,6 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/regression/spread.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"

@@ -1,4 +1,4 @@
-#include "runners/evaluation/regression/junit_report.h"
+#include "runners/evaluation/regression/result_comparison.h"
 
 #include <algorithm>
 

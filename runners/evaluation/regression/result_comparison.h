@@ -1,4 +1,4 @@
-// Comparison of two results: traces, sweeps, figures, or the running hashes of traces.
+// Comparison of two results, traces, sweeps, figures or the running hashes of traces, and its report.
 #pragma once
 
 #include <filesystem>
@@ -69,5 +69,38 @@ ResultComparison compare_hashes(const StoredHashes& baseline, const StoredHashes
 ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes& baseline_attributes,
                                const SweepResult& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules);
+
+// Comparisons and checks for build servers: JUnit's XML.
+
+// One test case and its result.
+struct ReportCase {
+  enum class State { passed, failed, error, skipped };
+  std::string name;
+  State state = State::passed;
+  std::string text = {};  // why it did not pass
+};
+struct ReportSuite {
+  std::string name;
+  std::vector<ReportCase> cases = {};
+};
+
+std::string junit(const std::vector<ReportSuite>& suites);
+
+// The report of a comparison: as text for people, as JSON, and as test cases for build servers.
+
+struct ComparisonReport {
+  std::string text;  // tables
+  // The text of a JSON file: {"outcome", "verdict", "kind", "columns": [...], "divergence": {...}, ...}.
+  // Numbers that are not finite are null.
+  std::string json;
+  // A case for each column or measure, and one for the whole. A measure that got worse is a failure. Any
+  // other difference is "skipped", so that nobody mistakes it for a failure or for a pass, and its text
+  // describes it. A comparison that was not possible or not decided is an error.
+  std::vector<ReportCase> cases = {};
+};
+ComparisonReport report_of(const ResultComparison& comparison);
+
+// The fewest digits that state the number exactly: "0.033", not "0.033000000000000002".
+std::string shortest_text(double number);
 
 }  // namespace remote_touch

@@ -1,4 +1,4 @@
-#include "runners/evaluation/regression/spread.h"
+#include "runners/evaluation/regression/baselines.h"
 
 #include <dirent.h>
 #include <fcntl.h>

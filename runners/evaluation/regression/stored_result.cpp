@@ -1,4 +1,4 @@
-#include "runners/evaluation/regression/stored_result.h"
+#include "runners/evaluation/regression/baselines.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

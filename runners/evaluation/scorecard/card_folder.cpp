@@ -1,4 +1,4 @@
-#include "runners/evaluation/scorecard/card_folder.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"
 #include "scenarios/files/input_files.h"

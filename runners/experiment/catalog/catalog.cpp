@@ -11,7 +11,7 @@
 #include "runners/experiment/hand/image_motions.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "runners/experiment/mesh_files/loaded_tool.h"
-#include "runners/experiment/mesh_files/mesh_scene_from_files.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/simulated/camera_scenes.h"

@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "runners/experiment/hand/image_surface.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {

@@ -1,4 +1,4 @@
-#include "runners/experiment/hand/image_surface.h"
+#include "runners/experiment/hand/image_motions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runners/experiment/mesh_files/mesh_scene_from_files.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -12,7 +12,6 @@
 #include "core/mesh/mesh_distance.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
-#include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/objects/mesh_object.h"
 

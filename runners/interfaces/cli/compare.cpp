@@ -13,8 +13,6 @@
 #include "analysis/storage/trace_comparison.h"
 #include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
-#include "runners/evaluation/regression/comparison_report.h"
-#include "runners/evaluation/regression/junit_report.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
 #include "runners/experiment/catalog/catalog.h"

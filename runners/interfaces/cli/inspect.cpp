@@ -16,10 +16,10 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/sweep_summary.h"
-#include "runners/sweep/shard_checks.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/sweep_session.h"
 
 namespace remote_touch {
 namespace {

@@ -25,7 +25,7 @@
 #include "runners/libraries/depth_device.h"
 #include "runners/live/devices/clock.h"
 #include "runners/live/devices/device_table.h"
-#include "runners/live/loop/live_report.h"
+#include "runners/live/loop/live_log.h"
 #include "runners/live/loop/live_run.h"
 #include "runners/live/loop/live_view.h"
 #include "runners/live/sensors/sensor_table.h"

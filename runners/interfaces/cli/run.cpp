@@ -11,7 +11,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/evaluation/regression/baselines.h"
-#include "runners/evaluation/regression/comparison_report.h"
+#include "runners/evaluation/regression/result_comparison.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"

@@ -9,7 +9,6 @@
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/scorecard/benchmark.h"
-#include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/experiment/simulation/run_notes.h"

@@ -12,7 +12,6 @@
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/long_work.h"
-#include "runners/sweep/answer_display.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_session.h"
 

@@ -1,17 +1,215 @@
-// Every haptic device that --device can name: the functions that open them, and a table with one line each.
+// Every haptic device that --device can name: addresses and connections, the devices without hardware, the
+// functions that open the others, and a table with one line each.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "core/parameters/parameter.h"
 #include "core/points/vector.h"
 #include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/hand/simulated_hand.h"
+#include "runners/experiment/hand/trajectory.h"
 #include "runners/libraries/shared_library.h"
-#include "runners/live/devices/built_in_devices.h"
+#include "runners/live/devices/clock.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {
+
+// Names of sensors and devices: "scheme:address".
+struct Uri {
+  std::string scheme, address;  // the address may be empty
+};
+
+// Throws InputError if the text has no scheme or no colon. flag: "--depth" or "--device".
+Uri parse_uri(const std::string& flag, const std::string& text);
+
+// Returns the entry of that scheme. Throws InputError, which lists an example of each entry, if there is
+// none.
+template <class Entry>
+const Entry& find_scheme(std::span<const Entry> entries, const std::string& flag, const Uri& uri) {
+  std::string known;
+  for (const Entry& entry : entries) {
+    if (uri.scheme == entry.scheme) return entry;
+    known += (known.empty() ? "" : ", ") + std::string(entry.example);
+  }
+  throw InputError(flag + " " + uri.scheme + ":" + uri.address, "expected " + known);
+}
+
+// Returns the words, separated by commas, for messages.
+std::string list_of(const std::vector<std::string>& words);
+
+// The address of a device as the user writes it, "haply:ws://127.0.0.1:10001?force=values&rate=2000": a
+// scheme, a place and settings. choice() and number() throw InputError for a value that is not allowed.
+class DeviceAddress {
+ public:
+  // address: without the scheme. Throws InputError if a setting is unknown, has no value or is given twice.
+  DeviceAddress(const std::string& scheme, const std::string& address, const std::vector<std::string>& known);
+
+  const std::string& place() const { return place_; }  // empty if the user gave none
+
+  bool has(const std::string& key) const { return settings_.count(key) > 0; }
+  std::string word(const std::string& key, const std::string& otherwise) const;
+  // Returns the value of the setting, which must be one of `allowed`. Returns the first of them if the
+  // setting is not given.
+  std::string choice(const std::string& key, const std::vector<std::string>& allowed) const;
+  double number(const std::string& key, double otherwise, double min, double max) const;
+
+  InputError refusal(const std::string& problem) const;
+
+ private:
+  std::string written_, place_;
+  std::map<std::string, std::string> settings_;
+};
+
+// A connected stream socket. No call waits beyond its deadline, which is a time of the socket's clock in
+// seconds. A transfer that is possible without waiting is made even after the deadline. The operating system
+// does the waiting.
+class DeadlineSocket {
+ public:
+  struct Transfer {
+    std::size_t bytes = 0;
+    int error = 0;  // an errno value; ETIMEDOUT at the deadline, ECONNRESET when the peer has closed
+  };
+
+  explicit DeadlineSocket(const Clock& clock) : clock_(clock) {}
+  ~DeadlineSocket();
+  DeadlineSocket(const DeadlineSocket&) = delete;
+  DeadlineSocket& operator=(const DeadlineSocket&) = delete;
+
+  // Returns the reason why it could not connect; an empty text on success. Resolving a name may take longer
+  // than the deadline. Small messages to a host are sent at once (TCP_NODELAY).
+  std::string connect_to_host(const std::string& host, const std::string& port, double deadline_s);
+  std::string connect_to_path(const std::string& path, double deadline_s);
+
+  // Reads the bytes that have arrived, without waiting. The error is EAGAIN if none have arrived.
+  Transfer read_ready(void* data, std::size_t size) noexcept;
+  // Returns 0 if there is something to read, or if the stream has ended; else an errno value.
+  int wait_readable(double deadline_s) noexcept;
+  Transfer read_some(void* data, std::size_t size, double deadline_s) noexcept;
+  Transfer write_some(const void* data, std::size_t size, double deadline_s) noexcept;
+
+  // Shuts the connection down: nothing is sent or received any more, and calls in progress return. Any thread
+  // may call it while this object exists.
+  void cut() noexcept;
+
+ private:
+  int wait(short events, double deadline_s) noexcept;
+  int connect_within(const void* address, unsigned size, double deadline_s) noexcept;
+  void close() noexcept;
+
+  const Clock& clock_;
+  int handle_ = -1;
+};
+
+// Devices without hardware: a simulated hand, and a hand that someone moves in a page.
+
+// A device that a script moves, or a simulated operator who follows the script and feels its force. Follows
+// its clock: the hand also moves during ticks that were missed, in steps of its own rate. Its time starts at
+// start_at(), or else with run().
+class SimulatedDevice final : public HapticDevice {
+ public:
+  // placement: that of the loop. It is used here in the inverse direction.
+  SimulatedDevice(std::shared_ptr<const Trajectory> script, const SimulatedHand& hand,
+                  const DevicePlacement& placement, double rate_hz, Clock& clock);
+
+  void start_at(std::int64_t start_ns) override { start_s_ = 1e-9 * static_cast<double>(start_ns); }
+  // Rethrows the exception of the script after the loop has ended, such as an InputError for an unusable
+  // frame.
+  void run(const DeviceTick& tick) override;
+  // Returns a fault, from then on in every call, if the script throws.
+  DeviceFault read(DeviceReading& reading) noexcept override;
+  DeviceFault write(const Wrench& wrench) noexcept override;
+  void release() noexcept override { armed_.store(false, std::memory_order_relaxed); }
+  bool rearm() noexcept override {
+    armed_.store(true, std::memory_order_relaxed);
+    return true;
+  }
+
+ private:
+  void move_to_now();
+
+  // The largest number of steps of one tick that the hand makes in one read(). The earlier part of a longer
+  // pause is covered by one longer step before them.
+  static constexpr int kMaxTicksAtOnce = 200;
+
+  const std::shared_ptr<const Trajectory> script_;
+  SimulatedHand hand_;
+  const DevicePlacement placement_;
+  std::optional<double> start_s_;  // time of the clock at the start
+  long long ticks_ = 0;
+  DeviceState state_;
+  DeviceReading last_;
+  std::exception_ptr failure_;  // exception that the script threw
+  DeviceFault fault_;           // its text is in failure_
+  std::atomic<bool> armed_ = true;
+};
+
+// A hand without a haptic device: someone moves it with the mouse in a page of the viewer. Input only, six
+// axes, no motors.
+//
+// A page sends about sixty poses a second, and the loop needs one in each tick. The position therefore
+// follows the newest pose as a critically damped spring would, and the orientation approaches it
+// exponentially. Both lag by about 30 ms, and neither is faster than kMaxSpeed_m_per_s and
+// kMaxTurning_rad_per_s.
+inline constexpr double kMaxHandDistance_m = 10;  // limit from the origin, along each axis
+
+// The motion that a page requests: by `to` relative to `from`, from where the hand was stopped. The buttons
+// are those of `to`. When `stops` has changed, the tick that reads it stops the hand where it is then,
+// because only the loop knows the present place.
+struct HandMotion {
+  DeviceState from, to;
+  std::uint32_t stops = 0;
+};
+
+// Passes the newest motion from the thread of the page to the haptic loop.
+using HandPoses = TripleBuffer<HandMotion>;
+
+class BrowserDevice final : public HapticDevice {
+ public:
+  static constexpr double kNaturalFrequency_rad_per_s = 60;  // natural frequency of the spring
+  static constexpr double kMaxSpeed_m_per_s = 1;  // a third of what the safety gate allows by default
+  static constexpr double kMaxTurning_rad_per_s = 6;
+
+  // start: the state of the hand until the page moves it. placement: must describe the same pose and motion
+  // scale of the device as the placement of the loop.
+  BrowserDevice(std::shared_ptr<HandPoses> poses, const DeviceState& start, const DevicePlacement& placement,
+                double rate_hz, Clock& clock);
+
+  void run(const DeviceTick& tick) override;
+  DeviceFault read(DeviceReading& reading) noexcept override;
+  DeviceFault write(const Wrench&) noexcept override { return {}; }
+  void release() noexcept override {}
+  bool rearm() noexcept override { return true; }
+
+ private:
+  void request(const HandMotion& motion);
+  void follow(double interval_s);
+  void turn(double interval_s);
+
+  // The largest number of steps in one read(). The hand does not move in the earlier part of a longer pause.
+  static constexpr int kMaxTicksAtOnce = 200;
+
+  const std::shared_ptr<HandPoses> poses_;
+  const DevicePlacement placement_;
+  DeviceState stopped_, wanted_;
+  std::uint32_t stops_ = 0;
+  DeviceState now_;
+  Vec3 velocity_m_per_s_ = Vec3::Zero();
+  double start_s_ = 0;
+  long long ticks_ = 0;
+  DeviceReading last_;
+};
+
+// The functions that open the other devices, and a table with one line for each device.
 
 // The adapters of devices except Haply's, one source each. open_...() opens a device; it throws InputError,
 // which says what is missing. ..._availability() says whether there is one. The adapters of vendors'

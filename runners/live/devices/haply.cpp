@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "runners/live/devices/device_connection.h"
+#include "runners/live/devices/device_table.h"
 
 namespace remote_touch {
 

@@ -28,7 +28,7 @@
 #include <string_view>
 
 #include "core/points/vector.h"
-#include "runners/live/devices/device_connection.h"
+#include "runners/live/devices/device_table.h"
 #include "runners/live/devices/haptic_device.h"
 
 namespace remote_touch {

@@ -10,7 +10,7 @@
 #include <boost/beast/websocket/stream.hpp>
 #include <cerrno>
 
-#include "runners/live/devices/device_connection.h"
+#include "runners/live/devices/device_table.h"
 #endif
 
 namespace remote_touch {

@@ -7,8 +7,6 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "runners/live/devices/device_connection.h"
-
 namespace remote_touch {
 
 namespace {

@@ -1,4 +1,4 @@
-#include "runners/live/loop/live_report.h"
+#include "runners/live/loop/live_log.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@
 
 #include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
-#include "runners/live/devices/device_connection.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/devices/haptic_device.h"
 #include "runners/live/sensors/sensor_table.h"
@@ -236,7 +235,7 @@ std::string text(const LiveReport& report) {
   for (const auto& times : report.times) {
     all += formatted("  %-34s %9zu", times.name, times.count);
     for (const double fraction : {0.0, 0.5, 0.99, 0.999, 1.0})
-      all += " " + cell(9, "%.1f", 1e6 * quantile_of(times, fraction));
+      all.append(" ").append(cell(9, "%.1f", 1e6 * quantile_of(times, fraction)));
     all += "\n";
   }
   for (const auto& count : report.counts) {

@@ -18,10 +18,8 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/teleoperation.h"
 #include "runners/experiment/simulation/run_notes.h"
-#include "runners/live/devices/built_in_devices.h"
-#include "runners/live/loop/camera_feed.h"
+#include "runners/live/devices/device_table.h"
 #include "runners/live/loop/live_log.h"
-#include "runners/live/loop/live_report.h"
 #include "runners/live/loop/servo.h"
 
 namespace remote_touch {

@@ -30,7 +30,6 @@
 #include <random>
 #include <thread>
 
-#include "runners/live/loop/live_pages.h"
 #endif
 
 namespace remote_touch {

@@ -1,5 +1,8 @@
 #include "runners/live/sensors/depth_source.h"
 
+#include "core/parameters/parameter.h"
+
+#ifdef REMOTE_TOUCH_FREENECT
 #include <libfreenect.h>
 #include <signal.h>
 
@@ -12,10 +15,21 @@
 #include <optional>
 #include <stop_token>
 #include <thread>
-
-#include "core/parameters/parameter.h"
+#endif
 
 namespace remote_touch {
+
+#ifndef REMOTE_TOUCH_FREENECT
+
+std::unique_ptr<DepthSource> open_freenect(const std::string&, Clock&) {
+  throw InputError("freenect", freenect_availability().detail);
+}
+
+Availability freenect_availability() {
+  return {.compiled_in = false, .detail = "not compiled in: install libfreenect-dev and build again"};
+}
+
+#else
 
 namespace {
 
@@ -274,5 +288,7 @@ Availability freenect_availability() {
                                              : std::to_string(count) + (count == 1 ? " Kinect" : " Kinects")};
   });
 }
+
+#endif
 
 }  // namespace remote_touch

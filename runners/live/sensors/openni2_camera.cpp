@@ -1,5 +1,8 @@
 #include "runners/live/sensors/depth_source.h"
 
+#include "core/parameters/parameter.h"
+
+#ifdef REMOTE_TOUCH_OPENNI2
 #include <OpenNI.h>
 #include <dlfcn.h>
 
@@ -15,10 +18,22 @@
 #include <utility>
 #include <vector>
 
-#include "core/parameters/parameter.h"
 #include "runners/libraries/shared_library.h"
+#endif
 
 namespace remote_touch {
+
+#ifndef REMOTE_TOUCH_OPENNI2
+
+std::unique_ptr<DepthSource> open_openni2(const std::string&, Clock&) {
+  throw InputError("openni2", openni2_availability().detail);
+}
+
+Availability openni2_availability() {
+  return {.compiled_in = false, .detail = "not compiled in: install libopenni2-dev and build again"};
+}
+
+#else
 
 namespace {
 
@@ -407,9 +422,11 @@ Availability openni2_availability() {
   return found;
 }
 
+#endif
+
 }  // namespace remote_touch
 
-#ifdef __SANITIZE_THREAD__
+#if defined(__SANITIZE_THREAD__) && defined(REMOTE_TOUCH_OPENNI2)
 // The thread sanitizer does not understand the library's locks, so it must ignore them from the moment at
 // which the library is loaded.
 extern "C" const char* __tsan_default_suppressions() {

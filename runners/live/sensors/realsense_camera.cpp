@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/parameters/parameter.h"
-#include "runners/live/devices/device_connection.h"
+#include "runners/live/devices/device_table.h"
 #include "runners/live/sensors/depth_source.h"
 
 namespace remote_touch::rs2 {

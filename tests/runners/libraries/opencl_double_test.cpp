@@ -7,7 +7,6 @@
 
 #include "core/parameters/parameter.h"
 #include "runners/libraries/depth_device.h"
-#include "runners/libraries/device_frames.h"
 #include "runners/libraries/opencl_devices.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
 #include "tests/doubles/loaded_opencl_double.h"

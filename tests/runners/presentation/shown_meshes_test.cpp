@@ -1,4 +1,4 @@
-#include "runners/presentation/shown_run.h"
+#include "runners/presentation/result_pages.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/points/vector.h"
-#include "runners/experiment/mesh_files/mesh_scene_from_files.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 #include "scenarios/objects/mesh_scene.h"
 #include "tests/core/mesh/mesh_shapes.h"
 #include "tests/support/meshes.h"

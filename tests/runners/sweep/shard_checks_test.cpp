@@ -1,4 +1,4 @@
-#include "runners/sweep/shard_checks.h"
+#include "runners/sweep/sweep_session.h"
 
 #include <gtest/gtest.h>
 

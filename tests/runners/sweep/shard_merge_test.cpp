@@ -1,4 +1,4 @@
-#include "runners/sweep/shard_merge.h"
+#include "runners/sweep/sweep_session.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -8,7 +8,6 @@
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/sweep_tally.h"
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep_session.h"
 #include "tests/runners/sweep/quick_sweeps.h"
 #include "tests/support/test_files.h"
 

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "runners/sweep/answer_display.h"
 #include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 

@@ -1,4 +1,4 @@
-#include "runners/sweep/sweep_axis.h"
+#include "runners/sweep/sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_axis_test {

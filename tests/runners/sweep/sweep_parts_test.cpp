@@ -1,4 +1,4 @@
-#include "runners/sweep/sweep_parts.h"
+#include "runners/sweep/sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "runners/sweep/stored_sweep.h"
-#include "runners/sweep/sweep.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_parts_test {

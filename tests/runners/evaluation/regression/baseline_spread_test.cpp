@@ -11,7 +11,6 @@
 #include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
 #include "runners/evaluation/regression/baselines.h"
-#include "runners/evaluation/regression/spread.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"
 #include "tests/support/result_files.h"

@@ -9,7 +9,6 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "runners/evaluation/regression/baselines.h"
-#include "runners/evaluation/regression/stored_result.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "runners/sweep/sweep_run.h"

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "runners/evaluation/regression/comparison_report.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "tests/support/test_files.h"
 

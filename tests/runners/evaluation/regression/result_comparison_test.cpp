@@ -8,8 +8,6 @@
 
 #include "analysis/storage/result_file.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "runners/evaluation/regression/comparison_report.h"
-#include "runners/evaluation/regression/junit_report.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/evaluation/regression/compared_files.h"
 #include "tests/support/result_files.h"

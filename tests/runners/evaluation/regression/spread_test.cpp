@@ -1,5 +1,5 @@
 // The folder of runs whose results are thrown away.
-#include "runners/evaluation/regression/spread.h"
+#include "runners/evaluation/regression/baselines.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "runners/evaluation/regression/stored_result.h"
+#include "runners/evaluation/regression/baselines.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/result_file.h"
-#include "runners/evaluation/regression/baselines.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"
 #include "tests/support/result_files.h"

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/sweeps/sweep_file.h"
-#include "runners/evaluation/regression/comparison_report.h"
 #include "runners/sweep/sweep_run.h"
 #include "tests/runners/evaluation/regression/compared_files.h"
 #include "tests/support/test_files.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/storage/result_file.h"
-#include "runners/evaluation/regression/comparison_report.h"
+#include "runners/evaluation/regression/result_comparison.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "tests/runners/evaluation/regression/compared_files.h"
 #include "tests/support/test_files.h"

@@ -1,4 +1,4 @@
-#include "runners/evaluation/scorecard/card_folder.h"
+#include "runners/evaluation/scorecard/evaluation.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -7,7 +7,6 @@
 
 #include "analysis/storage/result_file.h"
 #include "core/kernels/kernels.h"
-#include "runners/evaluation/scorecard/evaluation.h"
 #include "scenarios/files/input_files.h"
 #include "tests/support/test_files.h"
 

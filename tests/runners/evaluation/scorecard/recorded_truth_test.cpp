@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/kernels/kernels.h"
-#include "runners/evaluation/scorecard/card_folder.h"
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "scenarios/files/input_files.h"
 #include "tests/support/recorded_wall.h"

@@ -6,7 +6,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "runners/evaluation/scorecard/card_folder.h"
 #include "scenarios/files/input_files.h"
 #include "tests/support/test_files.h"
 

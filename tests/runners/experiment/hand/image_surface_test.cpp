@@ -1,4 +1,4 @@
-#include "runners/experiment/hand/image_surface.h"
+#include "runners/experiment/hand/image_motions.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "runners/experiment/hand/image_motions.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::image_surface_test {

@@ -12,7 +12,7 @@
 
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
-#include "runners/experiment/mesh_files/mesh_scene_from_files.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 

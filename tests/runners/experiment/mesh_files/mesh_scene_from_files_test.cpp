@@ -1,4 +1,4 @@
-#include "runners/experiment/mesh_files/mesh_scene_from_files.h"
+#include "runners/experiment/mesh_files/mesh_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The hand of a user with a mouse, compared with the closed form of the spring that it follows.
-#include "runners/live/devices/built_in_devices.h"
+#include "runners/live/devices/device_table.h"
 
 #include <gtest/gtest.h>
 

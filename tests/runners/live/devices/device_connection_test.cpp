@@ -1,4 +1,4 @@
-#include "runners/live/devices/device_connection.h"
+#include "runners/live/devices/device_table.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>

@@ -1,4 +1,4 @@
-#include "runners/live/devices/safety_gate.h"
+#include "runners/live/devices/haptic_device.h"
 
 #include <gtest/gtest.h>
 

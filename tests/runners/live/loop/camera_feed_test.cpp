@@ -1,5 +1,5 @@
 // Frames on their way from a sensor to the haptic loop: what is counted, dropped and handed over.
-#include "runners/live/loop/camera_feed.h"
+#include "runners/live/loop/servo.h"
 
 #include <gtest/gtest.h>
 

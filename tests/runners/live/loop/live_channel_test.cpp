@@ -1,4 +1,4 @@
-#include "runners/live/loop/live_pages.h"
+#include "runners/live/loop/live_view.h"
 
 #include <gtest/gtest.h>
 

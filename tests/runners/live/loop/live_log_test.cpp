@@ -8,7 +8,6 @@
 #include <variant>
 #include <vector>
 
-#include "runners/live/loop/live_report.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::live_log_test {

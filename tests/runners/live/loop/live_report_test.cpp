@@ -1,4 +1,4 @@
-#include "runners/live/loop/live_report.h"
+#include "runners/live/loop/live_log.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>

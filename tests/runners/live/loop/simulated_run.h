@@ -10,7 +10,7 @@
 
 #include "runners/live/devices/device_table.h"
 #include "runners/live/loop/live_run.h"
-#include "runners/live/sensors/scenario_camera.h"
+#include "runners/live/sensors/sensor_table.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "runners/live/sensors/scenario_camera.h"
+#include "runners/live/sensors/sensor_table.h"
 
 #include <gtest/gtest.h>
 
