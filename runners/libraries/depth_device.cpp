@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <mutex>
@@ -34,9 +33,7 @@ void exchange(DeviceFrame& frame, PointCloud& cloud) {
 }
 
 std::string seconds_text(std::chrono::milliseconds time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g s", static_cast<double>(time.count()) / 1000);
-  return text;
+  return formatted("%g s", static_cast<double>(time.count()) / 1000);
 }
 
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {

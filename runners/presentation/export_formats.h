@@ -236,8 +236,8 @@ inline constexpr const char* kVtkOpening = "<?xml version=\"1.0\"?>\n<!-- remote
 // that no digit is lost.
 std::string vtp_file(const VtkPolyData& data);
 
-// Returns a text as it must be written in the value of an attribute.
-std::string xml_escaped(const std::string& text);
+// Returns a text as it must be written in XML: in the value of an attribute, or between tags.
+std::string xml_escaped(const std::string& text, bool is_quoted = true);
 
 // x.vtp: the paths of the HIP and of the proxy as two lines, with the columns of the trace at each point.
 // x_cloud_0000.vtp ...: the measured points of each frame in use. Points of unknown colour are grey; if there

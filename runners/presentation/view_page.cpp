@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parameters/parameter.h"
+#include "runners/presentation/export_formats.h"
 
 #ifdef VIEWER_SCRIPT
 // The assembler reads the files; as texts in C++ they would take a minute to compile.
@@ -82,19 +83,6 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-std::string escaped(const std::string& text) {
-  std::string html;
-  for (const char c : text) {
-    if (c == '&')
-      html += "&amp;";
-    else if (c == '<')
-      html += "&lt;";
-    else
-      html += c;
-  }
-  return html;
-}
-
 // Replaces each '<', because "</script>" in a string of JSON would end the element.
 std::string in_script(const std::string& json) {
   std::string text;
@@ -145,7 +133,7 @@ std::string page_file(const std::string& title, const std::string& json, const s
   std::string html =
       "<!DOCTYPE html>\n<!-- remote-touch view -->\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-      escaped(title) + "</title>\n<style>\n";
+      xml_escaped(title, false) + "</title>\n<style>\n";
   html.append(viewer_style())
       .append("</style></head>\n<body>\n<script type=\"application/json\" id=\"view\">");
   html.append(in_script(json)).append("</script>\n<script type=\"text/plain\" id=\"numbers\">");

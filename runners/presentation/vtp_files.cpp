@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "scenarios/files/input_files.h"
 
@@ -127,9 +127,7 @@ class VtpFolder {
   explicit VtpFolder(const ExportJob& job) : job_(job), stem_(job.output.stem().string()) {}
 
   void add(Series& series, const std::string& thing, const VtkPolyData& data) {
-    std::array<char, 16> number{};
-    std::snprintf(number.data(), number.size(), "%04zu", series.names.size());
-    const std::string name = stem_ + "_" + thing + "_" + number.data() + ".vtp";
+    const std::string name = stem_ + "_" + thing + formatted("_%04zu.vtp", series.names.size());
     write(name, vtp_file(data));
     series.names.push_back(name);
     series.time_s.push_back(data.time_s);
@@ -174,18 +172,10 @@ class VtpFolder {
 
 }  // namespace
 
-std::string xml_escaped(const std::string& text) {
+std::string xml_escaped(const std::string& text, bool is_quoted) {
   std::string escaped;
-  for (const char c : text) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else
-      escaped += c;
-  }
+  for (const char c : text)
+    escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' && is_quoted ? "&quot;" : std::string(1, c);
   return escaped;
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cstdio>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -209,12 +208,6 @@ std::uint64_t bits(double value) {
   return std::bit_cast<std::uint64_t>(value);
 }
 
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
-
 // Makes the runs, some at a time, and calls take(part) with each part, in their order.
 void make_again(const Sweep& sweep, const std::vector<std::uint64_t>& runs, const RecheckOptions& options,
                 const std::function<void(const SweepResult& part)>& take) {
@@ -239,7 +232,8 @@ std::string difference(const SweepResult& stored, std::size_t at, const SweepRes
     const double then = std::get<std::vector<double>>(stored.measures[m].values)[at],
                  again = std::get<std::vector<double>>(now.measures[m].values)[place];
     if (bits(then) != bits(again))
-      return stored.measures[m].name + " = " + digits(then) + ", now " + digits(again);
+      return stored.measures[m].name + " = " + formatted("%.17g", then) + ", now " +
+             formatted("%.17g", again);
   }
   if (!stored.notes.empty() && stored.notes[at] != now.notes[place]) return "has other notes now";
   return "";
@@ -266,7 +260,8 @@ std::vector<std::size_t> chosen_cells(const SweepTally& tally) {
 // Returns what differs between two tallies that are not equal. name: that of the measure.
 std::string difference(const std::string& name, const MeasureTally& then, const MeasureTally& now) {
   const auto part = [&](const char* what, double before, double after) {
-    return std::string(what) + " of " + name + " = " + digits(before) + ", now " + digits(after);
+    return std::string(what) + " of " + name + " = " + formatted("%.17g", before) + ", now " +
+           formatted("%.17g", after);
   };
   if (bits(then.mean()) != bits(now.mean())) return part("mean", then.mean(), now.mean());
   if (bits(then.least) != bits(now.least)) return part("least value", then.least, now.least);

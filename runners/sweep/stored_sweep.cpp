@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "analysis/storage/hdf5_file.h"
@@ -31,16 +30,10 @@ std::vector<std::string> items_of(const std::string& text) {
   return items;
 }
 
-std::string six_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 // Returns the value of a row as the user writes it.
 std::string value_text(const Column& axis, std::size_t row) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&axis.values))
-    return six_digits((*numbers)[row]);
+    return formatted("%.6g", (*numbers)[row]);
   const auto number = std::get<std::vector<std::int32_t>>(axis.values)[row];
   return axis.value_names.empty() ? std::to_string(number)
                                   : axis.value_names[static_cast<std::size_t>(number)];
@@ -85,7 +78,7 @@ std::vector<std::size_t> rows_of(const Column& axis, const std::string& value) {
   if (!number) return rows_with(axis, value);
   if (const std::optional<std::size_t> row = exact_row_of(axis, *number)) return {*row};
   const std::vector<std::size_t> same_text = rows_with(axis, value);
-  return same_text.empty() ? rows_with(axis, six_digits(*number)) : same_text;
+  return same_text.empty() ? rows_with(axis, formatted("%.6g", *number)) : same_text;
 }
 
 std::size_t row_of(const NamedCell& cell, const Column& axis, const std::string& value) {
@@ -173,15 +166,12 @@ std::string text_of_unknown_outcome(const Trace& trace) {
   std::size_t unknown = 0, last = 0;
   for (std::size_t i = 0; i < trace.length(); ++i)
     if (std::isnan(distance_m[i])) last = i, ++unknown;
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
+  return formatted(
       "it is not known whether the %s popped through: its distance to the %s surface is unknown in "
       "%.3g %% of the ticks, last at %.6g s, beside an object or at a depth edge for example; choose a "
       "larger scene, or a hand that stays over it",
       trace.has_tool() ? "tool" : "proxy", trace.has_measured_surface() ? "measured" : "true",
       100 * static_cast<double>(unknown) / static_cast<double>(trace.length()), trace.time_s[last]);
-  return text;
 }
 
 }  // namespace

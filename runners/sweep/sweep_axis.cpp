@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -198,9 +197,7 @@ Parameters parameters(RangeAxis& axis) {
 
 // Rounds to 12 significant digits: the last bits of the C library's logarithm differ between machines.
 double rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.11e", value);
-  return std::strtod(text, nullptr);
+  return std::strtod(formatted("%.11e", value).c_str(), nullptr);
 }
 
 Json value_of(const RangeAxis& axis, std::size_t i, std::size_t count) {

@@ -93,13 +93,10 @@ std::vector<Bound> held_bounds(double tolerance_m) {
 }
 
 std::string held_meaning(double tolerance_m) {
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
+  return formatted(
       "held: from %g s after the HIP got below the true surface on, the contact point is never more "
       "than %g mm from it, above or below, and there is a force in 90 %% of these ticks",
       kSettling_s, 1e3 * tolerance_m);
-  return text;
 }
 
 // Reads {"rule": "held", "tolerance_m", "bounds" and their "meaning"}. The bounds are added to those of the

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 
+#include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 
 namespace remote_touch {
@@ -89,15 +89,10 @@ void SensedPoints::add(const SensorFrame& frame, const SensorView& view) {
 
 std::string SensedPoints::text() const {
   const double share = points_ > 0 ? 100 * static_cast<double>(measured_) / static_cast<double>(points_) : 0;
-  char measured[80], range[80];
-  std::snprintf(measured, sizeof measured, "%.3g %% of %llu points measured", share,
-                static_cast<unsigned long long>(points_));
-  std::string text = measured;
-  if (measured_ > 0) {
-    std::snprintf(range, sizeof range, ", %s %.3g to %.3g m", are_clouds_ ? "z" : "depth", nearest_m_,
-                  farthest_m_);
-    text += range;
-  }
+  std::string text =
+      formatted("%.3g %% of %llu points measured", share, static_cast<unsigned long long>(points_));
+  if (measured_ > 0)
+    text += formatted(", %s %.3g to %.3g m", are_clouds_ ? "z" : "depth", nearest_m_, farthest_m_);
   return text + (has_colours_ ? ", with colours" : ", without colours");
 }
 

@@ -3,12 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <numbers>
 #include <utility>
 
 #include "analysis/trace/trace.h"
+#include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
 
 namespace remote_touch {
@@ -135,10 +134,8 @@ double gap_radius_m(const NeighbourSearch& frame, const Vec3& position_W, double
 std::pair<std::string, std::string> distinct_texts(double a, double b) {
   constexpr int kMostDigits = 9;
   for (int digits = 3;; ++digits) {
-    char text_a[32], text_b[32];
-    std::snprintf(text_a, sizeof text_a, "%.*g", digits, a);
-    std::snprintf(text_b, sizeof text_b, "%.*g", digits, b);
-    if (digits == kMostDigits || std::strcmp(text_a, text_b) != 0) return {text_a, text_b};
+    const std::string text_a = formatted("%.*g", digits, a), text_b = formatted("%.*g", digits, b);
+    if (digits == kMostDigits || text_a != text_b) return {text_a, text_b};
   }
 }
 
@@ -206,12 +203,11 @@ std::vector<Note> ContactWatch::spacing_notes(double ball_radius_m, const Kernel
     if (!site) continue;
     const double gap_m = gap_radius_m(*site->points, site->position_W, ball_radius_m, kernels);
     if (!(gap_m > 0)) continue;
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "the points leave a gap of radius %.3g mm %s: a proxy of contact radius %.3g mm can fall "
-                  "through it",
-                  1e3 * gap_m, where, 1e3 * ball_radius_m);
-    return {{"wide spacing", text}};
+    return {
+        {"wide spacing",
+         formatted("the points leave a gap of radius %.3g mm %s: a proxy of contact radius %.3g mm can fall "
+                   "through it",
+                   1e3 * gap_m, where, 1e3 * ball_radius_m)}};
   }
   return {};
 }
@@ -226,20 +222,14 @@ std::vector<Note> ContactWatch::start_notes(const Scenario& scenario, double res
   const double reach_m = rest_distance_m + (distance_m < 0 ? -distance_m : 0);
   const std::vector<Vec3> near = points_in(*start_->points, {hand_W, reach_m}, kernels);
   if (near.empty()) return {};
-  char text[240];
-  const int begun = std::snprintf(text, sizeof text, "when the first frame arrives, at %.6g s, the hand is ",
-                                  start_->time_s);
-  const auto rest = static_cast<std::size_t>(begun);
-  if (distance_m < 0)
-    std::snprintf(text + rest, sizeof text - rest, "%.3g mm behind the true surface", -1e3 * distance_m);
-  else if (std::isnan(distance_m))
-    std::snprintf(text + rest, sizeof text - rest, "nearer to a point than the contact radius of %.3g mm",
-                  1e3 * rest_distance_m);
-  else
-    std::snprintf(text + rest, sizeof text - rest,
-                  "%.3g mm in front of the true surface, nearer than the contact radius of %.3g mm",
-                  1e3 * distance_m, 1e3 * rest_distance_m);
-  return {{"starts in contact", text}};
+  const std::string place =
+      distance_m < 0 ? formatted("%.3g mm behind the true surface", -1e3 * distance_m)
+      : std::isnan(distance_m)
+          ? formatted("nearer to a point than the contact radius of %.3g mm", 1e3 * rest_distance_m)
+          : formatted("%.3g mm in front of the true surface, nearer than the contact radius of %.3g mm",
+                      1e3 * distance_m, 1e3 * rest_distance_m);
+  return {{"starts in contact",
+           formatted("when the first frame arrives, at %.6g s, the hand is ", start_->time_s) + place}};
 }
 
 std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, double ball_radius_m,
@@ -256,16 +246,15 @@ std::vector<Note> ContactWatch::first_touch_notes(const Scenario& scenario, doub
   if (!crossing_->touched && points_in(*site.points, {site.position_W, reach_m}, kernels).empty()) return {};
   const auto [moved, safe] =
       distinct_texts(moved_m / (site.time_s - before_s), ball_radius_m * scenario.frame_rate_hz());
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
-      "the true surface passed the proxy at %.6g s, %s; it moved at %s m/s towards the proxy, and even "
-      "without noise a first touch is safe only up to %s m/s over a point, and less between points",
-      site.time_s,
-      crossing_->touched ? "before a third frame came after the first contact"
-                         : "before the proxy touched a point",
-      moved.c_str(), safe.c_str());
-  return {{"lost at the first touch", text}};
+  return {
+      {"lost at the first touch",
+       formatted(
+           "the true surface passed the proxy at %.6g s, %s; it moved at %s m/s towards the proxy, and even "
+           "without noise a first touch is safe only up to %s m/s over a point, and less between points",
+           site.time_s,
+           crossing_->touched ? "before a third frame came after the first contact"
+                              : "before the proxy touched a point",
+           moved.c_str(), safe.c_str())}};
 }
 
 WallWatch::WallWatch(const Scenario& scenario, std::string what)
@@ -291,13 +280,12 @@ double WallWatch::side_m(const Vec3& position_W, double signed_distance_m, doubl
 
 std::vector<Note> WallWatch::notes() const {
   if (!has_passed_) return {};
-  char text[240];
-  std::snprintf(
-      text, sizeof text,
-      "at %.6g s %s passed the middle of a wall, %.2g mm below its surface: on which side of the wall "
-      "it is does not show from there on, and measures that need the side leave these ticks out",
-      first_s_, what_.c_str(), 1e3 * half_m_);
-  return {{"thin object", text}};
+  return {
+      {"thin object",
+       formatted(
+           "at %.6g s %s passed the middle of a wall, %.2g mm below its surface: on which side of the wall "
+           "it is does not show from there on, and measures that need the side leave these ticks out",
+           first_s_, what_.c_str(), 1e3 * half_m_)}};
 }
 
 std::vector<Note> tool_start_notes(const Trace& trace) {
@@ -305,12 +293,11 @@ std::vector<Note> tool_start_notes(const Trace& trace) {
   const auto first = std::ranges::find_if(trace.frame_index, has_frame) - trace.frame_index.begin();
   const auto tick = static_cast<std::size_t>(first);
   if (tick == trace.length() || trace.contact_count[tick] == 0) return {};
-  char text[160];
-  std::snprintf(
-      text, sizeof text,
-      "the tool touches points when the first frame arrives, at %.6g s: %d contacts, a force of %.3g N",
-      trace.time_s[tick], trace.contact_count[tick], trace.force_N[tick].norm());
-  return {{"starts in contact", text}};
+  return {
+      {"starts in contact",
+       formatted(
+           "the tool touches points when the first frame arrives, at %.6g s: %d contacts, a force of %.3g N",
+           trace.time_s[tick], trace.contact_count[tick], trace.force_N[tick].norm())}};
 }
 
 }  // namespace remote_touch

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include "analysis/trace/contact_measures.h"
 #include "analysis/trace/force_measures.h"
 #include "analysis/trace/trace.h"
+#include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/number_columns.h"
 
@@ -65,12 +65,11 @@ void add_start(const Trace& trace, std::vector<Note>& notes) {
   const double depth_m = -trace.slave_clearance_m[tick];
   if (!(depth_m > kRounding_m)) return;
   const double force_N = tick + 1 < trace.length() ? trace.slave_peak_force_N[tick + 1] : 0;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the slave starts %.3g mm behind the true surface, with a force of %.3g N on it: largest "
-                "forces of the run may be those of its start",
-                1e3 * depth_m, force_N);
-  notes.push_back({"slave starts in contact", text});
+  notes.push_back(
+      {"slave starts in contact",
+       formatted("the slave starts %.3g mm behind the true surface, with a force of %.3g N on it: largest "
+                 "forces of the run may be those of its start",
+                 1e3 * depth_m, force_N)});
 }
 
 }  // namespace
@@ -220,36 +219,29 @@ void SurfaceWatch::add(const Vec3& hand_W, double time_s) {
 
 std::vector<Note> SurfaceWatch::notes() const {
   std::vector<Note> notes;
-  char text[240];
   const auto percent = [&](std::size_t count) {
     return 100 * static_cast<double>(count) / static_cast<double>(ticks_);
   };
-  if (behind_ > 0) {
-    std::snprintf(text, sizeof text,
-                  "the hand was behind the surface that the camera sees in %.3g %% of the ticks, first at "
-                  "%.6g s, by up to %.3g mm; at most %.3g mm were planned",
-                  percent(behind_), first_behind_s_, 1e3 * deepest_m_, 1e3 * allowed_m_);
-    notes.push_back({"behind the surface", text});
-  }
-  if (off_ > 0) {
-    std::snprintf(
-        text, sizeof text,
-        "the hand was meant to touch but was off the surface that the camera sees in %.3g %% of the "
-        "ticks, first at %.6g s: there is a hole or an edge, or the surface has moved",
-        percent(off_), first_off_s_);
-    notes.push_back({"off the surface", text});
-  }
-  if (jumps_ > 0) {
-    std::snprintf(text, sizeof text,
-                  "the hand jumped by %.3g mm at %.6g s, because its pixel then showed another surface",
-                  1e3 * first_jump_m_, first_jump_s_);
-    notes.push_back({"hand jumped", text});
-    if (jumps_ > 1) {
-      std::snprintf(text, sizeof text, "; it jumped %zu times, by up to %.3g mm", jumps_,
-                    1e3 * longest_jump_m_);
-      notes.back().text += text;
-    }
-  }
+  if (behind_ > 0)
+    notes.push_back(
+        {"behind the surface",
+         formatted("the hand was behind the surface that the camera sees in %.3g %% of the ticks, first at "
+                   "%.6g s, by up to %.3g mm; at most %.3g mm were planned",
+                   percent(behind_), first_behind_s_, 1e3 * deepest_m_, 1e3 * allowed_m_)});
+  if (off_ > 0)
+    notes.push_back(
+        {"off the surface",
+         formatted(
+             "the hand was meant to touch but was off the surface that the camera sees in %.3g %% of the "
+             "ticks, first at %.6g s: there is a hole or an edge, or the surface has moved",
+             percent(off_), first_off_s_)});
+  if (jumps_ > 0)
+    notes.push_back(
+        {"hand jumped",
+         formatted("the hand jumped by %.3g mm at %.6g s, because its pixel then showed another surface",
+                   1e3 * first_jump_m_, first_jump_s_)});
+  if (jumps_ > 1)
+    notes.back().text += formatted("; it jumped %zu times, by up to %.3g mm", jumps_, 1e3 * longest_jump_m_);
   return notes;
 }
 
@@ -300,13 +292,12 @@ std::vector<Note> slave_notes(const Trace& trace) {
          "the hand felt no force of the slave: all were lost, late, in the dead-band, or stopped by "
          "gain or device"});
   if (const double given_J = max_energy_injected_J(trace); given_J > kMuchEnergy_J) {
-    char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "the device gave the hand up to %.3g J, with a force of up to %.3g N: hand, links and slave "
-        "may oscillate",
-        given_J, max_device_force_N(trace));
-    notes.push_back({"slave loop gains energy", text});
+    notes.push_back(
+        {"slave loop gains energy",
+         formatted(
+             "the device gave the hand up to %.3g J, with a force of up to %.3g N: hand, links and slave "
+             "may oscillate",
+             given_J, max_device_force_N(trace))});
   }
   return notes;
 }
@@ -332,18 +323,12 @@ std::vector<Note> slave_setting_notes(const Experiment& experiment, Experiment::
 std::string slave_summary(const Trace& trace) {
   const double clearance_m = min_slave_clearance_m(trace);
   if (std::isnan(clearance_m)) return {};
-  char text[120];
   const double touched = slave_touched(trace);
-  if (std::isnan(touched))
-    std::snprintf(text, sizeof text, "it is not known whether the slave touched: its force is unknown");
-  else if (touched > 0)
-    std::snprintf(text, sizeof text,
-                  "the slave touched first at %.3f s; largest force of the scene on it: %.3g N",
-                  first_slave_contact_time_s(trace), max_slave_force_N(trace));
-  else
-    std::snprintf(text, sizeof text, "the slave did not touch; it came within %.3g mm of the surface",
-                  1e3 * clearance_m);
-  return text;
+  if (std::isnan(touched)) return "it is not known whether the slave touched: its force is unknown";
+  if (touched > 0)
+    return formatted("the slave touched first at %.3f s; largest force of the scene on it: %.3g N",
+                     first_slave_contact_time_s(trace), max_slave_force_N(trace));
+  return formatted("the slave did not touch; it came within %.3g mm of the surface", 1e3 * clearance_m);
 }
 
 }  // namespace remote_touch

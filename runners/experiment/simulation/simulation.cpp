@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <set>
 
@@ -18,9 +17,7 @@ namespace remote_touch {
 namespace {
 
 std::string seconds(double time_s) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g s", time_s);
-  return text;
+  return formatted("%.6g s", time_s);
 }
 
 // Adds a note for each phase of the hand, such as a press, that begins only after the motion of the scene has

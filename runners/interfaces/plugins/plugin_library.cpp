@@ -3,12 +3,12 @@
 #include <dlfcn.h>
 
 #include <array>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <limits>
 #include <utility>
 
+#include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
 
@@ -216,12 +216,6 @@ remote_touch_plugin_function function_of(const std::string& file) {
   return reinterpret_cast<remote_touch_plugin_function>(address);
 }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 void check(const remote_touch_renderer& r, const std::string& file) {
   const auto refuse = [&](const std::string& what) {
     throw InputError("--plugin " + file, (r.name ? std::string(r.name) + ": " : std::string()) + what);
@@ -246,8 +240,8 @@ void check(const remote_touch_renderer& r, const std::string& file) {
     const remote_touch_setting& s = r.settings[i];
     if (!s.name || !s.help) refuse("a setting without name or help");
     if (!(s.low <= s.value && s.value <= s.high))
-      refuse(std::string(s.name) + " = " + number_text(s.value) + ": expected " + number_text(s.low) +
-             " to " + number_text(s.high));
+      refuse(std::string(s.name) + " = " + formatted("%g", s.value) + ": expected " + formatted("%g", s.low) +
+             " to " + formatted("%g", s.high));
     any_live |= s.is_live != 0;
   }
   if (any_live && !r.set_values) refuse("has live settings and no set_values");
