@@ -260,15 +260,14 @@ std::vector<CheckResult> verify_scene(const Subject& subject, const MetamorphicS
 
 // The built-in renderers that not all checks apply to.
 constexpr std::pair<const char*, ContactModel> kBuiltIn[] = {
-    {"averaged-proxy", ContactModel::oriented},
-    {"god-object", ContactModel::mesh},
-    {"mls-surface", ContactModel::oriented},
     {"penalty", ContactModel::nothing},
-    {"sphere-tree", ContactModel::regions},
-    {"surfels", ContactModel::oriented},
     {"tool-god-object", ContactModel::resting_points},
     {"tracked-sheet", ContactModel::sheet},
     {"tracked-tool", ContactModel::sheet}};
+// The model of a built-in renderer that needs more than points in its frames.
+constexpr std::pair<FrameNeed, ContactModel> kModelOfNeed[] = {{FrameNeed::view, ContactModel::oriented},
+                                                               {FrameNeed::organised, ContactModel::mesh},
+                                                               {FrameNeed::regions, ContactModel::regions}};
 
 // A static of a function: programs may declare models before main() begins.
 std::map<std::string, ContactModel>& declared() {
@@ -310,6 +309,9 @@ std::vector<CheckName> check_names(DegreesOfFreedom degrees_of_freedom) {
 ContactModel contact_model_of(const std::string& renderer) {
   for (const auto& [name, model] : kBuiltIn)
     if (renderer == name) return model;
+  for (const RendererEntry& entry : built_in_catalog().renderers())
+    for (const auto& [need, model] : kModelOfNeed)
+      if (renderer == entry.name && std::ranges::count(entry.needs, need) > 0) return model;
   const auto found = declared().find(renderer);
   return found == declared().end() ? ContactModel() : found->second;
 }

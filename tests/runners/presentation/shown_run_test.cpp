@@ -1,11 +1,12 @@
 #include "runners/presentation/result_pages.h"
 
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runners/experiment/catalog/experiment.h"
+#include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
 namespace remote_touch::true_heights_test {
@@ -141,3 +142,153 @@ TEST(TrueHeights, StateTheErrorBetweenTheirNodes) {
 
 }  // namespace
 }  // namespace remote_touch::true_heights_test
+
+namespace remote_touch::shown_frames_test {
+namespace {
+
+const BoundingBox kBox(Vec3(-0.03, -0.03, -0.03), Vec3(0.03, 0.03, 0.03));
+const std::vector<Vec3> kPath{{0, 0, 0}, {0.001, 0, 0}, {0.02, 0.01, 0}};
+
+PointCloud cloud_with_holes() {
+  PointCloud cloud = scenes::random_cloud(20000, 0.05, 4);
+  for (std::size_t i = 0; i < cloud.size(); i += 50) cloud.y[i] = std::numeric_limits<double>::quiet_NaN();
+  return cloud;
+}
+
+bool is_shown(const ShownPoints& shown, std::size_t i) {
+  return std::binary_search(shown.indices.begin(), shown.indices.end(), i);
+}
+
+TEST(ShownPoints, AreAllPointsInTheBoxIfTheyAreFewEnough) {
+  const PointCloud cloud = cloud_with_holes();
+  const ShownPoints shown = shown_points(cloud, {}, kPath, {kBox, 0.005, cloud.size()});
+  std::size_t measured = 0, in_box = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const bool inside = cloud.is_measured(i) && kBox.contains(cloud.point(i));
+    measured += cloud.is_measured(i), in_box += inside;
+    EXPECT_EQ(is_shown(shown, i), inside) << i;
+  }
+  EXPECT_EQ(shown.measured, measured);
+  EXPECT_EQ(shown.in_box, in_box);
+  EXPECT_EQ(shown.indices.size(), in_box);
+}
+
+TEST(ShownPoints, AreAllNearTheProxyAndAboutAsManyOthersAsAllowed) {
+  const PointCloud cloud = cloud_with_holes();
+  const ShownPoints shown = shown_points(cloud, {}, kPath, {kBox, 0.005, 500});
+  std::size_t near = 0, others = 0, others_shown = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!cloud.is_measured(i) || !kBox.contains(cloud.point(i))) continue;
+    double from_path_m = 1;
+    for (const Vec3& proxy : kPath) from_path_m = std::min(from_path_m, (cloud.point(i) - proxy).norm());
+    if (from_path_m <= 0.005) {
+      EXPECT_TRUE(is_shown(shown, i)) << i;
+      ++near;
+    } else if (from_path_m > 1.1 * 0.005) {  // both are right in between
+      ++others, others_shown += is_shown(shown, i);
+    }
+  }
+  ASSERT_GT(near, 20u);
+  // The number is that of a draw with the same chance for each of the others, within four standard
+  // deviations.
+  const double chance = 500 / static_cast<double>(others);
+  EXPECT_NEAR(static_cast<double>(others_shown), 500, 4 * std::sqrt(500 * (1 - chance)));
+}
+
+TEST(ShownPoints, RequestedPointsAreShownOutsideOfTheBoxToo) {
+  const PointCloud cloud = cloud_with_holes();
+  std::vector<std::uint32_t> always;
+  for (std::uint32_t i = 1; i < 40; i += 2) always.push_back(i);
+  const ShownPoints shown = shown_points(cloud, always, {}, {kBox, 0, 0});
+  EXPECT_EQ(shown.indices, always);
+}
+
+TEST(ShownPoints, FewerAreThoseOfTheSmallestRanks) {
+  const PointCloud cloud = cloud_with_holes();
+  const std::vector<std::uint32_t> always{5, 7, 1001};
+  const ShownPoints many = shown_points(cloud, always, kPath, {kBox, 0.005, 900});
+  const ShownPoints few = shown_points(cloud, always, kPath, {kBox, 0.005, 100});
+  ASSERT_EQ(many.rank.size(), many.indices.size());
+  EXPECT_EQ(many.others, few.others);
+  std::vector<std::uint32_t> kept;
+  for (std::size_t i = 0; i < many.indices.size(); ++i)
+    if (many.rank[i] < rank_limit(many.others, 100)) kept.push_back(many.indices[i]);
+  EXPECT_EQ(kept, few.indices);
+  EXPECT_LT(kept.size(), many.indices.size());
+  for (const std::uint32_t i : always) EXPECT_TRUE(is_shown(few, i));
+}
+
+// A point that is left out of one frame is left out of the next, so that an animation does not flicker.
+TEST(ShownPoints, AreTheSamePixelsInEveryFrame) {
+  PointCloud cloud = cloud_with_holes();
+  const ShownPointsRule rule{kBox, 0, 300};
+  const std::vector<std::uint32_t> before = shown_points(cloud, {}, {}, rule).indices;
+  for (double& y : cloud.y) y += 1e-6;
+  std::vector<std::uint32_t> common;
+  const std::vector<std::uint32_t> after = shown_points(cloud, {}, {}, rule).indices;
+  std::set_intersection(before.begin(), before.end(), after.begin(), after.end(), std::back_inserter(common));
+  EXPECT_GT(static_cast<double>(common.size()), 0.98 * static_cast<double>(before.size()));
+}
+
+TEST(TouchingProxy, AreThoseOfEveryPointAskedInEveryTick) {
+  PointCloud cloud = scenes::random_cloud(20000, 0.03, 6);
+  for (std::size_t i = 0; i < cloud.size(); ++i) cloud.fixture_radius_m.push_back(i % 3 == 0 ? 0.002 : 0);
+  cloud.z[5] = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Vec3> path{
+      {0, 0, 0}, {0.004, 0.001, 0}, Vec3::Constant(std::numeric_limits<double>::quiet_NaN())};
+  const TouchingPoints touching = touching_proxy(path, 0.005, cloud);
+  ASSERT_EQ(touching.size(), 3u);
+  for (std::size_t tick = 0; tick < 2; ++tick) {
+    std::vector<std::uint32_t> expected;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      if ((cloud.point(i) - path[tick]).norm() - cloud.fixture_radius_m[i] <= 0.005)
+        expected.push_back(static_cast<std::uint32_t>(i));
+    EXPECT_EQ(touching[tick], expected) << tick;
+    EXPECT_GT(expected.size(), 20u);
+  }
+  EXPECT_TRUE(touching[2].empty());
+}
+
+// A box that slides and turns through a random cloud.
+std::vector<ToolPose> poses() {
+  std::vector<ToolPose> list;
+  for (int i = 0; i < 30; ++i)
+    list.push_back({Vec3(0.0008 * i - 0.01, 0.002, 1e-4 * i),
+                    Eigen::Quaterniond(Eigen::AngleAxisd(0.03 * i, Vec3(1, 2, 3).normalized()))});
+  return list;
+}
+
+TEST(TouchingTool, AreThoseOfEveryPointAskedInEveryTick) {
+  const auto tool = scenes::box_tool({0.02, 0.005, 0.01});
+  const PointCloud cloud = scenes::random_cloud(20000, 0.05, 6);
+  const std::vector<ToolPose> path = poses();
+  const auto touching = touching_tool(*tool, path, cloud);
+  ASSERT_EQ(touching.size(), path.size());
+  for (std::size_t tick = 0; tick < path.size(); ++tick) {
+    std::vector<std::uint32_t> expected;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      if (sample_field(*tool, path[tick].q_WT.conjugate() * (cloud.point(i) - path[tick].p_W)).distance_m <=
+          kTouchingTool_m)
+        expected.push_back(static_cast<std::uint32_t>(i));
+    EXPECT_EQ(touching[tick], expected) << tick;
+    EXPECT_GT(expected.size(), 20u);
+  }
+}
+
+TEST(TouchingTool, NoPointTouchesIfThereIsNoPose) {
+  const auto tool = scenes::box_tool({0.02, 0.005, 0.01});
+  const PointCloud cloud = scenes::random_cloud(2000, 0.02, 6);
+  std::vector<ToolPose> path(3);
+  path[1].p_W.x() = std::numeric_limits<double>::quiet_NaN();
+  const auto touching = touching_tool(*tool, path, cloud);
+  EXPECT_FALSE(touching[0].empty());
+  EXPECT_TRUE(touching[1].empty());
+  EXPECT_EQ(touching[2], touching[0]);
+  path[2].p_W = path[1].p_W;
+  EXPECT_EQ(touching_tool(*tool, path, cloud)[0], touching[0]) << "the only pose is before the middle";
+  for (ToolPose& pose : path) pose.p_W.x() = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& none : touching_tool(*tool, path, cloud)) EXPECT_TRUE(none.empty());
+}
+
+}  // namespace
+}  // namespace remote_touch::shown_frames_test

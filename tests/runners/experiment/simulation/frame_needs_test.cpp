@@ -3,10 +3,12 @@
 #include "runners/experiment/catalog/frame_stream.h"
 
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "analysis/trace/trace.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
@@ -18,37 +20,33 @@ namespace {
 using namespace cloud_kinds;
 
 struct Method {
-  const char* renderer;
-  const char* settings;  // "" or ", \"key\": ..."
-  const char* needs;     // "", or a word of the refusal
-  const char* reason;    // why it needs that, or nothing
+  std::string renderer, settings = {};  // "" or ", \"key\": ..."
+  std::string needs = {};               // "", or a word of the refusal
 };
 
-// The table is independent of the catalog.
-const Method kMethods[] = {
-    {"proxy", "", "", "a ball among points"},
-    {"tracked-sheet", "", "", "fits its sheet to points in cells"},
-    {"penalty", "", "", "the nearest point pushes"},
-    {"implicit-surface", "", "", "a sum over points"},
-    {"implicit-surface", R"(, "surface": "surfels")", "",
-     "its outside is the side from which the proxy came"},
-    {"surfels", "", "view", "normals of its own, turned towards the sensor"},
-    {"mls-surface", "", "view", "its outside is the side that the sensor sees"},
-    {"tool-inner-spheres", R"(, "tool_mesh": "ball")", "",
-     "without a normal, the slope of its distance field"},
-    {"averaged-proxy", "", "view", "averages along the rays of the sensor"},
-    {"density-proxy", "", "", "a ball among points"},
-    {"oracle-proxy", "", "", "a ball among points; without a truth it is told nothing"},
-    {"god-object", "", "organised", "triangles between neighbours in rows and columns"},
-    {"tool", R"(, "tool_mesh": "ball")", "normals", "disks in the planes of the normals"},
-    {"tool", R"(, "tool_mesh": "ball", "contact_rule": "voxels")", "normals", "(6.5) is along the normal"},
-    {"tool", R"(, "tool_mesh": "ball", "contact_rule": "continuous")", "normals", "disks"},
-    {"tracked-tool", R"(, "tool_mesh": "ball")", "normals", "disks"},
-    {"tool-penalty", R"(, "tool_mesh": "ball")", "", "without a normal, the slope of its distance field"},
-    {"tool-penalty", R"(, "tool_mesh": "ball", "force_law": "voxmap")", "", "the normals of the tool"},
-    {"tool-god-object", R"(, "tool_mesh": "ball")", "", "without a normal, the slope of its distance field"},
-    {"sphere-tree", R"(, "tool_mesh": "ball")", "forbidden regions", "it touches nothing else"},
+const std::map<FrameNeed, std::string> kWords = {{FrameNeed::view, "view"},
+                                                 {FrameNeed::organised, "organised"},
+                                                 {FrameNeed::normals, "normals"},
+                                                 {FrameNeed::regions, "forbidden regions"}};
+
+// Settings with which a renderer works otherwise, or needs something else.
+const Method kVariants[] = {
+    {"implicit-surface", R"(, "surface": "surfels")"},  // its outside is where the proxy came from
+    {"tool", R"(, "tool_mesh": "ball", "contact_rule": "voxels")", "normals"},  // (6.5) is along the normal
+    {"tool", R"(, "tool_mesh": "ball", "contact_rule": "continuous")", "normals"},
+    {"tool-penalty", R"(, "tool_mesh": "ball", "force_law": "voxmap")"},  // by the normals of the tool
 };
+
+// Every renderer with its defaults, tools as balls, and what its entry says that it needs.
+std::vector<Method> methods() {
+  std::vector<Method> all(std::begin(kVariants), std::end(kVariants));
+  for (const RendererEntry& entry : built_in_catalog().renderers()) {
+    const bool is_tool = entry.degrees_of_freedom == DegreesOfFreedom::six;
+    all.push_back({entry.name, is_tool ? R"(, "tool_mesh": "ball")" : "",
+                   entry.needs.empty() ? "" : kWords.at(entry.needs.front())});
+  }
+  return all;
+}
 
 bool meets(const Kind& kind, const std::string& need) {
   if (need == "organised") return kind.organised;
@@ -58,7 +56,7 @@ bool meets(const Kind& kind, const std::string& need) {
 }
 
 std::string renderer(const Method& method) {
-  return R"({"name": ")" + std::string(method.renderer) + "\"" + method.settings + "}";
+  return R"({"name": ")" + method.renderer + "\"" + method.settings + "}";
 }
 
 // Force along `outwards` at the end of the press. If points only push, a deeper hand has passed them by then,
@@ -80,33 +78,26 @@ void expect_force_or_refusal(const Kind& kind, const Method& method, const std::
     return;
   }
   const std::string line = refusal([&] { run(json); });
-  EXPECT_HAS(line, std::string(method.needs) == "view" ? "renderer.view_direction = " : "renderer.name = \"");
+  EXPECT_HAS(line, method.needs == "view" ? "renderer.view_direction = " : "renderer.name = \"");
   EXPECT_HAS(line, method.needs);
 }
 
 class FrameNeeds : public CloudKinds {};
 
-TEST_F(FrameNeeds, EveryRendererIsInTheTable) {
-  for (const RendererEntry& entry : built_in_catalog().renderers())
-    EXPECT_TRUE(std::any_of(std::begin(kMethods), std::end(kMethods), [&](const Method& method) {
-      return entry.name == method.renderer;
-    })) << entry.name;
-}
-
 TEST_F(FrameNeeds, EveryRendererFeelsAPlateOrIsRefused) {
   for (const Kind& kind : plates())
-    for (const Method& method : kMethods) expect_force_or_refusal(kind, method);
+    for (const Method& method : methods()) expect_force_or_refusal(kind, method);
 }
 
 TEST_F(FrameNeeds, EveryRendererFeelsARecordedCloudOrIsRefused) {
   for (const Kind& kind : recordings())
-    for (const Method& method : kMethods) expect_force_or_refusal(kind, method);
+    for (const Method& method : methods()) expect_force_or_refusal(kind, method);
 }
 
 TEST_F(FrameNeeds, ADepthPipelineGivesNormalsToAnImageOnly) {
   Kind image = pcd(true, false);
   image.normals = true;
-  for (const Method& method : kMethods) expect_force_or_refusal(image, method, R"(, "depth_pipeline": {})");
+  for (const Method& method : methods()) expect_force_or_refusal(image, method, R"(, "depth_pipeline": {})");
   EXPECT_HAS(
       refusal([&] { run(press_on(pcd(false, false), R"({"name": "tool"})", R"(, "depth_pipeline": {})")); }),
       "needs normals");
@@ -114,7 +105,7 @@ TEST_F(FrameNeeds, ADepthPipelineGivesNormalsToAnImageOnly) {
 
 TEST_F(FrameNeeds, ATreeOfSpheresFeelsTheRegionsOfEveryCloud) {
   const auto expect_felt = [](const Kind& kind) {
-    const Method tree{"sphere-tree", R"(, "tool_mesh": "ball")", "", "there are regions"};
+    const Method tree{"sphere-tree", R"(, "tool_mesh": "ball")"};
     expect_force_or_refusal(kind, tree, R"(, "fixtures": [{"name": "everywhere", "radius_m": 0.01}])");
   };
   for (const Kind& kind : plates()) expect_felt(kind);
@@ -153,7 +144,7 @@ TEST_F(FrameNeeds, RulesWithoutARadiusAreNoRegions) {
 TEST_F(FrameNeeds, AGivenViewIsEnough) {
   const Kind cloud = pcd(false, false);
   for (const char* name : {"surfels", "averaged-proxy"}) {
-    const Method told{name, R"(, "view_direction": [0, 0.1, 1])", "", "the view is set"};
+    const Method told{name, R"(, "view_direction": [0, 0.1, 1])"};  // the view is set
     expect_force_or_refusal(cloud, told);
   }
 }
@@ -163,7 +154,7 @@ TEST_F(FrameNeeds, FaultsAlongAWrongViewAreRefused) {
   const Kind cloud = pcd(false, false);
   EXPECT_HAS(refusal([&] { run(press_on(cloud, R"({"name": "proxy"})", faults + "}")); }),
              "faults.view_direction = [0, -1, 0]: the frames of this recording are not images");
-  const Method proxy{"proxy", "", "", ""};
+  const Method proxy{"proxy"};
   expect_force_or_refusal(cloud, proxy, faults + R"(, "view_direction": [0, 0, 1]})");
   expect_force_or_refusal(cloud, proxy, R"(, "faults": {"dropout_probability": 0.1})");
   expect_force_or_refusal(pcd(true, false), proxy, faults + "}");
@@ -207,6 +198,79 @@ TEST_F(FrameNeeds, AFrameWithoutPointsLacksNothing) {
   lost.append(Vec3::Constant(std::nan("")), Vec3::Constant(std::nan("")));
   frame.points = make_search(lost);
   RendererNeeds("tool", {FrameNeed::normals}).check(frame);
+}
+
+// Every fixture rule on every kind of cloud. Either the run is refused in one line that states what is
+// expected, or the rule has its effect. The same holds for guidance.
+
+using namespace cloud_kinds;
+
+class FixtureNeeds : public CloudKinds {};
+
+struct Rule {
+  const char* json;   // the closing brace is missing
+  const char* needs;  // "", "colours" or "image"
+};
+
+// A rule that works keeps the proxy 2 cm away.
+void expect_region_or_refusal(const Kind& kind, const Rule& rule) {
+  SCOPED_TRACE(kind.scenario + " " + rule.json);
+  const std::string need = rule.needs;
+  const auto json = [&](const char* more) {
+    return press_on(kind, R"({"name": "proxy"})",
+                    R"(, "fixtures": [)" + std::string(rule.json) + more + "}]");
+  };
+  if (need.empty() || (need == "colours" && kind.colours) || (need == "image" && kind.image)) {
+    const Trace trace = run(json(""));
+    EXPECT_GT(trace.proxy_position_m[trace.length() - 1].dot(kind.outwards) - kind.outwards.z() * 0.5, 0.015);
+    return;
+  }
+  // The rule is refused even if it would begin after the end of the run.
+  for (const char* more : {"", R"(, "schedule": [[9, 0], [10, 1]])"}) {
+    const std::string line = refusal([&] { run(json(more)); });
+    EXPECT_HAS(line, "fixtures.0: ");
+    EXPECT_HAS(line, need == "colours" ? "the frame has no colours" : "the frame is not an image");
+  }
+}
+
+TEST_F(FixtureNeeds, EveryFixtureRuleWorksOrIsRefused) {
+  const std::vector<std::uint8_t> white(40 * 40, 255);
+  const std::string file = folder_.write_png("mask.png", 40, 40, PNG_FORMAT_GRAY, white.data()).string(),
+                    mask = R"({"name": "image-mask", "path": ")" + file + "\"";
+  const Rule rules[] = {{R"({"name": "everywhere")", ""},
+                        {R"({"name": "half-space", "point_m": [-1, 0, 0])", ""},
+                        {R"({"name": "near-point", "inner_radius_m": 1)", ""},
+                        {R"({"name": "near-point", "row": 20, "column": 20)", "image"},
+                        {R"({"name": "hue-range")", "colours"},
+                        {mask.c_str(), "image"}};
+  for (const FixtureEntry& entry : built_in_catalog().fixtures())
+    EXPECT_TRUE(std::any_of(std::begin(rules), std::end(rules), [&](const Rule& rule) {
+      return contains(rule.json, "\"" + entry.name + "\"");
+    })) << entry.name;
+  for (const Rule& rule : rules) {
+    for (const Kind& kind : plates()) expect_region_or_refusal(kind, rule);
+    for (const Kind& kind : recordings()) expect_region_or_refusal(kind, rule);
+  }
+}
+
+// --- guidance ---
+
+// The plane of a target faces the sensor. If there is no image, the sensor has to be at the origin, as in a
+// recording whose camera was not moved.
+TEST_F(FixtureNeeds, GuidanceAcrossAPlaneNeedsToKnowWhereTheSensorIs) {
+  const std::string across = R"(, "fixtures": [{"name": "everywhere", "role": "guidance"}],
+      "guidance": {"orientation": "plane", "approach_axis": [0, 0, 1], "standoff_m": 0.05})";
+  const auto goal_m = [&](const Kind& kind) {
+    const Trace trace = run(press_on(kind, R"({"name": "proxy"})", across));
+    return trace.guidance_goal_m[trace.length() - 1];
+  };
+  EXPECT_NEAR(goal_m(pcd(true, false)).z(), 0.45, 1e-6);
+  EXPECT_NEAR(goal_m(pcd(false, false)).z(), 0.45, 1e-6);
+  Kind moved = pcd(false, false);
+  moved.scenario.insert(moved.scenario.size() - 1, R"(, "camera_position_m": [0, 0, 0.1])");
+  for (const Kind& kind : {moved, plates()[1]})
+    EXPECT_HAS(refusal([&] { goal_m(kind); }),
+               "guidance.orientation = \"plane\": needs to know where the sensor is");
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 #include "runners/experiment/simulation/simulation.h"
 
 #include <gtest/gtest.h>
-
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "analysis/trace/force_measures.h"
 #include "analysis/trace/trace.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/test_files.h"
 
@@ -242,3 +245,163 @@ TEST(UnitInWords, NamesEveryUnitOfTheBuiltInMeasures) {
 
 }  // namespace
 }  // namespace remote_touch::run_report_test
+
+// The number of ticks of a run.
+namespace remote_touch::run_length_test {
+namespace {
+
+Trace run(const std::string& duration_s) {
+  return simulate(Experiment::load("fig4.11", {"duration_s=" + duration_s}));
+}
+
+// Sums of times carry rounding errors: 0.1 + 0.1 + 0.1 is above 0.3. An excess of a millionth of a tick
+// counts as rounding.
+TEST(RunLength, RoundingOfTheDurationAddsNoTick) {
+  static_assert(0.1 + 0.1 + 0.1 > 0.3);
+  for (const char* duration_s : {"0.3", "0.30000000000000004", "0.2999999999999999", "0.3000000005"}) {
+    const Trace trace = run(duration_s);
+    EXPECT_EQ(trace.length(), 300u) << duration_s;
+    EXPECT_EQ(trace.time_s.back(), 0.299) << duration_s;
+  }
+}
+
+TEST(RunLength, APartOfATickCountsAsATick) {
+  EXPECT_EQ(run("0.30000001").length(), 301u);  // a hundred-thousandth of a tick more
+  EXPECT_EQ(run("0.3009").length(), 301u);
+  EXPECT_EQ(run("0.00001").length(), 1u);
+  EXPECT_HAS(refusal([] { run("0.0000000005"); }), "shorter than a tick");
+}
+
+}  // namespace
+}  // namespace remote_touch::run_length_test
+
+// Replayed contacts through the whole loop: renderers whose error is known.
+namespace remote_touch::contact_replay_loop_test {
+namespace {
+
+Trace replayed(const std::string& renderer, const std::vector<std::string>& settings = {}) {
+  const std::string text = R"({"scenario": {"name": "moving-shape"}, "trajectory": {"name": "contact-replay"},
+                               "renderer": {"name": ")" +
+                           renderer + R"("}})";
+  SimulationOptions options;
+  options.find_true_contact = true;
+  return simulate(Experiment::from_json(text, "test", settings), options);
+}
+
+// The mesh of a flat grid is the plane itself, and a god-object stays surface_offset_m = 1e-5 m above it.
+TEST(ContactReplayLoop, AGodObjectOnAPlaneHasNoError) {
+  const Trace trace = replayed("god-object", {"trajectory.onset_distance_m=1e-5"});
+  ASSERT_TRUE(trace.has_replay());
+  EXPECT_LT(rms_force_error_N(trace), 0.001);
+  EXPECT_LT(force_direction_error_rad(trace), 1e-6);
+  EXPECT_EQ(false_contact_fraction(trace), 0);
+  EXPECT_EQ(lost_contact_fraction(trace), 0);
+}
+
+TEST(ContactReplayLoop, AStiffnessThatDiffersIsARelativeError) {
+  for (const double stiffness : {300.0, 540.0})
+    EXPECT_NEAR(relative_force_error(
+                    replayed("god-object", {"trajectory.onset_distance_m=1e-5",
+                                            "renderer.stiffness_N_per_m=" + std::to_string(stiffness)})),
+                1 - stiffness / 600, 0.001)
+        << stiffness;
+}
+
+// The ball sinks between the points of the grid by up to r_c - sqrt(r_c^2 - s^2 / 2) = 0.11 mm, 0.07 N.
+TEST(ContactReplayLoop, AProxyOnAGridLacksTheForceOfItsSinking) {
+  const Trace trace = replayed("proxy");
+  EXPECT_LT(rms_force_error_N(trace), 600 * 1.14e-4);
+  EXPECT_GT(rms_force_error_N(trace), 0.01);
+  EXPECT_LT(lost_contact_fraction(trace), 0.01);
+  EXPECT_EQ(false_contact_fraction(trace), 0);
+}
+
+TEST(ContactReplayLoop, FrictionIsFoundAsItsCoefficient) {
+  for (const double friction : {0.0, 0.1, 0.3}) {
+    const Trace trace = replayed("surfels", {"renderer.friction=" + std::to_string(friction)});
+    EXPECT_NEAR(apparent_friction(trace), friction, 0.01) << friction;
+    EXPECT_LT(force_direction_error_rad(trace), std::atan(friction) + 0.001) << friction;
+  }
+}
+
+TEST(ContactReplayLoop, OtherRunsHaveNoExpectedForce) {
+  EXPECT_FALSE(replayed("proxy", {"operator={}", "duration_s=0.1"}).has_replay());
+  EXPECT_TRUE(replayed("proxy", {"device={}", "duration_s=0.1"}).has_replay());
+  EXPECT_FALSE(replayed("proxy", {R"(trajectory={"name": "waypoints"})", "duration_s=0.1"}).has_replay());
+}
+
+TEST(ContactReplayLoop, RefusesASceneWithoutASurface) {
+  EXPECT_HAS(refusal([] { replayed("proxy", {R"(scenario={"name": "points"})"}); }),
+             "trajectory.name = contact-replay: no true surface is known");
+}
+
+}  // namespace
+}  // namespace remote_touch::contact_replay_loop_test
+
+// Runs with a simulated device that rounds, delays, rubs and damps.
+namespace remote_touch::device_run_test {
+namespace {
+
+Trace run(std::vector<std::string> overrides) {
+  overrides.push_back("duration_s=1.2");
+  return simulate(Experiment::load("fig4.11", overrides));
+}
+
+constexpr const char* kOperator = R"(operator={"stiffness_N_per_m": 300, "damping_Ns_per_m": 15})";
+
+TEST(DeviceRun, RecordsTheTruePoseOnlyIfTheDeviceRoundsIt) {
+  EXPECT_FALSE(run({"device={}"}).has_rounded_hand());
+  const Trace trace = run({R"(device={"position_resolution_m": 0.001})"});
+  ASSERT_TRUE(trace.has_rounded_hand());
+  double largest = 0;
+  for (std::size_t i = 0; i < trace.length(); ++i) {
+    const Vec3 steps = trace.hip_position_m[i] / 0.001;
+    EXPECT_NEAR((steps - Vec3(steps.array().round())).norm(), 0, 1e-9) << i;
+    largest = std::max(largest, (trace.hip_position_m[i] - trace.hand_position_m[i]).cwiseAbs().maxCoeff());
+    EXPECT_EQ(trace.hand_position_m[i], trace.intended_position_m[i]) << i;
+  }
+  EXPECT_GT(largest, 1e-4);
+  EXPECT_LE(largest, 0.0005 + 1e-12);
+}
+
+TEST(DeviceRun, ExertsTheForceOfEarlierTicks) {
+  const Trace trace = run({R"(device={"delay_ticks": 5})"});
+  std::size_t felt = 0;
+  for (std::size_t i = 5; i < trace.length(); ++i) {
+    EXPECT_EQ(trace.device_force_N[i], trace.force_N[i - 5]) << i;
+    felt += trace.device_force_N[i].norm() > 0.1;
+  }
+  EXPECT_GT(felt, 50u);
+}
+
+// A spring that pulls less than friction does not move the hand from its first position.
+TEST(DeviceRun, FrictionHoldsTheHand) {
+  // The path jumps, and a damper would pull with the speed of the jump.
+  const Trace held = run({kOperator, "operator.damping_Ns_per_m=0", R"(device={"friction_N": 100})"});
+  EXPECT_EQ(held.hip_position_m.back(), held.hip_position_m.front());
+  EXPECT_GT((held.intended_position_m.back() - held.hip_position_m.back()).norm(), 0.01);
+  const Trace rubbed = run({kOperator, R"(device={"friction_N": 0.5})"});
+  const Trace smooth = run({kOperator, "device={}"});
+  EXPECT_NE(rubbed.hip_position_m.back(), smooth.hip_position_m.back());
+  EXPECT_NEAR((rubbed.hip_position_m.back() - smooth.hip_position_m.back()).norm(), 0,
+              2 * std::sqrt(3) * 0.5 / 300);
+}
+
+TEST(DeviceRun, TheDamperChangesTheForceInContactOnly) {
+  const Trace trace = run({kOperator, R"(device={"contact_damping_Ns_per_m": 3, "velocity_ticks": 4})"});
+  std::size_t damped = 0;
+  for (std::size_t i = 4; i < trace.length(); ++i) {
+    const Vec3 added = trace.device_force_N[i] - trace.force_N[i];
+    if (trace.force_N[i].isZero(0)) {
+      EXPECT_TRUE(added.isZero(0)) << i;
+      continue;
+    }
+    const Vec3 velocity = (trace.hip_position_m[i] - trace.hip_position_m[i - 4]) / 0.004;
+    EXPECT_NEAR((added + 3 * velocity).norm(), 0, 1e-9) << i;
+    damped += added.norm() > 1e-6;
+  }
+  EXPECT_GT(damped, 50u);
+}
+
+}  // namespace
+}  // namespace remote_touch::device_run_test

@@ -2,12 +2,17 @@
 #include "runners/live/loop/live_log.h"
 
 #include <gtest/gtest.h>
-
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
+#include "analysis/storage/hdf5_reader.h"
+#include "tests/doubles/simulated_clock.h"
+#include "tests/runners/live/loop/simulated_run.h"
+#include "tests/support/note_kinds.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::live_log_test {
@@ -168,3 +173,189 @@ TEST(LiveLog, AFrameThatIsNotNewerThanTheOneBeforeIsReversed) {
 
 }  // namespace
 }  // namespace remote_touch::live_log_test
+
+namespace remote_touch::live_report_test {
+namespace {
+
+// The recordings that a live run reads.
+
+using Paths = std::vector<std::string>;
+
+// The scenario, the trajectory and the tool each read a file. None is opened here.
+Experiment experiment() {
+  return Experiment::from_json(
+      R"({"scenario": {"name": "recording", "path": "scene"}, "depth_pipeline": {},
+          "renderer": {"name": "tool", "tool_mesh": "ball.obj"},
+          "trajectory": {"name": "live-session", "path": "hand.h5"}})",
+      "test");
+}
+
+Paths paths(const std::string& device, const std::string& depth, bool has_view = false) {
+  Paths all;
+  for (const InputPart& part : live_inputs(experiment(), device, depth, has_view)) all.push_back(part.path);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+TEST(LiveInputs, NameTheSourceOfTheDepth) {
+  for (const std::string scheme : {"dir:", "tum:", "pcd:", "replay:"})
+    EXPECT_EQ(paths("fd:0", scheme + "seen"), (Paths{"ball.obj", "seen"})) << scheme;
+  EXPECT_EQ(paths("fd:0", "sim:"), (Paths{"ball.obj", "scene"}));
+  EXPECT_EQ(paths("fd:0", "k4a:0"), Paths{"ball.obj"});
+  EXPECT_EQ(paths("fd:0", "oni:any"), Paths{"ball.obj"});
+  EXPECT_EQ(paths("fd:0", "oni:seen.oni"), (Paths{"ball.obj", "seen.oni"}));
+}
+
+TEST(LiveInputs, NameTheSceneInWhichAHandIsPlanned) {
+  for (const char* device : {"sim:", "browser:"})
+    EXPECT_EQ(paths(device, "dir:seen"), (Paths{"ball.obj", "hand.h5", "scene", "seen"})) << device;
+  EXPECT_EQ(paths("fd:0", "dir:seen", true), (Paths{"ball.obj", "hand.h5", "scene", "seen"}));
+  EXPECT_EQ(paths("replay:other.h5", "dir:seen"), (Paths{"ball.obj", "other.h5", "scene", "seen"}));
+}
+
+TEST(LiveInputs, RefuseUnknownSchemes) {
+  EXPECT_HAS(refusal([] { live_inputs(experiment(), "moon:", "sim:", false); }), "--device moon:");
+  EXPECT_HAS(refusal([] { live_inputs(experiment(), "sim:", "moon:", false); }), "--depth moon:");
+}
+
+// A live session on a simulated clock: what it reports at its end and stores in its files.
+
+// A hand that presses 1 cm into a table from 0.2 s on; 40 x 30 pixels at 30 Hz.
+std::string press(const std::string& trajectory) {
+  return R"({"scenario": {"name": "camera-scene", "width": 40, "height": 30}, "renderer": {"name": "proxy"},
+             "trajectory": )" +
+         trajectory + "}";
+}
+const char* const kPress = R"({"name": "press", "press_at_s": 0.2, "depth_m": 0.01})";
+const char* const kAbove = R"({"name": "waypoints", "waypoints": [[0, 0.3, 0, 0], [0, 0.2, 0, 0.5]]})";
+
+struct Session {
+  LiveResult result;
+  TextAttributes stored;  // attributes of the recording
+};
+
+Session run(const std::string& experiment, double duration_s) {
+  const TestFolder folder("live_notes");
+  SimulatedClock clock;
+  SimulatedRun run(clock, Experiment::from_json(experiment, "test"));
+  run.options.duration_s = duration_s;
+  run.record(folder / "session.h5");
+  Session session{run.run(), {}};
+  session.stored = Hdf5Reader(folder / "session.h5").attributes();
+  return session;
+}
+
+TEST(LiveNotes, AnOrdinarySessionReportsItsFramesAndHasNoNotes) {
+  const Session session = run(press(kPress), 0.5);
+  ASSERT_EQ(session.result.report.inputs.size(), 1u);
+  const std::string& line = session.result.report.inputs[0];
+  const int frames = session.result.counts.camera.received;
+  ASSERT_GT(frames, 10);
+  EXPECT_HAS(line, std::to_string(frames) + " frame(s) from sim:, 40 x 30 pixels at 30 Hz; " +
+                       std::to_string(frames) + " processed: ");
+  EXPECT_HAS(line, " of " + std::to_string(1200 * frames) + " points measured, depth ");
+  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{});
+  EXPECT_EQ(attribute(session.stored, "frames_read"), line);
+  EXPECT_EQ(attribute(session.stored, "notes"), "");
+}
+
+TEST(LiveNotes, ReportASessionWithoutContact) {
+  const Session session = run(press(kAbove), 0.5);
+  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{"no contact"});
+  EXPECT_EQ(attribute(session.stored, "notes"), "no point was touched, and no force was felt");
+}
+
+TEST(LiveNotes, ASessionThatEndsBeforeThePressSaysSo) {
+  const Session session = run(press(kPress), 0.1);
+  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{"phase not reached"});
+  EXPECT_HAS(attribute(session.stored, "notes"), "before the press begins at 0.2 s");
+}
+
+// The pixels of this focal length see points of the table 11 mm apart, so that a ball of radius 5 mm falls
+// between them.
+TEST(LiveNotes, ASessionOnPointsFarApartSaysSo) {
+  std::string sparse = press(kPress);
+  sparse.insert(sparse.find("\"width\""), "\"focal_px\": 60, ");
+  const Session session = run(sparse, 0.5);
+  ASSERT_FALSE(session.result.report.notes.empty());
+  EXPECT_EQ(kinds_of(session.result.report.notes).back(), "wide spacing");
+  EXPECT_HAS(attribute(session.stored, "notes"), "a proxy of contact radius 5 mm can fall through it");
+}
+
+// The hand at a device of another program moves freely, so the experiment's hand and scene are not used.
+TEST(LiveNotes, PhasesBelongToSimulatedPartsOnly) {
+  const Experiment experiment = Experiment::from_json(press(kPress), "test");
+  EXPECT_EQ(simulated_phases(experiment, "sim:", "pcd:x", scenes::kernels()).size(), 1u);
+  EXPECT_TRUE(simulated_phases(experiment, "browser:", "sim:", scenes::kernels()).empty())
+      << "a scene at rest";
+  EXPECT_TRUE(simulated_phases(experiment, "fd:", "k4a:", scenes::kernels()).empty());
+  const std::string more =
+      R"(, "changes": [{"time_s": 1, "parameter": "renderer.stiffness_N_per_m", "value": 9}],
+      "operator": {"presses": [[2, 0, 0.1]]}})";
+  const std::string text = press(kPress);
+  const Experiment both = Experiment::from_json(text.substr(0, text.size() - 1) + more, "test");
+  EXPECT_EQ(simulated_phases(both, "fd:", "k4a:", scenes::kernels()).size(), 1u) << "the change";
+  EXPECT_EQ(simulated_phases(both, "sim:", "k4a:", scenes::kernels()).size(), 3u);
+}
+
+RunReport report_of_counts(const CameraCounts& camera, std::int64_t contact_ticks = 1, int taken = 1) {
+  LiveLog log;
+  log.contact_ticks = contact_ticks;
+  for (int i = 0; i < taken; ++i) log.latency_s.push_back(0.01);
+  return report_of({"k4a:", SensorView{}, SensedPoints{}, camera, log, 1000, {}});
+}
+
+TEST(LiveNotes, ReportFramesThatWereNotUsed) {
+  CameraCounts camera;
+  camera.received = 95, camera.skipped = 5, camera.overtaken = 3, camera.incomplete = 2;
+  EXPECT_EQ(kinds_of(report_of_counts(camera).notes), Kinds{}) << "10 of 100: single frames";
+  camera.received = 94, camera.skipped = 6;
+  const RunReport report = report_of_counts(camera);
+  ASSERT_EQ(kinds_of(report.notes), Kinds{"frames unused"});
+  EXPECT_EQ(report.notes[0].text,
+            "11 of 100 frames were not used: 6 not sent, or replaced before they were processed, "
+            "2 without all pixels or colours, 3 replaced before the haptic loop used them");
+}
+
+TEST(LiveNotes, ASessionWithoutFramesSaysSo) {
+  EXPECT_EQ(kinds_of(report_of_counts({}, 0, 0).notes), Kinds{"no frame"});
+}
+
+}  // namespace
+}  // namespace remote_touch::live_report_test
+
+// Ticks that count as late, on a simulated clock. `remote-touch jitter` reports how late this machine is.
+namespace remote_touch::jitter_test {
+namespace {
+
+// A rate of 3 kHz has a period of 333333 ns: after 300 ticks the loop is 0.1 us before a grid of 1 / 3000 s.
+TEST(Jitter, NoTickIsLateIfAllComeInTime) {
+  for (const auto& [duration_s, rate_hz, ticks] : {std::tuple{0.5, 1000, 500u}, {0.1, 3000, 300u}}) {
+    SCOPED_TRACE(rate_hz);
+    SimulatedClock clock;
+    const Jitter jitter = measure_jitter(duration_s, rate_hz, nullptr, clock);
+    ASSERT_EQ(jitter.late_s.size(), ticks);
+    for (const double late_s : jitter.late_s) EXPECT_NEAR(late_s, 0, 1e-12);
+    EXPECT_EQ(jitter.missed, 0);
+  }
+}
+
+// Something else runs from 5.2 to 7.7 ms. The tick of 6 ms never comes, and that of 7 ms comes 0.7 ms late.
+TEST(Jitter, ALateTickIsLateAndOneThatNeverCameIsMissed) {
+  SimulatedClock clock;
+  clock.at(0.0052, [&] { clock.sleep_s(0.0025); });
+  const Jitter jitter = measure_jitter(0.01, 1000, nullptr, clock);
+  ASSERT_EQ(jitter.late_s.size(), 9u);
+  EXPECT_EQ(jitter.missed, 1);
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(jitter.late_s[i], i == 6 ? 0.7e-3 : 0, 1e-12) << i;
+}
+
+TEST(Jitter, AStopEndsIt) {
+  SimulatedClock clock;
+  std::atomic<bool> stop = false;
+  clock.at(0.0035, [&] { stop = true; });
+  EXPECT_EQ(measure_jitter(10, 1000, &stop, clock).late_s.size(), 4u);
+}
+
+}  // namespace
+}  // namespace remote_touch::jitter_test

@@ -2,10 +2,19 @@
 #include "runners/live/sensors/sensor_table.h"
 
 #include <gtest/gtest.h>
-
+#include <cmath>
+#include <functional>
+#include <string>
 #include <vector>
 
+#include "core/parameters/parameter.h"
+#include "core/points/point_cloud.h"
+#include "core/points/vector.h"
+#include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/sessions/sensor_frame.h"
+#include "runners/live/devices/clock.h"
+#include "runners/live/sensors/depth_source.h"
 #include "tests/doubles/simulated_clock.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
@@ -97,6 +106,312 @@ TEST(SensorInputs, AreTheRecordingsThatSensorsRead) {
   }
   for (const std::string uri : {"sim:", "k4a:0", "freenect:0", "realsense:", "oni:any"})
     EXPECT_TRUE(sensor_inputs(uri).empty()) << uri;
+}
+
+// Frames of scenarios as one sensor sends them: decoding gives the same points, or a refusal names the frame.
+
+constexpr CameraIntrinsics kCamera{16, 12, 20, 21, 7.3, 5.6};
+
+RigidTransform pose() {
+  return RigidTransform(Eigen::Translation3d(0.1, 0.4, -0.2) * rotation(Vec3(0.3, -0.2, 0.5)));
+}
+
+// A wall across the axis of the camera; pixel 5 is a hole.
+PointCloud wall(double depth_m, const CameraIntrinsics& camera = kCamera,
+                const RigidTransform& X_WC = pose()) {
+  DepthImage depth{camera.width, camera.height, {}};
+  depth.z_m.assign(camera.pixels(), depth_m);
+  depth.z_m[5] = std::nan("");
+  return cloud_from_depth(depth, camera, X_WC);
+}
+
+PointCloud grid(int columns, bool has_normals = false) {
+  PointCloud cloud;
+  for (int i = 0; i < 12; ++i)
+    has_normals ? cloud.append(Vec3(0.1 * i, 0, 0.3), Vec3::UnitZ()) : cloud.append(Vec3(0.1 * i, 0, 0.3));
+  cloud.grid_columns = columns;
+  return cloud;
+}
+
+PointCloud decoded(const FrameEncoder& encoder, const PointCloud& cloud) {
+  SensorFrame frame;
+  encoder.encode(cloud, 3, frame);
+  EXPECT_TRUE(is_complete(frame, encoder.view()));
+  return cloud_of(frame, encoder.view(), encoder.view().X_WC);
+}
+
+double largest_error_m(const PointCloud& a, const PointCloud& b) {
+  double error_m = 0;
+  EXPECT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    EXPECT_EQ(a.is_measured(i), b.is_measured(i)) << i;
+    if (a.is_measured(i)) error_m = std::max(error_m, (a.point(i) - b.point(i)).norm());
+  }
+  return error_m;
+}
+
+std::string problem(const PointCloud& first, const PointCloud& later) {
+  const FrameEncoder encoder({.name = "./scene"}, first);
+  SensorFrame frame;
+  return refusal([&] { encoder.encode(later, 3, frame); });
+}
+
+// Half a unit of depth, along the longest ray of this camera: |(16 / 20, 12 / 21, 1)| < 1.5.
+double tolerance_m(const FrameEncoder& encoder) {
+  return 0.75 * encoder.view().metres_per_unit + 1e-12;
+}
+
+TEST(FrameEncoder, SendsTheDepthsOfAnImage) {
+  const FrameEncoder encoder({}, wall(0.5));
+  EXPECT_EQ(encoder.view().metres_per_unit, 1e-4);
+  EXPECT_FALSE(encoder.view().cloud);
+  for (const double depth_m : {0.00003, 0.41237, 6.5535}) {
+    const double least_m = depth_m < 1e-4 ? 1.5e-4 : 0;  // rounded up to one unit, so that it stays measured
+    EXPECT_LE(largest_error_m(decoded(encoder, wall(depth_m)), wall(depth_m)),
+              tolerance_m(encoder) + least_m);
+  }
+}
+
+// 65535 units of 0.1, 0.2, 0.5, 1 and 2 mm are 6.55, 13.1, 32.8, 65.5 and 131 m.
+TEST(FrameEncoder, ChoosesTheLeastUnitThatReachesTheMaximumDepth) {
+  for (const auto& [max_depth_m, first_m, unit_m] : {std::tuple{3.0, 0.5, 1e-4},
+                                                     {0.0, 6.5, 1e-4},
+                                                     {6.6, 0.5, 2e-4},
+                                                     {3.0, 7.0, 2e-4},
+                                                     {20.0, 0.5, 5e-4},
+                                                     {40.0, 0.5, 1e-3},
+                                                     {100.0, 0.5, 2e-3},
+                                                     {0.0, 130.0, 2e-3}}) {
+    const FrameEncoder encoder({.max_depth_m = max_depth_m}, wall(first_m));
+    EXPECT_EQ(encoder.view().metres_per_unit, unit_m) << max_depth_m << ", " << first_m;
+    const PointCloud farthest = wall(std::max(max_depth_m, first_m));
+    EXPECT_LE(largest_error_m(decoded(encoder, farthest), farthest), tolerance_m(encoder));
+  }
+  EXPECT_EQ(FrameEncoder({.unit_m = 1e-3}, wall(0.5)).view().metres_per_unit, 1e-3);
+}
+
+TEST(FrameEncoder, RefusesDepthsBeyondItsUnits) {
+  EXPECT_EQ(
+      problem(wall(0.5), wall(7)),
+      "./scene: frame 3 has a point at a depth of 7 m: expected at most 6.5535 m, 65535 units of 0.1 mm");
+  EXPECT_HAS(problem(wall(0.5), wall(-0.5)), "./scene: frame 3 has a point behind its camera");
+}
+
+TEST(FrameEncoder, RefusesAnotherPoseOfTheCamera) {
+  const RigidTransform shifted = pose() * Eigen::Translation3d(0, 0, 0.2);
+  EXPECT_HAS(problem(wall(0.4), wall(0.4, kCamera, shifted)),
+             "./scene: frame 3 was captured from another pose (0.2 m and 0 deg from the first frame)");
+  const RigidTransform turned(pose() * rotation(Vec3(0, kRadiansPerDegree, 0)));
+  EXPECT_HAS(problem(wall(0.4), wall(0.4, kCamera, turned)), "(0 m and 1 deg from the first frame)");
+}
+
+TEST(FrameEncoder, RefusesAnotherCamera) {
+  CameraIntrinsics wider = kCamera;
+  wider.fx = 10, wider.fy = 10.5;
+  EXPECT_HAS(problem(wall(0.4), wall(0.4, wider)),
+             "./scene: frame 3 has another camera than the first frame");
+  // The fit of a pinhole to the points of a frame may differ by less than a pixel.
+  CameraIntrinsics fitted = kCamera;
+  fitted.fx *= 1.01, fitted.cx += 0.01;
+  EXPECT_EQ(problem(wall(0.4), wall(0.4, fitted)), "no InputError");
+  EXPECT_HAS(problem(wall(0.4), wall(0.4, {16, 6, 20, 21, 7.3, 5.6})),
+             "frame 3 has 16 x 6 pixels: expected 16 x 12 pixels");
+}
+
+TEST(FrameEncoder, RefusesAFrameOfPointsInNoOrderAfterAnImage) {
+  PointCloud points = wall(0.4);
+  points.image.reset();
+  std::reverse(points.x.begin(), points.x.end());
+  EXPECT_HAS(problem(wall(0.4), points), "frame 3 has another camera");
+  EXPECT_HAS(problem(wall(0.4), grid(0)), "frame 3 has 12 points: expected 16 x 12 pixels");
+}
+
+TEST(FrameEncoder, RefusesAnotherLayoutOfPoints) {
+  EXPECT_EQ(problem(grid(4), grid(4)), "no InputError");
+  EXPECT_HAS(problem(grid(4), grid(0)),
+             "./scene: frame 3 has no rows and columns: expected rows of 4 points, as the first frame has");
+  EXPECT_HAS(problem(grid(0), grid(4)), "frame 3 has rows of 4 points: expected no rows and columns");
+  EXPECT_HAS(problem(grid(4), grid(3)), "frame 3 has rows of 3 points: expected rows of 4 points");
+  EXPECT_HAS(problem(grid(4), wall(0.4)), "frame 3 has rows of 16 points");
+  EXPECT_HAS(problem(grid(0), grid(0, true)), "frame 3 has normals, and the first frame has no normals");
+  EXPECT_HAS(problem(grid(0, true), grid(0)), "frame 3 has no normals, and the first frame has normals");
+}
+
+// Recordings have depth images to which no colour image belongs.
+TEST(FrameEncoder, SendsColoursIfTheFirstFrameHasSome) {
+  for (const PointCloud& plain : {wall(0.4), grid(0)}) {
+    PointCloud coloured = plain;
+    coloured.colour.assign(plain.size(), 0x123456);
+    EXPECT_EQ(decoded(FrameEncoder({}, coloured), coloured).colour, coloured.colour);
+    EXPECT_EQ(decoded(FrameEncoder({}, coloured), plain).colour,
+              std::vector<std::uint32_t>(plain.size(), kNoColour));
+    EXPECT_TRUE(decoded(FrameEncoder({}, plain), coloured).colour.empty());
+  }
+}
+
+// A rule by hue finds nothing in a frame without colours, which would leave a region out.
+TEST(FrameEncoder, RefusesAFrameThatTheRulesCannotUse) {
+  PointCloud coloured = wall(0.4);
+  coloured.colour.assign(coloured.size(), 0x123456);
+  const auto require = [](const PointCloud& cloud) {
+    if (cloud.colour.empty()) throw InputError("fixtures.0", "needs colours");
+  };
+  const FrameEncoder encoder({.require = require}, coloured);
+  SensorFrame frame;
+  encoder.encode(coloured, 0, frame);
+  EXPECT_HAS(refusal([&] { encoder.encode(wall(0.4), 1, frame); }), "fixtures.0: needs colours");
+}
+
+TEST(FrameEncoder, RefusesWhatNoSensorSends) {
+  PointCloud regions = grid(0), stiff = grid(0);
+  regions.fixture_radius_m.assign(12, 0.01), stiff.stiffness_N_per_m.assign(12, 100);
+  EXPECT_HAS(problem(grid(0), regions), "frame 3 has forbidden regions or stiffnesses of its own");
+  EXPECT_HAS(problem(grid(0), stiff), "frame 3 has forbidden regions or stiffnesses of its own");
+}
+
+// No point was measured, so no point can be at a wrong position.
+TEST(FrameEncoder, AFrameWithoutMeasuredPointsFitsEveryView) {
+  PointCloud holes = grid(4);
+  holes.x.assign(12, std::nan(""));
+  for (const PointCloud& nothing : {PointCloud{}, holes}) {
+    const PointCloud image = decoded(FrameEncoder({}, wall(0.4)), nothing);
+    EXPECT_EQ(image.size(), 192u);
+    for (std::size_t i = 0; i < image.size(); ++i) EXPECT_FALSE(image.is_measured(i));
+    EXPECT_EQ(decoded(FrameEncoder({}, grid(0)), nothing).size(), 0u);
+  }
+}
+
+// A lens bends the rays by up to 3 px. The points of a pinhole image would be at other positions.
+TEST(FrameEncoder, SendsAnImageThatIsNoPinholesAsPoints) {
+  PointCloud bent = wall(0.4);
+  for (std::size_t i = 0; i < bent.size(); ++i) bent.x[i] += 0.4 / 20 * 3 * static_cast<double>(i) / 192;
+  const FrameEncoder encoder({}, bent);
+  ASSERT_TRUE(encoder.view().cloud);
+  EXPECT_EQ(encoder.view().cloud->grid_columns, 16);
+  EXPECT_LT(largest_error_m(decoded(encoder, bent), bent), 1e-7);
+  for (const double depth_m : {140.0, -0.4})
+    EXPECT_LT(largest_error_m(decoded(FrameEncoder({}, wall(depth_m)), wall(depth_m)), wall(depth_m)), 1e-4);
+}
+
+// A scenario as a sensor in real time, on a simulated clock.
+
+// A recording of a host that was slow to start and got fewer frames than the sensor's rate.
+class SlowRecording : public Scenario {
+ public:
+  static constexpr double kFirst_s = 0.12, kPeriod_s = 0.05;
+
+  double frame_rate_hz() const override { return 30; }
+  int frame_count() const override { return 8; }
+  double captured_s(int frame) const override { return kFirst_s + kPeriod_s * frame; }
+  std::shared_ptr<const NeighbourSearch> points(int frame) const override { return scene_->points(frame); }
+  PointCloud cloud(int frame) const override { return scene_->cloud(frame); }
+  double signed_distance(const Vec3& p_W, double time_s) const override {
+    return scene_->signed_distance(p_W, time_s);
+  }
+
+ private:
+  const std::unique_ptr<Scenario> scene_ =
+      Experiment::from_json(R"({"scenario": {"name": "camera-scene", "width": 16, "height": 12},
+                                "renderer": {"name": "proxy"}, "trajectory": {"name": "follow-surface"}})",
+                            "test")
+          .build_scenario(scenes::kernels());
+};
+
+// The camera repeats its last frame at 30 Hz.
+TEST(ScenarioCamera, FramesComeAtTheTimesAtWhichTheyWereCaptured) {
+  SimulatedClock clock;
+  clock.sleep_s(5);
+  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
+  SensorFrame frame;
+  for (int number = 0; number < 20; ++number) {
+    while (camera.next(frame, 0.02) == SensorState::waiting) continue;
+    const double after_s = SlowRecording::kFirst_s + SlowRecording::kPeriod_s * std::min(number, 7) +
+                           std::max(0, number - 7) / 30.0;
+    EXPECT_EQ(frame.number, number);
+    EXPECT_NEAR(frame.captured_s, 5 + after_s, 1e-9);
+    EXPECT_NEAR(clock.now_s(), 5 + after_s, 1e-9);
+  }
+}
+
+// What was set up between the start of the run and the first frame moves no frame in time.
+TEST(ScenarioCamera, CountsFromTheStartOfTheRun) {
+  SimulatedClock clock;
+  clock.sleep_s(5);
+  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
+  camera.start_at(clock.now_ns());
+  clock.sleep_s(SlowRecording::kFirst_s + 1.5 * SlowRecording::kPeriod_s);
+  SensorFrame frame;
+  ASSERT_EQ(camera.next(frame, 1), SensorState::frame);
+  EXPECT_EQ(frame.number, 1);
+  EXPECT_NEAR(frame.captured_s, 5 + SlowRecording::kFirst_s + SlowRecording::kPeriod_s, 1e-9);
+}
+
+// Depths are rounded to 0.1 mm, and lie on the ray of their pixel. The points of clouds are rounded to
+// floats.
+TEST(ScenarioCamera, ShowsEveryScenarioOfTheCatalog) {
+  for (const ScenarioEntry& entry : scenarios()) {
+    const auto factory = entry.make();
+    if (!factory->inputs().empty()) continue;  // it reads files and is tested with those
+    const auto scenario = factory->build(NoiseKey{7}, scenes::kernels());
+    const PointCloud truth = scenario->cloud(0);
+    SimulatedClock clock;
+    ScenarioCamera camera(factory->build(NoiseKey{7}, scenes::kernels()), clock);
+    EXPECT_EQ(camera.view().cloud.has_value(), !truth.image) << entry.name;
+    SensorFrame frame;
+    ASSERT_EQ(camera.next(frame, 1), SensorState::frame) << entry.name;
+    ASSERT_TRUE(is_complete(frame, camera.view())) << entry.name;
+    const PointCloud seen = cloud_of(frame, camera.view(), camera.view().X_WC);
+    ASSERT_EQ(seen.size(), truth.size()) << entry.name;
+    EXPECT_EQ(seen.columns(), truth.columns()) << entry.name;
+    EXPECT_EQ(seen.has_normals(), truth.has_normals() && !truth.image) << entry.name;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      ASSERT_EQ(seen.is_measured(i), truth.is_measured(i)) << entry.name << ", point " << i;
+      if (!truth.is_measured(i)) continue;
+      ASSERT_LT((seen.point(i) - truth.point(i)).norm(), truth.image ? 2e-4 : 1e-6) << entry.name;
+      if (truth.image || !truth.has_normals() || !truth.normal(i).allFinite()) continue;
+      ASSERT_LT((seen.normal(i) - truth.normal(i)).norm(), 1e-6) << entry.name;
+      ASSERT_NEAR(seen.normal(i).norm(), 1, 1e-12) << entry.name;
+    }
+  }
+}
+
+TEST(ScenarioCamera, WaitsNoLongerThanTheGivenTime) {
+  SimulatedClock clock;
+  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
+  SensorFrame frame;
+  EXPECT_EQ(camera.next(frame, 0), SensorState::waiting);
+  EXPECT_EQ(clock.now_ns(), 0);
+  EXPECT_EQ(camera.next(frame, 0.1), SensorState::waiting);
+  EXPECT_EQ(clock.now_ns(), 100'000'000);
+  EXPECT_EQ(camera.next(frame, 0.1), SensorState::frame);
+  EXPECT_EQ(clock.now_ns(), 120'000'000);
+}
+
+TEST(ScenarioCamera, ALateReaderGetsTheNewestFrame) {
+  SimulatedClock clock;
+  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
+  SensorFrame frame;
+  EXPECT_EQ(camera.next(frame, 0), SensorState::waiting);
+  clock.sleep_s(SlowRecording::kFirst_s + 3.5 * SlowRecording::kPeriod_s);
+  ASSERT_EQ(camera.next(frame, 0), SensorState::frame);
+  EXPECT_EQ(frame.number, 3);
+  EXPECT_EQ(camera.next(frame, 0), SensorState::waiting);
+}
+
+// The adapter on the real libfreenect without a Kinect plugged in.
+
+TEST(FreenectAbsent, IsRefused) {
+  const Availability availability = freenect_availability();
+  if (availability.found) GTEST_SKIP() << "a Kinect is plugged in: " << availability.detail;
+  const std::string message = refusal([] { open_freenect("0", steady_clock()); });
+  if (availability.compiled_in) {
+    EXPECT_HAS(message, "freenect");
+    EXPECT_HAS(message, ": expected ");
+    EXPECT_HAS(message, "that this user may open");
+  } else {
+    EXPECT_EQ(message, "freenect: not compiled in: install libfreenect-dev and build again");
+    EXPECT_EQ(message, "freenect: " + availability.detail);
+  }
 }
 
 }  // namespace
