@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -400,31 +399,6 @@ TEST(LateralForce, The95thPercentileIsAbove95PercentOfTheTicks) {
   for (int i = 0; i < 100; ++i) ticks.push_back({{0.01 * (1 + (37 * i) % 100), 1, 0}});
   EXPECT_NEAR(lateral_force_95(trace_of(ticks)), 0.96, 1e-15);
   EXPECT_NEAR(mean_lateral_force(trace_of(ticks)), 0.505, 1e-14);
-}
-
-// Neither the axes of the world nor the magnitude of a force matter.
-TEST(LateralForce, IsTheSameInATurnedWorld) {
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal;
-  const auto direction = [&] {
-    const double x = normal(random), y = normal(random), z = normal(random);
-    return Vec3(x, y, z);
-  };
-  std::vector<Tick> level, turned;
-  double sum = 0;
-  constexpr int kTicks = 200;
-  for (int i = 0; i < kTicks; ++i) {
-    const double ratio = std::abs(normal(random)), newtons = 1 + 10 * std::abs(normal(random));
-    const Eigen::Quaterniond turn = rotation(direction());
-    const Vec3 force_N = newtons * Vec3(0.6 * ratio, 1, -0.8 * ratio);
-    level.push_back({force_N});
-    turned.push_back({turn * force_N, turn * Vec3::UnitY()});
-    sum += ratio;
-  }
-  for (const auto& ticks : {level, turned})
-    EXPECT_NEAR(mean_lateral_force(trace_of(ticks)), sum / kTicks, 1e-13);
-  EXPECT_NEAR(lateral_force_95(trace_of(turned)), lateral_force_95(trace_of(level)), 1e-12);
-  EXPECT_NEAR(mean_force_angle_rad(trace_of(turned)), mean_force_angle_rad(trace_of(level)), 1e-12);
 }
 
 TEST(LateralForce, UsesTicksInContactWithAForceAndAKnownNormal) {

@@ -6,13 +6,16 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <set>
 #include <string>
-#include <utility>
+#include <type_traits>
+#include <vector>
 
 #include "analysis/trace/contact_measures.h"
 #include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/trace.h"
+#include "core/points/vector.h"
 #include "tests/analysis/trace/measure_named.h"
 
 namespace remote_touch::measures_test {
@@ -180,8 +183,17 @@ TEST(Measures, TicksBeforeTheFirstFrameDoNotCount) {
 
 // --- unknown numbers ---
 
-// A run with a contact, in which every tick is as bad as the others of its kind: the force and the torque
-// change at every second tick, with a frame. So no measure can get better because a tick is left out.
+// Calls act(name, unit, rows) for each column of the trace.
+template <class Act>
+void for_each_column(Trace& trace, const Act& act) {
+#define TRACE_COLUMN(member, Row, name, unit, ...) act(std::string(name), std::string(unit), trace.member);
+#include "analysis/trace/trace_columns.h"
+#undef TRACE_COLUMN
+}
+
+// A run with a contact and with every column, in which every tick is as bad as the others of its kind: the
+// force and the torque change at every second tick, with a frame. So no measure can get better because a tick
+// is left out.
 Trace steady_run(bool tool) {
   Trace trace;
   const Vec3 up = Vec3::UnitY();
@@ -191,57 +203,80 @@ Trace steady_run(bool tool) {
     out.force_N = size * Vec3(0.2, 1, 0), out.normal_W = up, out.proxy_W = {0, -0.001, 0};
     out.slave_W = out.proxy_W, out.nearest_distance_m = -0.002, out.frame_index = i / 2;
     out.state = ContactState::contact, out.steps = 3, out.contact_count = 4;
+    GuidanceOutput& guidance = out.guidance.emplace();
+    guidance.active = true, guidance.force_N = size * Vec3(0.05, 0, 0.05);
+    guidance.goal_W = {0.01, 0, 0}, guidance.goal_orientation_W = rotation({0, 0.2, 0});
+    DeviceState device{{0, -0.01, 0}};
+    HandState hand;
+    hand.force_N = out.force_N, hand.true_pose.emplace().position_W = {0, -0.011, 0};
+    SlaveState slave;
+    slave.position_W = {0.003, 0, 0}, slave.force_N = up, slave.peak_force_N = 1, slave.energy.emplace();
     if (tool) {
       out.tool.emplace().torque_Nm = size * Vec3(0.01, 0, 0);
       out.tool->tool_penetration_m = 0.001, out.tool->detections = 2, out.tool->budget_exhausted = true;
+      device.orientation_W = rotation({0.5, 0, 0});
+      slave.tool.emplace().orientation_W = rotation({-0.1, 0, 0}), slave.tool->torque_Nm = up;
     }
-    DeviceState device{{0, -0.01, 0}};
     Trace::Truth truth{-0.001, -0.001, 0};
     truth.contact = Trace::TrueContact{-0.001, -0.01}, truth.normal = up,
-    truth.expected_force_N = Vec3::Zero();
-    HandState hand;
-    trace.append(0.001 * i, device, out, truth, hand);
+    truth.expected_force_N = Vec3::Zero(), truth.measured_distance_m = -0.001;
+    trace.append(0.001 * i, device, out, truth, hand, slave);
   }
   return trace;
 }
 
-// A number of the renderer that is not known in one tick is never good: a measure has no value then, or it is
-// no better than before.
+// Returns true if the value is a number that is now unknown, or of which one part is.
+bool make_unknown(double& value, bool one_part) {
+  if (!one_part) value = kNoValue;
+  return !one_part;
+}
+bool make_unknown(Vec3& value, bool one_part) {
+  if (!one_part) value.setConstant(kNoValue);
+  value.z() = kNoValue;
+  return true;
+}
+bool make_unknown(Eigen::Quaterniond& value, bool one_part) {
+  return make_unknown(value.w(), one_part);
+}
+template <class Integer>
+bool make_unknown(Integer&, bool) {
+  return false;
+}
+
+// A number that is not known in one tick is never good: a measure has no value then, or it is no better than
+// before. The time is always known; without an expected force there is nothing to compare with.
 TEST(Measures, AnUnknownNumberNeverMakesAMeasureBetter) {
-  using Spoil = void (*)(Trace&, std::size_t);
-  static const Vec3 kUnknown = Vec3::Constant(kNoValue);
-  const std::pair<const char*, Spoil> spoils[] = {
-      {"force", [](Trace& t, std::size_t i) { t.force_N[i] = kUnknown; }},
-      {"one part of the force", [](Trace& t, std::size_t i) { t.force_N[i].z() = kNoValue; }},
-      {"proxy",
-       [](Trace& t, std::size_t i) {
-         t.proxy_position_m[i] = kUnknown;
-         t.signed_distance_m[i] = t.contact[i].height_m = kNoValue;
-       }},
-      {"normal", [](Trace& t, std::size_t i) { t.normal[i] = kUnknown; }},
-      {"nearest distance", [](Trace& t, std::size_t i) { t.nearest_distance_m[i] = kNoValue; }},
-      {"device force", [](Trace& t, std::size_t i) { t.device_force_N[i] = kUnknown; }},
-      {"torque",
-       [](Trace& t, std::size_t i) {
-         if (t.has_tool()) t.torque_Nm[i] = kUnknown;
-       }},
-      {"penetration", [](Trace& t, std::size_t i) {
-         if (t.has_tool()) t.tool_penetration_m[i] = kNoValue;
-       }}};
+  std::vector<std::string> columns;
+  Trace every = steady_run(true);
+  for_each_column(every, [&](const std::string& name, const std::string&, const auto& rows) {
+    EXPECT_FALSE(rows.empty()) << name;
+    if (name != "time" && name != "expected_force") columns.push_back(name);
+  });
   for (const bool tool : {false, true}) {
     const Trace known = steady_run(tool);
-    for (const auto& [name, spoil] : spoils)
-      for (const std::size_t tick : {200u, 201u, 203u}) {
-        Trace spoiled = known;
-        spoil(spoiled, tick);
-        for (const Measure& measure : built_in_measures()) {
-          if (measure.better == Better::neither) continue;
-          const double before = badness(value_of(measure, known), measure.better);
-          const double after = badness(value_of(measure, spoiled), measure.better);
-          EXPECT_FALSE(after < before - 1e-9 * std::abs(before))
-              << measure.name << ", " << name << ", tick " << tick << ": " << before << " to " << after;
-        }
+    const auto expect_no_better = [&](const Trace& spoiled, const std::string& what) {
+      for (const Measure& measure : built_in_measures()) {
+        if (measure.better == Better::neither) continue;
+        const double before = badness(value_of(measure, known), measure.better);
+        const double after = badness(value_of(measure, spoiled), measure.better);
+        EXPECT_FALSE(after < before - 1e-9 * std::abs(before))
+            << measure.name << ", " << what << ": " << before << " to " << after;
       }
+    };
+    for (const std::string& column : columns)
+      for (const std::size_t tick : {200u, 203u, 399u})
+        for (const bool one_part : {false, true}) {
+          Trace spoiled = known;
+          bool is_changed = false;
+          for_each_column(spoiled, [&](const std::string& name, const std::string&, auto& rows) {
+            if (name == column && tick < rows.size()) is_changed = make_unknown(rows[tick], one_part);
+          });
+          if (!is_changed) continue;
+          if (column == "proxy_position")
+            spoiled.signed_distance_m[tick] = spoiled.measured_distance_m[tick] =
+                spoiled.contact[tick].height_m = kNoValue;
+          expect_no_better(spoiled, column + ", tick " + std::to_string(tick));
+        }
   }
 }
 
@@ -261,6 +296,35 @@ Trace pressed_and_slid(bool tool) {
     trace.append(0.001 * i, device, out, truth);
   }
   return trace;
+}
+
+// The axes and the origin of the world do not matter.
+TEST(Measures, AreTheSameInAWorldThatIsTurnedAndMoved) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> noise(0.99, 1.01);  // no force is at a threshold, no change the same
+  const Eigen::Quaterniond turn = rotation({1, -2, 0.5});
+  const Vec3 motion_m(0.3, -0.2, 0.5);
+  for (const bool tool : {false, true})
+    for (Trace level : {steady_run(tool), pressed_and_slid(tool)}) {
+      for (Vec3& force_N : level.force_N) force_N *= noise(random);
+      Trace turned = level;
+      for_each_column(turned, [&](const std::string& name, const std::string& unit, auto& rows) {
+        const bool are_positions = unit == "m" && name != "frame_correction";
+        for ([[maybe_unused]] auto& row : rows) {
+          using Row = std::decay_t<decltype(row)>;
+          if constexpr (std::is_same_v<Row, Vec3>)
+            row = turn * row + (are_positions ? motion_m : Vec3(Vec3::Zero()));
+          if constexpr (std::is_same_v<Row, Eigen::Quaterniond>) row = turn * row;
+        }
+      });
+      for (Vec3& normal : turned.true_normal) normal = turn * normal;
+      for (const Measure& measure : built_in_measures()) {
+        const double before = value_of(measure, level), after = value_of(measure, turned);
+        EXPECT_TRUE(std::isnan(before) ? std::isnan(after)
+                                       : std::abs(after - before) <= 1e-9 * (1 + std::abs(before)))
+            << measure.name << ": " << before << " to " << after;
+      }
+    }
 }
 
 // Each measure that uses the force of a tick has no value if this force is unknown, except those whose header
