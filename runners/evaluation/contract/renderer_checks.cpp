@@ -101,6 +101,27 @@ void same_input_same_bits(const RendererEntry& entry, const FillSettings& fill) 
   }
 }
 
+// A surface may vanish for some frames: a frame may be empty, and an image may have measured nothing. The
+// hand is pressed before that, stays inside, is withdrawn and pressed again.
+void frames_without_points_do_no_harm(const RendererEntry& entry, const FillSettings& fill) {
+  PointCloud unmeasured = grid_for(entry, 60);
+  unmeasured.y.assign(unmeasured.size(), std::nan(""));
+  for (const PointCloud& blank : {PointCloud(), unmeasured}) {
+    const auto renderer = build(entry, fill);
+    double highest = 0;
+    for (int tick = 0; tick < 450; ++tick) {
+      const int frame = tick / 33, since = tick % 300;
+      if (tick % 33 == 0)
+        renderer->on_frame(scenes::frame(frame == 3 || frame == 4 ? blank : grid_for(entry, 60), frame));
+      const double height = since < 150 ? 0.02 - 0.0004 * std::min(since, 75) : 0.03;
+      const RenderOutput out = renderer->step({Vec3(0.0001 * tick, height, 0)}, 0.001 * tick);
+      ASSERT_TRUE(out.force_N.allFinite() && out.proxy_W.allFinite()) << entry.name << " at tick " << tick;
+      if (tick >= 300) highest = std::max(highest, out.force_N.y());
+    }
+    EXPECT_GT(highest, 1) << entry.name << " after the surface came back";
+  }
+}
+
 // --- live parameters ---
 
 std::vector<std::string> names(const Parameters& parameters) {
@@ -293,6 +314,7 @@ constexpr ContractCheck<RendererEntry> kRendererChecks[] = {
     {"PushesTheHandOutOfTheSurface", pushes_the_hand_out_of_the_surface},
     {"IsAsStiffAsItSays", is_as_stiff_as_it_says},
     {"SameInputSameBits", same_input_same_bits},
+    {"FramesWithoutPointsDoNoHarm", frames_without_points_do_no_harm},
     {"ItsLiveParametersAreThoseThatAreMarked", its_live_parameters_are_those_that_are_marked},
     {"ALiveParameterChangedBeforeTheStartIsASetting", a_live_parameter_changed_before_the_start_is_a_setting},
     {"ALiveParameterMayChangeInContact", a_live_parameter_may_change_in_contact},

@@ -405,21 +405,6 @@ TEST(MovingShape, OneFrameMayBeEmpty) {
   EXPECT_GT(moves.cloud(5).size(), 0u);
 }
 
-TEST(MovingShape, RenderersAcceptFramesWithoutPoints) {
-  for (const char* what : {"vanish_at_s", "empty_frame_at_s"}) {
-    const std::string text = std::string(R"({"scenario": {"name": "moving-shape", ")") + what +
-                             R"(": 0.4}, "renderer": {"name": "proxy"},
-        "trajectory": {"name": "press", "start_m": [0, 0.02, 0], "press_at_s": 0.1, "depth_m": 0.01},
-        "duration_s": 0.8})";
-    const Trace trace = simulate(Experiment::from_json(text, what), {});
-    ASSERT_EQ(trace.length(), 800u);
-    EXPECT_GT(trace.force_N[390].y(), 0) << what;
-    EXPECT_TRUE(trace.force_N[420].isZero(0)) << what;
-    for (std::size_t i = 0; i < trace.length(); ++i)
-      ASSERT_TRUE(trace.proxy_position_m[i].allFinite()) << what;
-  }
-}
-
 // --- a hand that presses ---
 
 TEST(MovingShape, AHandCanPressEveryShape) {

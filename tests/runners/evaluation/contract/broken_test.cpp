@@ -42,6 +42,7 @@ enum class Mistake {
   soft,
   forgets_no_frame,
   blind,
+  needs_points,
   six
 };
 
@@ -80,7 +81,7 @@ class Spring final : public Renderer {
  public:
   using Settings = SettingsOfIt;
   Spring(const Settings& settings, double, const Kernels&) : settings_(settings) {}
-  void on_frame(const Frame& frame) override { index_ = frame.index; }
+  void on_frame(const Frame& frame) override { index_ = frame.index, points_ = frame.points->size(); }
   RenderOutput step(const DeviceState& device, double) override {
     RenderOutput out;
     const double depth_m = std::max(0.0, 0.005 - device.position_W.y());
@@ -98,6 +99,7 @@ class Spring final : public Renderer {
     if (kMistake == Mistake::counts_its_steps) force_N += 1e-9 * static_cast<double>(total_++ % 1000);
     if (kMistake == Mistake::soft) force_N *= 0.5;
     if (kMistake == Mistake::blind) force_N = 0;
+    if (kMistake == Mistake::needs_points && points_ == 0) force_N = std::nan("");
     if (kMistake == Mistake::six) out.tool.emplace();
     out.force_N = Vec3(0, force_N, 0);
     out.proxy_W += Vec3(0, depth_m, 0);
@@ -109,6 +111,7 @@ class Spring final : public Renderer {
   static inline std::atomic<int> total_{0};  // shared state, which no renderer may have
   Settings settings_;
   int index_ = -1, steps_ = 0;
+  std::size_t points_ = 0;
   std::vector<double> kept_;
   struct alignas(64) Aligned {
     double value = 0;
@@ -140,6 +143,7 @@ TEST(BrokenRenderer, EachMistakeIsFound) {
   EXPECT_TRUE(has(broken_by<Mistake::soft>(), "IsAsStiffAsItSays"));
   EXPECT_TRUE(has(broken_by<Mistake::forgets_no_frame>(), "WithoutAFrameTheProxyIsTheHip"));
   EXPECT_TRUE(has(broken_by<Mistake::blind>(), "PushesTheHandOutOfTheSurface"));
+  EXPECT_TRUE(has(broken_by<Mistake::needs_points>(), "FramesWithoutPointsDoNoHarm"));
   EXPECT_TRUE(has(broken_by<Mistake::six>(), "HasAsManyDegreesOfFreedomAsItsEntrySays"));
 }
 
