@@ -386,13 +386,6 @@ TEST(EventLimits, ALevelThatIsReachedExactlyIsInside) {
   EXPECT_DOUBLE_EQ(numbers(limits_of(sweep_of({1, 2}, {{70, 100}}), 0.7), "value")[0], 1);
 }
 
-TEST(EventLimits, DoNotDependOnTheOrderOfTheValues) {
-  const Table sorted = limits_of(sweep_of({1, 2, 4}, {{0, 25, 75}}));
-  const Table mixed = limits_of(sweep_of({4, 1, 2}, {{75, 0, 25}}));
-  EXPECT_EQ(numbers(mixed, "value"), numbers(sorted, "value"));
-  EXPECT_EQ(numbers(mixed, "high"), numbers(sorted, "high"));
-}
-
 TEST(EventLimits, UseFinishedRunsOnly) {
   SweepResult result = sweep_of({1, 2, 4}, {{0, 25, 75}});
   for (int replicate = 0; replicate < kRuns; ++replicate)

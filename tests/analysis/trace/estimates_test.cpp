@@ -431,12 +431,7 @@ TEST(EstimatedLimitComparison, EqualsTheExamples) {
   EXPECT_EQ(c.p, 1);
 }
 
-TEST(EstimatedLimitComparison, IsAntisymmetricAndNeedsClosedIntervals) {
-  const Estimate b = compared(kA, kB, LimitComparison::difference);
-  const Estimate a = compared(kB, kA, LimitComparison::difference);
-  EXPECT_EQ(a.low, -b.high);
-  EXPECT_EQ(a.high, -b.low);
-  EXPECT_EQ(a.p, b.p);
+TEST(EstimatedLimitComparison, NeedsClosedIntervals) {
   const Estimate few = compared({3, 3, 3, 4, 4}, {6, 6, 7, 7, 7}, LimitComparison::difference);
   EXPECT_TRUE(std::isnan(few.p) && std::isnan(few.low));
   EXPECT_FALSE(few.note.empty());
