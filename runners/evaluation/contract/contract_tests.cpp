@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <set>
 
 #include "analysis/trace/trace.h"
@@ -272,6 +273,32 @@ void normals_are_one_a_point_and_of_unit_length(const ScenarioEntry& entry, cons
   for (std::size_t i = 0; i < cloud.size(); ++i) ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-15);
 }
 
+// The nearest point of the surface is at most as much farther from another position as the two are apart.
+// Only beside the border of a surface, which has no back there, may the sign change without the surface
+// between. The truth of a recording is measured, and may have gaps.
+void the_true_distance_is_one(const ScenarioEntry& entry, const FillSettings& fill) {
+  const auto scenario = scenario_of(entry, fill);
+  if (!scenario->truth_text().empty()) return;
+  const PointCloud cloud = scenario->cloud(0);
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0, 0.02);
+  const auto displacement = [&] {
+    const double x = normal(random), y = normal(random), z = normal(random);
+    return Vec3(x, y, z);
+  };
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 near = cloud.point(random() % cloud.size()) + displacement(),
+               other = near + std::pow(0.1, i % 4) * displacement();
+    if (!near.allFinite()) continue;
+    for (const double time_s : {0.0, 0.7}) {
+      const double change =
+          scenario->signed_distance(other, time_s) - scenario->signed_distance(near, time_s);
+      EXPECT_FALSE(std::abs(change) > 1.5 * (other - near).norm() + 1e-9)  // or NaN: one is not known
+          << change << " m between " << near.transpose() << " and " << other.transpose();
+    }
+  }
+}
+
 constexpr ContractCheck<ScenarioEntry> kScenarioChecks[] = {
     {"ItsDefaultsAreValid", its_defaults_are_valid},
     {"FilesThatSettingsNameAreTold", files_that_settings_name_are_told},
@@ -279,6 +306,7 @@ constexpr ContractCheck<ScenarioEntry> kScenarioChecks[] = {
     {"SearchAndCloudShowTheSamePoints", search_and_cloud_show_the_same_points},
     {"RatesAndTimesMakeSense", rates_and_times_make_sense},
     {"NormalsAreOneAPointAndOfUnitLength", normals_are_one_a_point_and_of_unit_length},
+    {"TheTrueDistanceIsOne", the_true_distance_is_one},
 };
 
 // The contract of every scripted hand.

@@ -161,7 +161,8 @@ enum class SceneMistake {
   other_search,
   still_clock,
   long_normals,
-  far_away
+  far_away,
+  millimetres
 };
 
 struct NoSettings {};
@@ -196,7 +197,9 @@ class Grid final : public Scenario {
       for (double& x : made.x) x += 1e6;
     return made;
   }
-  double signed_distance(const Vec3& p_W, double) const override { return p_W.y(); }
+  double signed_distance(const Vec3& p_W, double) const override {
+    return (kMistake == SceneMistake::millimetres ? 1000 : 1) * p_W.y();
+  }
 
  private:
   mutable std::atomic<int> asked_{0};
@@ -218,6 +221,7 @@ TEST(BrokenScenario, EachMistakeIsFound) {
   EXPECT_TRUE(has(broken_scene<SceneMistake::other_search>(), "SearchAndCloudShowTheSamePoints"));
   EXPECT_TRUE(has(broken_scene<SceneMistake::still_clock>(), "RatesAndTimesMakeSense"));
   EXPECT_TRUE(has(broken_scene<SceneMistake::long_normals>(), "NormalsAreOneAPointAndOfUnitLength"));
+  EXPECT_TRUE(has(broken_scene<SceneMistake::millimetres>(), "TheTrueDistanceIsOne"));
 }
 
 // --- trajectories and measures ---
