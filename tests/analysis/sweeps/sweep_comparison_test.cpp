@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 #include <utility>
 
 #include "analysis/trace/interval_estimates.h"
