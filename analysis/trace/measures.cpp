@@ -67,7 +67,7 @@ Judgement judge_value(double baseline, double candidate, Better better, const To
   if (within(tolerance, baseline, candidate)) return Judgement::equal;
   // A difference that may be rounding has no direction.
   constexpr double kRounding = 1e-9;
-  const double most = std::max(std::abs(baseline), std::abs(candidate));
+  const double most = max_or_nan(std::abs(baseline), std::abs(candidate));
   if (std::isfinite(most) && std::abs(candidate - baseline) <= kRounding * most) return Judgement::changed;
   const double before = badness(baseline, better), now = badness(candidate, better);
   if (better == Better::neither || std::isnan(before) || std::isnan(now) || before == now)

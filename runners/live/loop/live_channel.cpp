@@ -145,7 +145,8 @@ std::string frame_message(const PointCloud& cloud, std::int32_t index, const Poi
   BoundingBox box;
   for (const std::uint32_t i : points) box.extend(cloud.point(i));
   const Vec3 corner_W = points.empty() ? Vec3(Vec3::Zero()) : Vec3(box.min());
-  const double step_m = points.empty() ? 1 : std::max(box.sizes().maxCoeff(), 1e-6) / kMaxNumber;
+  const double step_m =
+      points.empty() ? 1 : std::max(box.sizes().maxCoeff(), 1e-6) / kMaxNumber;  // no NaN: measured points
   const bool colours = !cloud.colour.empty(), radii = !cloud.fixture_radius_m.empty();
   std::string bytes;
   bytes.reserve(64 + 16 * points.size());
