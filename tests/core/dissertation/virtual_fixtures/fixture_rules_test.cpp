@@ -460,8 +460,7 @@ TEST(FixtureValues, AreRefusedIfOutOfRangeOrOutOfOrder) {
             "schedule: time 1.000000: expected no earlier than the row before");
 }
 
-// --- steps by hue, for another device ---
-
+// Steps by hue are for another device.
 FixtureAssignment by_hue(FixtureRole role, bool with_other_rule) {
   HueRange::Settings red, blue;
   blue.from_deg = 200, blue.to_deg = 280;
