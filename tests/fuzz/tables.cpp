@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "runners/experiment/hand/trajectory.h"
-#include "scenarios/objects/pose_file.h"
+#include "scenarios/objects/mesh_object.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 #include "tests/fuzz/shared/scratch_file.h"
 

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/sweeps/event_limits.h"
 #include "analysis/sweeps/sweep_means.h"
 
 namespace remote_touch::answer_symmetries_test {

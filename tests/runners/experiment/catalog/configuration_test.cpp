@@ -12,7 +12,7 @@
 #include "core/points/point_cloud.h"
 #include "core/rivals/implicit_surface_renderers.h"
 #include "runners/evaluation/contract/allocation_counter.h"
-#include "runners/evaluation/figures/figures.h"
+#include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/configuration.h"
