@@ -22,7 +22,7 @@ OF_THE_PROGRAM = [
     (r"(core|scenarios|analysis)/", ["baselines"]),
     (r"runners/(experiment/(catalog|hand|simulation)|evaluation/(regression|verification))/|data/(baselines|experiments)/",
      ["baselines"]),
-    (r"runners/(interfaces/cli|presentation|sweep|experiment/(provenance|sessions))/",
+    (r"runners/(interfaces/cli|presentation|sweep|experiment/(settings|sessions))/",
      ["command_line_.*"]),
     (r"runners/live/", ["command_line_live", "runners/live/loop.several_cameras_in_one_process"]),
     (r"runners/evaluation/(scorecard|figures)/|data/(methods|scenes|scorecard)", ["stored_scorecard", "figures_quick"]),

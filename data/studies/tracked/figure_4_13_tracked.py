@@ -71,9 +71,9 @@ def draw_map(s, title, table):
 # --- noise under a sliding proxy ---
 
 def slide(run):
-    """Of the settled ticks: mean and standard deviation of the height above r_c, in r_c; the rms jump of the force at updates (N,
-    NaN without an update between two forces); mean and 95th percentile of the ratio of the force along the surface y = 0 to that
-    along its normal."""
+    """Numbers of the settled ticks: mean and standard deviation of the height above r_c, in r_c; the rms jump of the force at
+    updates (N, NaN without an update between two forces); mean and 95th percentile of the ratio of the force along the surface
+    y = 0 to that along its normal."""
     settled, has_force = run.time >= SETTLED_S, run.force.any(axis=1)
     height = run.signed_distance[settled] / CONTACT_RADIUS_M - 1
     i = run.frame_updates()
@@ -85,7 +85,7 @@ def slide(run):
 
 
 def add_slides(s, name, renderer):
-    """Means over the reported seeds, and the range of three of them."""
+    """Adds the means over the reported seeds, and for three of the columns their range."""
     jobs = [("fig4.11", {**renderer, **noisy(noise, seed),
                          "trajectory.waypoints": [[0, 0.01, 0, 0], [0, -0.005, 0, 0.05], [0.02, -0.005, 0.01, 0.02]]})
             for noise in SLIDE_NOISE for seed in SEEDS]
