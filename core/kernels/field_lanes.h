@@ -125,7 +125,7 @@ inline Flags cell_number(const Doubles3& p, double per_m) {
   return cell_along(p.x, per_m) << 40 | cell_along(p.y, per_m) << 20 | cell_along(p.z, per_m);
 }
 
-// Does the same as is_flat() of near_disks.h; a NaN slope is not flat.
+// Does the same as is_flat() of near_points.h; a NaN slope is not flat.
 inline Flags is_flat(Doubles slope, Doubles radius, Doubles extent) {
   return (slope < disk_search::kFlatSlope) & ((extent == 0) | (slope * radius < disk_search::kFlatDepth_m));
 }

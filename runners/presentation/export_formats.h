@@ -26,8 +26,6 @@
 
 namespace remote_touch {
 
-// A stored trace with its frames, which are made again, as other programs show it.
-
 // The input of every format of an export: the result, the output and the files to write.
 struct ExportJob {
   const Hdf5Reader& result;
@@ -54,7 +52,7 @@ void put(std::string& bytes, Numbers... numbers) {
   (bytes.append(reinterpret_cast<const char*>(&numbers), sizeof numbers), ...);
 }
 
-// A row for each tick.
+// A stored trace as other programs show it, with a row for each tick. Its frames are made again.
 struct ExportedRun {
   Experiment experiment;
   std::vector<double> time_s = {};  // finite, 0 or more
@@ -101,8 +99,6 @@ const ExportFormat& export_format(const std::filesystem::path& output);
 // Writes all files of the export; they appear when job.files is finished. Throws InputError for a result of a
 // kind that the format does not accept, for one that is damaged, and as job.files does. Throws Interrupted.
 void export_result(const ExportFormat& format, const ExportJob& job);
-
-// A trace as messages over time, for Foxglove, rerun and programs of ROS 2.
 
 // Messages of ROS 2: their definitions, and their bytes as DDS sends them (CDR, little-endian). There are
 // only the messages that an export contains.
@@ -165,15 +161,14 @@ class McapWriter {
   std::uint32_t chunks_ = 0, metadata_ = 0;
 };
 
-// Time is the simulated time, in nanoseconds. Topics:
+// Writes a trace as messages over time, for Foxglove, rerun and programs of ROS 2. Time is the simulated
+// time, in nanoseconds. Topics:
 //   /cloud         sensor_msgs/msg/PointCloud2     each frame in use, at the time of its arrival; its
 //                                                  header has the time of capture
 //   /hip, /proxy   geometry_msgs/msg/PoseStamped   in each tick
 //   /tool          geometry_msgs/msg/PoseStamped   the same, in a run with a tool: its centre of mass
 //   /force         geometry_msgs/msg/WrenchStamped force and torque on the hand, in each tick
 void write_mcap(const ExportJob& job);
-
-// Arrays for NumPy: one .npz archive.
 
 // Returns an array in the file format of NumPy, .npy, version 1.0. Its shape is (n,) or (n, width), its type
 // little-endian: <f8, <i4, <u8, or <U for texts.
@@ -204,13 +199,11 @@ class ZipArchive {
   std::uint64_t size_ = 0;
 };
 
-// Writes a member for each column: COLUMN, or TABLE/COLUMN if there are several tables. Numbers are as they
-// are stored, vectors have shape (n, 3), enumerations are numbers. Before them are `format`, and `about`, a
-// text of JSON: `attributes` of the result, and for each member `unit`, `meaning` and `names` of the values
-// of an enumeration. Throws InputError beyond 4 GiB or 65534 arrays.
+// Writes arrays for NumPy, one .npz archive: a member for each column, COLUMN, or TABLE/COLUMN if there are
+// several tables. Numbers are as they are stored, vectors have shape (n, 3), enumerations are numbers. Before
+// them are `format`, and `about`, a text of JSON: `attributes` of the result, and for each member `unit`,
+// `meaning` and `names` of the values of an enumeration. Throws InputError beyond 4 GiB or 65534 arrays.
 void write_npz(const ExportJob& job);
-
-// The scene of a trace for ParaView and VTK.
 
 // Values of the points or cells of a piece.
 struct VtkArray {
@@ -239,6 +232,7 @@ std::string vtp_file(const VtkPolyData& data);
 // Returns a text as it must be written in XML: in the value of an attribute, or between tags.
 std::string xml_escaped(const std::string& text, bool is_quoted = true);
 
+// Writes the scene of a trace for ParaView and VTK:
 // x.vtp: the paths of the HIP and of the proxy as two lines, with the columns of the trace at each point.
 // x_cloud_0000.vtp ...: the measured points of each frame in use. Points of unknown colour are grey; if there
 // are some, has_colour is 0 for them and 1 for the others.
@@ -252,7 +246,7 @@ void write_vtp(const ExportJob& job);
 // "trace", "sweep" or "figure"; the table of a scorecard is a figure. Throws InputError for anything else.
 std::string exported_kind(const Hdf5Reader& result);
 
-// A trace has one table, a row for each tick, with step_duration if it was measured.
+// Returns the tables. A trace has one table, a row for each tick, with step_duration if it was measured.
 // A sweep has one table, a row for each run: its value on each axis, replicate if there are several, state,
 // the measures, round with refinement, notes if there are any, and error.
 // A figure has its own tables.

@@ -228,6 +228,7 @@ struct RunSource {
   std::string claims = "[]";  // JSON, see shown_claims()
 };
 
+// A run as a page shows it.
 class ShownRun {
  public:
   // Throws InputError, about the name, when the configuration cannot be run, or its recording is missing or
@@ -261,9 +262,7 @@ class ShownRun {
   const std::unique_ptr<State> state_;
 };
 
-// The pages: of one or two traces, or of a sweep.
-
-// A page of the viewer below a size limit: one self-contained HTML file, which reads nothing else.
+// A page of the viewer: one self-contained HTML file below a size limit, which reads nothing else.
 
 // The viewer's script and style, which the build made from runners/presentation/page and embedded in
 // the program. Both empty in a program that was built without Node.

@@ -38,10 +38,10 @@ struct NamedCell {
 // Throws InputError.
 std::size_t cell_of(const NamedCell& cell, const SweepGrid& grid);
 
-// The notes on the runs of a sweep, as counts by kind.
-
 // The options of `replay` for a run: "--cell 0,3", and "--replicate 2" if there are several replicates.
 std::string option_of_run(const SweepGrid& grid, std::size_t run);
+
+// The notes on the runs of a sweep, as counts by kind.
 
 // Returns a line for each kind of note that a finished run has:
 //   "12 of 210 runs: no contact: no point was touched and no force was felt (the first: --cell 0,3)"

@@ -1,5 +1,5 @@
 // A parameter sweep: an experiment, axes along which its parameters change, and the measures of every run.
-// First one axis: its coordinate, and the settings of a run for each value of it.
+// Its parts are the axes, what it keeps and refines, shards and cells, and checks of what it states.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +22,7 @@
 
 namespace remote_touch {
 
+// One axis: its coordinate, and the settings of a run for each value of it.
 struct SweepAxis {
   // The dimension scale: numbers, or an enumeration of names. long_name is the path of the parameter, or the
   // paths of all parameters with ", " between them.
@@ -66,9 +67,8 @@ std::string unit_of_path(const std::string& path);
 
 inline constexpr int kMaxAxisValues = 100000;
 
-// A joint axis of a sweep: it sets several parameters together, or has named variants.
-
-// True if the definition is that of a joint axis: if it has "parameters" or "variants".
+// True if the definition is that of a joint axis, which sets several parameters together ("parameters") or
+// has named variants ("variants").
 bool is_joint(const Json& json);
 
 // Reads a joint axis in one of two forms. label names the axis in InputErrors.
@@ -80,9 +80,6 @@ bool is_joint(const Json& json);
 // Variants have common noise unless "common_noise" is false. Throws InputError also if two paths of one row
 // or variant overlap.
 SweepAxis read_joint_axis(const Json& json, const std::string& label);
-
-// The parts of a sweep beside its axes: what it keeps and refines, its shards and cells, and checks of what
-// it states.
 
 // The key "keep": what a sweep keeps of its runs.
 
@@ -113,11 +110,9 @@ Parameters parameters(RefineSettings& refine);
 std::optional<RefineSettings> read_refine(const Json& sweep, const std::vector<Measure>& measures,
                                           int replicates, const std::string& label);
 
-// The part of a sweep that one process runs.
-
-// Shard `index` of `count`, numbered from 1. Cell c of the first round, numbered from 0, belongs to shard c
-// mod count + 1. Neighbouring cells cost nearly the same, so every shard has about as many slow cells as the
-// others.
+// The part of a sweep that one process runs: shard `index` of `count`, numbered from 1. Cell c of the first
+// round, numbered from 0, belongs to shard c mod count + 1. Neighbouring cells cost nearly the same, so every
+// shard has about as many slow cells as the others.
 struct Shard {
   int index = 1;
   int count = 1;
@@ -222,8 +217,8 @@ class Sweep {
   // label names the source in errors. Overrides "key=value" change the sweep if their path begins with one of
   // its keys, otherwise its experiment; the title names them (changed_settings.h). Cells are resolved and
   // checked: throws InputError for the first cell that cannot be run, and for parts that overwrite each other
-  // (sweep_parts.h). Of more than 20000 cells, 20000 that are spread over the grid are checked, and
-  // those with each value of an axis and the first values of the others.
+  // (refuse_overlapping(), refuse_overwritten()). Of more than 20000 cells, 20000 that are spread over the
+  // grid are checked, and those with each value of an axis and the first values of the others.
   static Sweep from_json(const std::string& text, const std::string& label,
                          const std::vector<std::string>& overrides = {});
   // Reads a sweep of data/sweeps by its name, or a JSON file. An error in the text of a file begins with the

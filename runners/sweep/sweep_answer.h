@@ -31,22 +31,16 @@ bool is_of_curve(const Figure& figure, const Table& table);
 // Returns the value of an axis in a row of a table, without a unit: at most ten digits, or its name.
 std::string axis_text(const Column& axis, std::size_t row);
 
-// An answer about a sweep as text.
-
-// Returns the caption and each table with names, units and at most 60 rows; "-" stands for a value that is
-// not known. Tables of single curves, which repeat rows, are left out. A note states how many of the `asked`
-// runs are not finished.
+// Returns an answer as text: the caption and each table with names, units and at most 60 rows; "-" stands for
+// a value that is not known. Tables of single curves, which repeat rows, are left out. A note states how many
+// of the `asked` runs are not finished.
 std::string answer_text(const Figure& answer, std::size_t done, std::size_t asked);
 
-// The answers, as a figure: tables and curves.
-
-// The random streams of the runs of a stored sweep.
-
-// Returns the streams of all cells, from the configuration with which the sweep was made (JSON): it states
-// every deviation and probability, the axes with common noise, and seeds. So they are known for every stored
-// sweep and tally. If the configuration cannot be read, as that of an experiment with a scene
-// that only the program that made it knows, `doubt` says so; then runs of one replicate count as one, and so
-// do the runs of a cell that are equal in all measures, if they are known.
+// Returns the random streams of all cells of a stored sweep, from the configuration with which the sweep was
+// made (JSON): it states every deviation and probability, the axes with common noise, and seeds. So they are
+// known for every stored sweep and tally. If the configuration cannot be read, as that of an experiment with
+// a scene that only the program that made it knows, `doubt` says so; then runs of one replicate count as one,
+// and so do the runs of a cell that are equal in all measures, if they are known.
 CellStreams streams_of(const SweepResult& result, const std::string& config);
 CellStreams streams_of(const SweepGrid& grid, const std::string& config);
 
@@ -75,7 +69,7 @@ struct SweepQuestion {
 // Returns the first measure of an event (is_event()) that is known in a run; an empty text if there is none.
 std::string default_event(const SweepResult& result);
 
-// The name of such a figure.
+// The name of the figure that sweep_answer() returns.
 inline constexpr const char* kAnswerName = "analysis";
 
 // Returns a figure with the tables `limits`, `limit_difference`, `limit_ratio`, `mean_MEASURE` and

@@ -17,8 +17,6 @@
 
 namespace remote_touch {
 
-// Does the runs of a sweep.
-
 struct SweepRunOptions {
   const Kernels* kernels = nullptr;         // null: the machine's best
   const std::atomic<bool>* stop = nullptr;  // when set, the sweep ends with Interrupted
@@ -63,10 +61,9 @@ struct Replay {
 enum class Strict { no, yes };  // yes: a note on the run is an error
 
 // Runs the run again and writes its trace, with frame_hash computed. If output is empty, the trace is not
-// written. attributes: of the stored sweep. pre: `sweep` was read from
-// their configuration. Throws InputError if a file cannot be
-// read or written. With Strict::yes it also throws InputError if there is a note on the run; then nothing is
-// written.
+// written. attributes: of the stored sweep. pre: `sweep` was read from their configuration. Throws InputError
+// if a file cannot be read or written. With Strict::yes it also throws InputError if there is a note on the
+// run; then nothing is written.
 Replay replay_run(const TextAttributes& attributes, const Sweep& sweep, std::size_t run,
                   SimulationOptions options, const std::filesystem::path& output, Strict strict = Strict::no);
 

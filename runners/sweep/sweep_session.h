@@ -1,5 +1,5 @@
 // Sweeps that are written to a file, with their runs or with tallies, and continue where an earlier call
-// stopped.
+// stopped; and their shards: merged into one file, and checked.
 #pragma once
 
 #include <atomic>
@@ -40,8 +40,6 @@ struct MergedFile {
 };
 void require_same_origin(const MergedFile& part, const MergedFile& first);
 
-// A sweep that is written to a file, and continues where an earlier call stopped.
-
 // The work of a sweep that is left after the results in its file, if that exists.
 struct SweepPlan {
   // The results; failed runs of a sweep that keeps its runs are pending again. The attributes are those of
@@ -66,6 +64,8 @@ SweepPlan plan_in_file(const Sweep& sweep, const Shard& shard, const TextAttribu
 // Adds the runs of the batch that were made.
 void add_runs(const SweepResult& batch, SweepTally& tally);
 
+// A sweep that is written to a file, and continues where an earlier call stopped.
+//
 // Holds the file's lock from before it reads the file until it has written it for the last time.
 //
 // A sweep that keeps its runs stores each of them at once, and does failed runs again. A tally is written
@@ -152,8 +152,6 @@ std::string merge_shards(const MergeRequest& request, const EachBlock& each_bloc
 // The same for a sweep that keeps a tally, which is returned. Throws InputError also for a shard some of
 // whose runs are known to be wrong, see require_trusted(). The memory holds the whole tally and one shard.
 SweepTally merge_tallies(const MergeRequest& request);
-
-// Checks of shards: their progress in a folder, and some runs of a sweep made again.
 
 // The progress of the shards in a folder.
 

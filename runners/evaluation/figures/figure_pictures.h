@@ -21,7 +21,7 @@ struct Trace;
 // Returns each fixture rule of an experiment separately, in order.
 std::vector<std::unique_ptr<FixtureRule>> rules_of(const Experiment& experiment);
 
-// One element a point: 1 if the rule selects the point, else 0.
+// Returns one element for each point: 1 if the rule selects the point, else 0.
 std::vector<char> picked_points(const FixtureRule& rule, const PointCloud& cloud);
 
 // Pixels of an image that a picture shows: every step'th of the columns left .. right - 1 and of the rows

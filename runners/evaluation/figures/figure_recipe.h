@@ -131,7 +131,7 @@ inline double axis_value(const SweepResult& sweep, std::size_t axis, std::size_t
   return axis_values(sweep, axis).at(sweep.axis_indices(cell).at(axis));
 }
 
-// May throw InputError: the figure is then reported as not run.
+// Makes a figure. May throw InputError: the figure is then reported as not run.
 using MakeFigure = Figure(FigureContext& context);
 
 struct FigureEntry {
@@ -144,6 +144,7 @@ struct FigureEntry {
 };
 std::span<const FigureEntry> figures();
 
+// A run with forbidden regions, and what its figure compares it with.
 struct FixtureRun {
   Trace trace;
   std::unique_ptr<Scenario> scenario;  // scenario of the run, for its ground truth
@@ -328,7 +329,6 @@ void leave_open(Claim& claim);
 std::string coarse_text(std::size_t made_runs, std::size_t runs, int coarse);
 
 // claims.json: the claims of a folder's figures, with their verdicts.
-
 class ClaimsFile {
  public:
   // Keeps the claims of an earlier call in the folder until their figure is made again. order: names of the

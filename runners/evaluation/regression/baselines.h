@@ -1,4 +1,5 @@
-// The list of stored baselines, and a stored result with the commands that make it again.
+// Baselines: their list, a stored result with the commands that make it again, the spread of its numbers over
+// builds, and the commands that check and store a baseline.
 #pragma once
 
 #include <atomic>
@@ -105,16 +106,13 @@ class StoredResult {
   std::optional<Recipe> recipe_;
 };
 
-// Baselines: stores one with a reason, and makes its result again and compares. The margins of a baseline:
-// one experiment or sweep is run with every build, on every instruction set and number of threads, and how
-// far its numbers differ is measured.
+// The spread of a baseline: one experiment or sweep is run with every build, on every instruction set and
+// number of threads, and how far its numbers differ is measured.
 
-// A temporary folder for runs whose results are read and then deleted.
-
-// A new folder in TMPDIR. The destructor removes it with all its files; it must not contain folders. A
-// program that is killed, or runs out of memory inside a library, leaves its folder; the next program removes
-// it. A lock marks the folders that are in use, and a process loses its lock when it ends. Throws InputError
-// if no folder can be made.
+// A new folder in TMPDIR, for runs whose results are read and then deleted. The destructor removes it with
+// all its files; it must not contain folders. A program that is killed, or runs out of memory inside a
+// library, leaves its folder; the next program removes it. A lock marks the folders that are in use, and a
+// process loses its lock when it ends. Throws InputError if no folder can be made.
 class ScratchFolder {
  public:
   ScratchFolder();
@@ -128,13 +126,12 @@ class ScratchFolder {
   int descriptor_ = -1;
 };
 
-// Runs this program, or another build of it, as a user would.
-
 std::string this_program();  // the path of the running program
 
-// Runs a program to its end, without output. environment: variables set in addition; errors: a file for its
-// stderr. Throws InputError, naming the program, with the last line of its errors, if it cannot be started,
-// or its exit code is not 0 or not known. When stop is set, ends it and throws Interrupted.
+// Runs this program, or another build of it, to its end as a user would, without output. environment:
+// variables set in addition; errors: a file for its stderr. Throws InputError, naming the program, with the
+// last line of its errors, if it cannot be started, or its exit code is not 0 or not known. When stop is set,
+// ends it and throws Interrupted.
 void run_program(const std::string& program, const std::vector<std::string>& arguments,
                  const std::map<std::string, std::string>& environment, const std::filesystem::path& errors,
                  const std::atomic<bool>* stop);
@@ -162,8 +159,6 @@ MeasuredSpread measure_spread(const std::filesystem::path& folder, const Baselin
 // columns of the same result.
 std::vector<Column> keep_old_bits(const std::vector<Column>& old, std::vector<Column> now,
                                   const Tolerances& tolerances);
-
-// Baselines: stores one with a reason, and makes its result again and compares.
 
 // Makes a baseline's result again with the present program, and compares.
 

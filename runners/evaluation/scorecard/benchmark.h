@@ -71,8 +71,6 @@ BenchmarkScene read_benchmark_scene(const std::string& name, const std::string& 
 std::vector<Method> chosen_methods(const std::vector<std::string>& names);
 std::vector<BenchmarkScene> chosen_scenes(const std::vector<std::string>& names);
 
-// The runs of a scorecard: the choice of methods and scenes, all sweeps, the passivity audit, and doing them.
-
 // The passivity audit: closed cycles of a simulated hand with every choice of signs in the renderers' force
 // laws, to find which of them feed energy into the hand.
 

@@ -173,8 +173,8 @@ void correct(Scorecard& card);
 inline constexpr const char* kScorecardFigure = "scorecard";  // name of scorecard_figure()
 
 // Returns the figure of the result file. Its tables are success, measures and standings, with a row for each
-// scene, method, and level or measure; overview and behind, see evaluation.h; thresholds, see
-// evaluation.h; and the curves of every scene's panel.
+// scene, method, and level or measure; overview, behind and thresholds, see evaluation.h; and the curves of
+// every scene's panel.
 Figure scorecard_figure(const Scorecard& scorecard);
 
 }  // namespace remote_touch

@@ -1,5 +1,6 @@
-// The scenes of the metamorphic tests as plain data: those in which every renderer is checked, and those for
-// tools.
+// Metamorphic tests of a renderer, which need no reference solution: each scene is played unchanged and
+// transformed, and the two outputs must be related as metamorphic_relation.cpp defines. They use only the
+// interface Renderer, so every new renderer of the catalog is checked without further work.
 #pragma once
 
 #include <atomic>
@@ -16,6 +17,8 @@
 #include "runners/experiment/catalog/catalog.h"
 
 namespace remote_touch {
+
+// The scenes as plain data: those in which every renderer is checked, and those for tools.
 
 // One frame of the stream.
 struct CloudView {
@@ -63,10 +66,6 @@ inline constexpr const char* kVerifiedTool[] = {"tool_mesh=bar", "tool_size_m=0.
 // surface is tilted and every point displaced from its lattice, so that no comparison in a renderer is a tie
 // that rounding decides. The same bits on every machine and for all kernels.
 std::vector<MetamorphicScene> verification_scenes(const Kernels& kernels);
-
-// Metamorphic tests of a renderer, which need no reference solution: each scene is played unchanged and
-// transformed, and the two outputs must be related as metamorphic_relation.cpp defines. They use only the
-// interface Renderer, so every new renderer of the catalog is checked without further work.
 
 // A contact model says which checks of the contract tests and of `verify` apply to a renderer. It does not
 // change runs. All values are false for a proxy that is held by all points of a cloud and by the forbidden

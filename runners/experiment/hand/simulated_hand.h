@@ -1,5 +1,5 @@
-// The exact motion of a hand during one tick, in which its device holds the force: without and with dry
-// friction.
+// A simulated hand and its haptic device: the exact motion of the hand during one tick, in which the device
+// holds the force, without and with dry friction; what the device measures and exerts; and the operator.
 #pragma once
 
 #include <cstddef>
@@ -118,9 +118,6 @@ class DryFrictionStep {
   double friction_, duration_s_;
 };
 
-// A simulated hand, and the haptic device between it and the renderer: what the device measures of the hand's
-// pose, and which wrench it exerts for the commanded one.
-
 // A haptic device that senses all six axes and has motors for some of them, such as the five of the device of
 // 7.5.
 struct MotorSettings {
@@ -160,6 +157,8 @@ struct DeviceSettings {
 Parameters parameters(DeviceSettings& s);
 std::string validate(const DeviceSettings& s);
 
+// The haptic device between the hand and the renderer: what it measures of the pose of the hand, and which
+// wrench it exerts for the commanded one.
 class DeviceModel {
  public:
   DeviceModel(const DeviceSettings& settings, double tick_s);

@@ -55,6 +55,7 @@ std::string spheres_key(const std::string& tool_key, int max_leaves);
 std::optional<ToolSpheres> read_spheres(const std::filesystem::path& folder, const std::string& key);
 bool write_spheres(const std::filesystem::path& folder, const std::string& key, const ToolSpheres& spheres);
 
+// The tool of an experiment as settings.
 struct ToolSettings {
   std::string mesh = "husky";
   double size_m = 0;

@@ -98,7 +98,7 @@ std::string with_vertices_first(const std::string& ply);
 // files.
 
 // A mesh that a user names and places in a scene: its size, its pose or path of poses, and its colour.
-
+//
 // The pose of the object in the world frame W, whose y is up, is
 //   X_WO(t) = translation(position_m + d(t)) turn(t) translation(shift) rotation(rotation_deg) path(t).
 // d(t) and turn(t) are the displacement and the rotation of `motion`, along the axes of the world frame and

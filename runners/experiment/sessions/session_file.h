@@ -1,5 +1,5 @@
-// A live session on disk: its file, its recording, and its settings, which are the poses of device and
-// camera, the limits of the safety gate.
+// A live session on disk: its file, its recording, and its settings, which are the poses of device and camera
+// and the limits of the safety gate.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,6 @@
 namespace remote_touch {
 
 // The poses of device and camera in the world, as settings.
-
 struct LiveSettings {
   Vec3 device_position_m = Vec3::Zero();
   Vec3 device_rotation_deg = Vec3::Zero();
@@ -38,7 +37,6 @@ inline std::string validate(const LiveSettings&) {
 RigidTransform camera_registration(const LiveSettings& s);
 
 // The limits of a live run's safety gate, as settings.
-
 struct SafetyLimits {
   double max_force_N = 5;
   double max_torque_Nm = 0.2;
@@ -203,7 +201,7 @@ class SessionReader {
 // Records a live session so that no failure of the program loses it. While the session runs, the recording is
 // a journal beside its file (analysis/storage/block_journal.h). At the end a session file is made of the
 // journal. If there is no end, because the program is killed or the disk is full, the journal stays.
-
+//
 // Members throw InputError, which names the target, if it cannot be written. Only one thread may use an
 // object at a time, except for sync().
 class SessionRecorder {

@@ -41,8 +41,6 @@ double second_number(const std::string& table, const std::string& place);
 std::vector<double> second_column(const std::string& table, const std::string& list,
                                   const std::string& column);
 
-// Settings on top of a configuration, and the differences between two configurations.
-
 // Settings on top of a configuration: those of --set, of a sweep's `set`, and of a cell.
 
 // Path and value.

@@ -13,9 +13,7 @@
 
 namespace remote_touch {
 
-// Errors in the text of a file, such as an experiment. The message begins with the name of the file.
-
-// An error in the text of a file. It begins with the name of that file.
+// An error in the text of a file, such as an experiment. It begins with the name of that file.
 class FileRefusal : public InputError {
  public:
   using InputError::InputError;

@@ -47,7 +47,6 @@ std::string text_of_kind(const std::string& name);
 
 // Checks whether the hand stays on the surface that the camera sees, in runs whose motion was planned on
 // depth images.
-
 class SurfaceWatch {
  public:
   // Both must outlive the watch. scenario: without faults, because the trajectory was planned on it.

@@ -18,10 +18,7 @@
 
 namespace remote_touch {
 
-struct Trace;
-
 // The report of a run: what it read, and notes on what did not happen. It is stored with the result.
-
 struct RunReport {
   std::vector<std::string> inputs;  // one line for each recording, see Scenario::input()
   std::vector<Note> notes;

@@ -13,8 +13,6 @@
 
 namespace remote_touch {
 
-// Makes figures in parallel, with progress.
-
 struct FigureRun {
   const FigureEntry* entry;
   int coarse = 1;  // uses every coarse-th value of the axes of its maps
@@ -47,7 +45,6 @@ void make_figures(
 std::string progress_text(const std::vector<FigureRun>& runs, const FigureProgress& progress);
 
 // A folder into which figures are written, and the texts that are printed about them.
-
 class FigureFolder {
  public:
   // The runs must outlive it. Throws InputError if a file that it would write is there already and is no

@@ -1,4 +1,5 @@
-// The clock of a live run: sensors, devices and the loop between them read the time from it and wait on it.
+// The clock of a live run: sensors, devices and the loop between them read the time from it and wait on it;
+// and what threads in real time need: rights, and a value that passes from one to another.
 #pragma once
 
 #include <time.h>
@@ -24,9 +25,7 @@ class Clock {
   void sleep_s(double time_s) noexcept { sleep_until_ns(now_ns() + std::llround(1e9 * time_s)); }
 };
 
-// The clock of a live run.
-
-// CLOCK_MONOTONIC.
+// The clock of this machine, CLOCK_MONOTONIC.
 class SteadyClock final : public Clock {
  public:
   std::int64_t now_ns() const noexcept override {
@@ -48,20 +47,18 @@ inline Clock& steady_clock() {
   return clock;
 }
 
-// Real-time settings that an ordinary Linux system offers.
-
-// Requests SCHED_FIFO at priority 80 and a fixed processor for the calling thread, and locked memory for the
-// process. None of them is required. Memory is locked page by page as it is used, because locking all at once
-// would also commit the memory that reserve() only reserved. Returns one line: the requests granted, and why
-// the others were not.
+// Requests the real-time settings that an ordinary Linux system offers: SCHED_FIFO at priority 80 and a fixed
+// processor for the calling thread, and locked memory for the process. None of them is required. Memory is
+// locked page by page as it is used, because locking all at once would also commit the memory that reserve()
+// only reserved. Returns one line: the requests granted, and why the others were not.
 std::string become_real_time();
 
-// Requests a higher priority for the calling thread, which monitors such a loop. It stays at its own priority
-// if the request is refused.
+// Requests a higher priority for the calling thread, which monitors a loop in real time. It stays at its own
+// priority if the request is refused.
 void outrank_the_loop() noexcept;
 
 // Passes the newest value from one thread to another, lock-free.
-
+//
 // One producer, one consumer. publish() and take() each need one atomic exchange. A slot belongs to one side
 // at a time, so its old value is freed by the side that overwrites it.
 template <class T>

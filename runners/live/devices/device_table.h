@@ -24,7 +24,7 @@
 
 namespace remote_touch {
 
-// Names of sensors and devices: "scheme:address".
+// The name of a sensor or a device: "scheme:address".
 struct Uri {
   std::string scheme, address;  // the address may be empty
 };
@@ -153,14 +153,7 @@ class SimulatedDevice final : public HapticDevice {
   std::atomic<bool> armed_ = true;
 };
 
-// A hand without a haptic device: someone moves it with the mouse in a page of the viewer. Input only, six
-// axes, no motors.
-//
-// A page sends about sixty poses a second, and the loop needs one in each tick. The position therefore
-// follows the newest pose as a critically damped spring would, and the orientation approaches it
-// exponentially. Both lag by about 30 ms, and neither is faster than kMaxSpeed_m_per_s and
-// kMaxTurning_rad_per_s.
-inline constexpr double kMaxHandDistance_m = 10;  // limit from the origin, along each axis
+inline constexpr double kMaxHandDistance_m = 10;  // limit of the hand of a page, along each axis
 
 // The motion that a page requests: by `to` relative to `from`, from where the hand was stopped. The buttons
 // are those of `to`. When `stops` has changed, the tick that reads it stops the hand where it is then,
@@ -173,6 +166,13 @@ struct HandMotion {
 // Passes the newest motion from the thread of the page to the haptic loop.
 using HandPoses = TripleBuffer<HandMotion>;
 
+// A hand without a haptic device: someone moves it with the mouse in a page of the viewer. Input only, six
+// axes, no motors.
+//
+// A page sends about sixty poses a second, and the loop needs one in each tick. The position therefore
+// follows the newest pose as a critically damped spring would, and the orientation approaches it
+// exponentially. Both lag by about 30 ms, and neither is faster than kMaxSpeed_m_per_s and
+// kMaxTurning_rad_per_s.
 class BrowserDevice final : public HapticDevice {
  public:
   static constexpr double kNaturalFrequency_rad_per_s = 60;  // natural frequency of the spring
@@ -209,11 +209,9 @@ class BrowserDevice final : public HapticDevice {
   DeviceReading last_;
 };
 
-// The functions that open the other devices, and a table with one line for each device.
-
-// The adapters of devices except Haply's, one source each. open_...() opens a device; it throws InputError,
-// which says what is missing. ..._availability() says whether there is one. The adapters of vendors'
-// libraries are written from their documentation and tested with test doubles, never with a device.
+// The adapters of the other devices except Haply's, one source each. open_...() opens a device; it throws
+// InputError, which says what is missing. ..._availability() says whether there is one. The adapters of
+// vendors' libraries are written from their documentation and tested with test doubles, never with a device.
 
 // Force Dimension's omega, sigma, delta and lambda and Novint's Falcon, through the vendor's DHD library.
 // address: the number of the device among those connected; "" is 0.
@@ -316,7 +314,7 @@ inline DeviceFault fault_of(std::span<const KnownFault> known, int code, const c
 
 inline constexpr DeviceFault kNoRotation{"the device reports an orientation that is not a rotation", 0};
 
-// The table.
+// The table of the devices: one line each.
 
 // The objects that a device may need. All but poses must outlive it.
 struct DeviceContext {

@@ -60,7 +60,8 @@ class GreatestOfPieces {
   std::size_t length_ = 1, in_last_ = 0;
 };
 
-// Its memory is bounded: some hundred MB even after hours.
+// The trace of a live run, and the times and counts of its ticks. Its memory is bounded: some hundred MB even
+// after hours.
 struct LiveLog {
   static constexpr std::size_t kMaxRows = 1'800'000;  // half an hour at 1 kHz: 0.4 GB, more with a tool
 

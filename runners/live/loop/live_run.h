@@ -81,9 +81,6 @@ struct LiveResult {
 // exception ended the run and a file keeps the recording; the message names the file.
 LiveResult run_live(const Experiment& experiment, const LiveOptions& options);
 
-// All parts of a live run except its threads. Each thread only repeats one of the steps below. The same
-// steps, called without threads on a simulated clock, make the same run.
-
 // Watches the first contact of a live session, for a note on points that are too far apart.
 class LiveContact {
  public:
@@ -160,6 +157,8 @@ class LiveSlave {
 // which may grow: twice the number that the view expects, plus 256.
 std::size_t expected_points(const SensorView& view);
 
+// All parts of a live run except its threads. Each thread only repeats one of the steps below. The same
+// steps, called without threads on a simulated clock, make the same run.
 class LiveParts {
  public:
   // The objects that are passed by reference must outlive it. Throws InputError if the arguments do not fit

@@ -193,8 +193,6 @@ class LiveChannel {
   std::uint32_t sent_ = 0, acknowledged_ = 0;
 };
 
-// A page of a live run sends requests, which are checked, and messages, which are not trusted.
-
 // Decides from the headers of a request whether the page server may answer it, and says what the user can do
 // if not. The secret in the address is checked before.
 
@@ -244,7 +242,6 @@ std::optional<PageMessage> page_message(std::string_view bytes);
 // closes, the page that has watched longest receives the hand. A page may lose its connection and connect
 // again before the server has noticed the loss. It then replaces its own older connection and keeps the hand.
 // A page that connects later counts as a new page.
-
 class LivePages {
  public:
   static constexpr std::size_t kMax = 4;  // pages at the same time
@@ -294,14 +291,12 @@ class LivePages {
   std::string ended_;
 };
 
-// The server of the page, and the view that connects it with a run.
-
 // Serves the page of a live run, and its channels, to browsers on this machine. Compiled in if Boost's
 // headers are installed.
 //
 // The server is bound to 127.0.0.1. Its address contains a secret of 128 bits. It refuses a request without
 // the secret, a request that names another host (DNS rebinding), and a request from a page of another origin,
-// see live_pages.h. The refusal says what to do.
+// see is_loopback_host() and is_own_origin(). The refusal says what to do.
 // `channel?NAME` below the address is the WebSocket of the page that calls itself NAME: lower-case
 // hexadecimal digits, at most LivePages::kMaxName. `state` below the address reports why there is no channel,
 // see state_message().

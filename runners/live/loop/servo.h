@@ -1,5 +1,5 @@
 // One live tick: reads the device, makes the changes of the user, takes the newest frame, renders, applies
-// the safety gate, writes to the device.
+// the safety gate, writes to the device; what passes to the tick and from it; and the feed of the camera.
 #pragma once
 
 #include <array>
@@ -125,6 +125,7 @@ struct LiveFrame {
   std::uint64_t hash = 0;  // frame_hash()
 };
 
+// What one tick has read, computed and written.
 struct LiveTick {
   std::int64_t number = 0;  // the tick's time since the start is number / haptic rate
   DeviceState device;
@@ -225,8 +226,6 @@ class Servo {
   std::atomic<bool> failed_ = false, latched_ = false;
 };
 
-// Passes frames from the sensor to the servo, processed and prepared, one step at a time.
-
 // Queues a frame to be recorded. Returns false if the recorder's queue is full.
 using FrameSink = std::function<bool(const SensorFrame&, const Frame&, std::uint64_t fixtures_off)>;
 
@@ -245,6 +244,8 @@ struct CameraCounts {
 // Returns true if a processed frame has to be sent to the servo.
 using FrameChoice = std::function<bool(const Frame&)>;
 
+// Passes frames from the sensor to the servo, processed and prepared, one step at a time.
+//
 // Frames that the renderer may hold are also held here until nothing else holds them, so that their memory is
 // freed by the thread that calls step().
 class CameraFeed {

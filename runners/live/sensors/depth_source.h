@@ -168,7 +168,7 @@ Availability freenect_availability();
 // nfov (640 x 576 pixels, also if left out), nfov-binned (320 x 288), wfov-binned (512 x 512), all three at
 // 30 Hz, or wfov (1024 x 1024 at 15 Hz). Numbers have one or two digits; longer ones are serial numbers.
 //
-// The lens's distortion is removed from the depth (depth_source.h) with the calibration in the camera; the
+// The lens's distortion is removed from the depth (Undistortion) with the calibration in the camera; the
 // view is that of a pinhole camera. There is no colour. If several frames come between two calls of next(),
 // only the newest is kept. The camera does not count its frames: their numbers follow from its time stamps,
 // so that gaps are visible.
@@ -178,7 +178,7 @@ Availability k4a_availability();
 // Intel RealSense cameras: depth through the rs2 C interface of librealsense 2.
 //
 // address: a serial number, or nothing for the first camera. Depth comes with 640 x 480 pixels at 30 Hz, in
-// the unit of the camera. If the lens distorts, the distortion is removed (depth_source.h); the view is that
+// the unit of the camera. If the lens distorts, the distortion is removed (Undistortion); the view is that
 // of a pinhole camera. There is no colour. If several frames come between two calls of next(), only the
 // newest is kept.
 //

@@ -1,5 +1,5 @@
 // The messages of a live run whose camera stops or is unplugged: OpenNI 2's own run-time library with a
-// virtual camera as its driver, in real time. camera_loss_test.cpp tests the force at the hand meanwhile.
+// virtual camera as its driver, in real time. camera_feed_test.cpp tests the force at the hand meanwhile.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -169,7 +169,7 @@ LiveTick tick(std::int64_t number) {
 
 class LiveChannelTest : public testing::Test {
  protected:
-  // Returns the next message except the page's role, which live_pages_test.cpp tests.
+  // Returns the next message except the page's role, which live_view_test.cpp tests.
   bool take_next(LiveChannel::Message& message) {
     while (channel_.next(message))
       if (message.bytes != role_message(PageRole::hand)) return true;

@@ -1,4 +1,4 @@
-// The bytes of a page's messages, see live_pages.h.
+// The bytes of a page's messages, see live_view.h.
 #pragma once
 
 #include <cstdint>
