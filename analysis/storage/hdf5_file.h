@@ -29,6 +29,7 @@ inline std::string schema_name(const std::string& kind) {
 }
 
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
+
 // The HDF5 library may be at work as long as an object of this class exists. The library crashes in some
 // calls that find no memory, and on some damaged files.
 class Hdf5Work {

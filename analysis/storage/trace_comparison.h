@@ -132,8 +132,6 @@ struct HashComparison {
 };
 HashComparison compare_hashes(const TickHashes& baseline, const TickHashes& candidate);
 
-// Comparison of two traces: what differs, from which tick on, and in which situation it began.
-
 // The situation in which two runs begin to differ; the first that applies, in this order. It describes the
 // two traces at the first tick at which any value differs, not the reason in the program.
 enum class Cause {

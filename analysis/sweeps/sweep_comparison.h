@@ -10,7 +10,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"

@@ -1,5 +1,6 @@
 // Means of the measures of a sweep, differences between the values of one of its axes, and the value on an
 // axis at which an event has a given probability, with 95 % intervals: the rows of tables of estimates.
+// Beside them, the runs that a refinement of the sweep adds.
 #pragma once
 
 #include <cstddef>
@@ -85,9 +86,9 @@ struct EventLimits {
   std::optional<bool> rises;  // the stated direction, or the one that the runs show; empty: none
 };
 
-// The table has a row for each combination of the other axes: their values, the columns of add_estimates()
-// (sweep_means.h) in the unit of the axis, and `place`. value, low and high are those of estimated_limit(). A
-// fixed cell counts as one run, which is certain.
+// The table has a row for each combination of the other axes: their values, the columns of add_estimates() in
+// the unit of the axis, and `place`. value, low and high are those of estimated_limit(). A fixed cell counts
+// as one run, which is certain.
 //
 // All rows have one direction. If the question does not state it, the runs must show it: the slope of the
 // event over the index on the axis, summed over the rows, differs from 0 by Student's t at 5 %, with the less

@@ -1,5 +1,5 @@
 // Events of a run: on which side of the true surface the proxy is, pop-through, and when something happens
-// first. Measures of a run with a tool, with guidance or with a slave.
+// first. Measures of a run with contact, with a tool, with guidance or with a slave.
 #pragma once
 
 #include <type_traits>
@@ -85,9 +85,6 @@ double first_pop_through_time_s(const Trace& trace);
 // The time of max_force_jump_tick(), see force_measures.h.
 double max_force_jump_time_s(const Trace& trace);
 
-// Measures of a run with contact, as scalars of a trace: whether there is a force, how far the rendered
-// surface is from the true one, and how much the force tilts.
-
 // The force of contact on the hand in a tick, and whether there is one.
 
 // Returns the force on the hand without the part of guidance, which may pull in any direction, N, world
@@ -123,8 +120,7 @@ inline bool pressing(const Trace& trace, std::size_t i, double contact_radius_m)
   return (trace.hip_position_m[i] - trace.proxy_position_m[i]).norm() > 1.01 * contact_radius_m;
 }
 
-// Measures of a run with contact, as scalars of a trace: the height of the rendered surface over the true
-// one, and when the force ends. An unknown force is none.
+// The height of the rendered surface above the true one, and when the force ends. An unknown force is none.
 
 // Height of the rendered surface above the true one, m: the distance from the centre of the proxy to the true
 // surface minus the distance to the nearest point. Mean and standard deviation over the ticks that end in

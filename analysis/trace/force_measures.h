@@ -3,7 +3,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 namespace remote_touch {
 

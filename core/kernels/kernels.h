@@ -38,9 +38,7 @@ struct Kernels {
 inline constexpr std::size_t kLanes = 8;
 inline constexpr double kFarAway = 1e100;  // coordinate of a padding point; its square is still finite
 
-// The x86-64 levels of the kernels that the running machine supports. All levels compute the same bits.
-
-// x86-64 levels in rising order.
+// The x86-64 levels of the kernels, in rising order.
 enum class Isa { x86_64, x86_64_v3, x86_64_v4 };
 
 Isa best_isa();                   // the highest level of the running machine

@@ -1,4 +1,4 @@
-// The signed distance to a mesh at the nodes of a grid.
+// The signed distance to a mesh at the nodes of a grid, and the trilinear field between the nodes.
 #pragma once
 
 #include <algorithm>

@@ -13,8 +13,6 @@
 
 namespace remote_touch {
 
-// The faces of a closed mesh that bound its solid. Parts of a mesh may lie in each other, or cross.
-
 // The normals of the faces, edges and vertices of a surface of triangles, from which the side of a position
 // follows: it is the sign of (p - nearest point) . normal of the face, edge or vertex with the nearest point.
 // The normal of an edge is the mean of the normals of its faces. That of a vertex is the mean weighted by the
@@ -37,7 +35,8 @@ struct Pseudonormals {
 Pseudonormals pseudonormals(const TriangleMesh& mesh);
 
 // The solid of a closed mesh is the set of positions around which the whole mesh winds once or more: its
-// winding number is 1 or more there, and 0 or less outside.
+// winding number is 1 or more there, and 0 or less outside. Parts of the mesh may lie in each other, or
+// cross.
 enum class FaceSide : std::uint8_t {
   boundary,  // the solid is behind the face and not in front of it
   inner,     // the solid is on both sides, as of a part within another one: no part of the surface

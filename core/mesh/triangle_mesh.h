@@ -118,10 +118,10 @@ TriangleMesh repair_mesh(const TriangleMesh& mesh, MeshRepair& done);
 
 std::string text(const MeshRepair& done);  // "welded 12 vertices, filled 3 holes"; "nothing"
 
-// Tools that need no file: boxes, and smooth bodies meshed from a formula.
+// Meshes that need no file: boxes, and smooth bodies from a formula.
 
-// A closed mesh around the region in which a function is negative.
-
+// Returns a closed mesh around the region in which a function is negative.
+//
 // Every cube of the grid, which begins at `low`, is divided into six tetrahedra around its diagonal. A
 // surface through tetrahedra has no ambiguous cases, so the mesh is closed and manifold. Vertices lie on the
 // edges where the function vanishes, but at least a hundredth of an edge from its ends, so that no triangle

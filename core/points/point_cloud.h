@@ -38,7 +38,7 @@ struct PointCloud {
   std::vector<double> x, y, z;
   std::vector<double> fixture_radius_m;   // r_f of (5.2), 0 or more; empty: 0, which is chapter 4
   std::vector<double> stiffness_N_per_m;  // k_s of (5.3), 0 to 2^20; empty or NaN: the renderer's own
-  std::vector<std::uint32_t> colour;  // 0xRRGGBB, or kNoColour of point_cloud.h; empty: no point has a colour
+  std::vector<std::uint32_t> colour;      // 0xRRGGBB, or kNoColour; empty: no point has a colour
   // Unit normals of the surface, towards the side that the sensor sees, 6.2.1; empty: none. NaN in all three
   // where a point has no normal.
   std::vector<double> nx, ny, nz;

@@ -311,9 +311,6 @@ std::shared_ptr<const Form> form_of(const Frame& frame, const Kernels& kernels, 
   return {prepared, &prepared->form};
 }
 
-// Estimate of the point cloud velocity, 4.2.5: the speed of the surface along the proxy's normal, positive
-// towards the proxy.
-
 // The interval between the frames of a stream, without pauses of the stream. A stream continues at its former
 // rate after a pause, so a pause does not predict when the next frame comes. The part of an interval above a
 // limit counts as a pause. The limit is kMaxRatio times the previous interval without its own pause. It grows
@@ -335,6 +332,8 @@ class UsualInterval {
   double longest_s_ = std::numeric_limits<double>::infinity();
 };
 
+// Estimate of the point cloud velocity, 4.2.5: the speed of the surface along the proxy's normal, positive
+// towards the proxy.
 class SurfaceVelocity {
  public:
   // max_interval_s bounds how far ahead (4.3) extrapolates when frames are missing.

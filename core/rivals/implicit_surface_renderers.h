@@ -1,3 +1,17 @@
+// Constraint-based renderers of a point cloud as an implicit surface, [84] of the dissertation: metaballs or
+// planes at the proxy, and surfels, which have a normal for each point.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/kernels/kernels.h"
+#include "core/parameters/parameter.h"
+#include "core/rivals/point_normals.h"
+#include "core/rivals/rival_renderer.h"
+
+namespace remote_touch {
+
 // Constraint-based rendering of a point cloud as an implicit surface, [84] (see point_normals.h). The proxy
 // is a point that is kept outside by the scheme of K. Salisbury and C. Tarr, "Haptic rendering of surfaces
 // defined by implicit functions", ASME IMECE 1997:
@@ -15,17 +29,6 @@
 //
 // Outputs: contact_count is the number of points within R; steps is the number of evaluations of f; the state
 // is entrenched if f < 0 at the end of a tick.
-#pragma once
-
-#include <string>
-#include <vector>
-
-#include "core/kernels/kernels.h"
-#include "core/parameters/parameter.h"
-#include "core/rivals/point_normals.h"
-#include "core/rivals/rival_renderer.h"
-
-namespace remote_touch {
 
 struct ImplicitSurfaceParameters {
   SurfaceKind surface = SurfaceKind::metaballs;

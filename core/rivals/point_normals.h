@@ -1,6 +1,6 @@
 // A normal for each point of a frame: the axis along which its nearest neighbours are thinnest (principal
 // component analysis), turned towards the sensor. A normal is computed at its first use and kept until the
-// next frame. Beside it, the exact sums of what is computed from neighbours.
+// next frame. Beside it, a cloud as an implicit surface, and exact sums over neighbours.
 #pragma once
 
 #include <Eigen/Core>

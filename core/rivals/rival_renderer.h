@@ -1,6 +1,7 @@
 // Common base of the 3-DOF methods for comparison: renderers written from other papers, which are compared
 // with the proxy of chapter 4 in the same scenes with the same noise. This class handles what is not part of
-// any method: the order of frames, a lost device, and the output before the first frame.
+// any method: the order of frames, a lost device, and the output before the first frame. Beside it, the
+// penalty method.
 #pragma once
 
 #include <memory>

@@ -55,8 +55,6 @@ struct RasterImage {
 // fx and fy not 0.
 RasterImage depth_raster(const CameraIntrinsics& camera, std::span<const RasterMesh> meshes);
 
-// A depth sensor that looks at meshes which move as rigid bodies.
-
 // An object of a scene of meshes.
 struct SceneMesh {
   MeshObject object;
@@ -64,6 +62,7 @@ struct SceneMesh {
   std::optional<std::uint32_t> colour = {};   // 0xRRGGBB, of the whole object
 };
 
+// A depth sensor that looks at meshes which move as rigid bodies.
 class MeshCamera {
  public:
   // X_WC: camera to world frame; empty: the camera rests where its settings place it. Keeps a reference to

@@ -117,7 +117,7 @@ bool is_bag(const std::filesystem::path& path);
 // Returns the files that open_bag() reads, and metadata.yaml of a folder. Pre: is_bag(path).
 std::vector<std::filesystem::path> files_of_bag(const std::filesystem::path& path);
 
-// --- for the sources of this room ---
+// Chunks of a bag, for the sources of this room only.
 
 // Decodes compressed bytes piece by piece, as they are needed: frames of LZ4 and Zstandard, and bzip2.
 // Removes bytes from the front of `from`, writes up to `size` decoded bytes and returns their number. Returns
@@ -177,8 +177,6 @@ std::unique_ptr<BagFile> open_mcap(const std::filesystem::path& file, const Want
 std::unique_ptr<BagFile> open_ros1_bag(const std::filesystem::path& file, const WantedTopic& wanted);
 
 // The frames in a bag of ROS: the messages of one topic, in the order of their stamps, as clouds.
-
-// Settings that choose the frames of a recording from a bag of ROS.
 
 // The part of a bag that is used. topic and camera_info are names of topics. If a name is empty, the program
 // chooses the topic.

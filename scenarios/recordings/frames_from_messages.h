@@ -13,15 +13,11 @@
 
 namespace remote_touch {
 
-// Messages of ROS that come from a depth camera, as they are stored. Only their lengths and the transforms
-// are checked.
-
-// Reads the bytes of one message of ROS, value after value. No length in them is trusted.
-
 // Encoding of a message's values. ROS 2 uses CDR: a header of 4 bytes that states the byte order, then values
 // aligned to their size. ROS 1 uses little-endian values without gaps.
 enum class WireFormat { cdr, ros1 };
 
+// Reads the bytes of one message of ROS, value after value. No length in them is trusted.
 class MessageCursor {
  public:
   // bytes must outlive the cursor and all views that it returns. subject: what an InputError is about. Throws
@@ -56,6 +52,9 @@ class MessageCursor {
   std::size_t at_ = 0, origin_ = 0;
   bool big_endian_ = false;
 };
+
+// Messages of ROS that come from a depth camera, as they are stored. Only their lengths and the transforms
+// are checked.
 
 // Maximum number of pixels of an image: 8192 x 8192, 0.5 GB as depths.
 inline constexpr std::uint64_t kMaxImagePixels = 1u << 26;

@@ -43,14 +43,14 @@ Parameters parameters(ImageMask::Settings& s);
 std::string validate(const ImageMask::Settings& s);
 InputPart input_files(const ImageMask::Settings& s);
 
-// A recorded sequence of depth images or clouds, streamed at the recorded times or at a chosen rate.
-
 // The surface that a depth image shows: a plane through the points around a pixel. Returns the distance of p
 // to a plane through the points of the cloud around p's pixel, within radius_m, m; positive towards the
 // camera. NaN at holes and depth edges, outside the image, behind the camera, and for clouds without a
 // camera.
 double distance_to_measured(const PointCloud& cloud, const Vec3& p_W, double radius_m);
 
+// A recorded sequence of depth images or clouds, streamed at the recorded times or at a chosen rate.
+//
 // The world frame is the camera's, x right, y down, z forward, unless the camera is registered to another or
 // its poses are known. The true surface is the measured one, or that of the meshes in the folder truth/ of
 // the recording, see recorded_truth.h.

@@ -18,8 +18,6 @@
 
 namespace remote_touch {
 
-class BagFrames;
-
 // Equal to the fastest haptic rate. At a higher rate more than one frame would arrive in a tick.
 inline constexpr double kMaxFrameRate_hz = 10000;
 // Rate of the Kinect class, for a recording that states none.
@@ -63,8 +61,8 @@ struct RecordingIndex {
 };
 
 // Lists the frames of a recording. Its layout is the first of these that fits path:
-// - a bag, see bags/bag_file.h: the messages of one topic, as the choice says, see bag_file.h. Its rate is
-//   the mean rate of the stamps (30 Hz for a single frame).
+// - a bag, see bag_file.h: the messages of one topic, as the choice says. Its rate is the mean rate of the
+//   stamps (30 Hz for a single frame).
 // - a folder of depth images in the layout of this program, TUM, ScanNet, 7-Scenes or BOP.
 // - DIR/*.pcd: at the frame_rate_hz of DIR/camera.json, else 30 Hz. The other values of camera.json and times
 //   in file names are not used.
@@ -181,8 +179,6 @@ void conform(const FrameLayout& layout, const std::string& subject, PointCloud& 
 // camera has no depth and is not changed. Pre: the cloud is in its camera's frame.
 void drop_beyond(double max_depth_m, PointCloud& cloud);
 
-// Folders of depth images in the layouts that are read: that of this program, and those of public data sets.
-
 // The images or clouds of a folder in order, and the colour image that belongs to each depth image.
 
 // Returns the files with this extension (lower case, with its dot; the files may have it in capital letters),
@@ -239,7 +235,8 @@ std::vector<StampedFile> read_stamped_list(const std::filesystem::path& list);
 std::vector<RecordedFrame> associate_stamps(const std::vector<StampedFile>& depth,
                                             const std::vector<StampedFile>& colour);
 
-// Lists the frames of a folder. The layout is the first of these whose files it has:
+// Lists the frames of a folder of depth images, in the layout of this program or of a public data set. The
+// layout is the first of these whose files it has:
 // - TUM RGB-D: depth.txt, and rgb.txt for colours, see above; 5000 units per metre. The rate is the
 //   mean rate of the stamps (30 Hz for a single frame). The camera is that of freiburg1, 2 or 3, if the
 //   folder's name or a comment in depth.txt names it, else the benchmark's default (f = 525), with a note.

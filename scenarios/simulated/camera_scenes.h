@@ -121,13 +121,13 @@ class Handwheel {
   double ball_radius_;
 };
 
-// Model of a colour and depth camera in turbid water: colours fade into a veil of scattered light, and depth
-// becomes noisier or is lost. The rates describe the trend, not one particular water.
-
 // exp(-x) for x >= 0, with a relative error below 1e-12; 0 from 64 on. Computed by products, so that the bits
 // do not depend on which exponential the C library picks for a machine.
 double decay(double x);
 
+// Model of a colour and depth camera in turbid water: colours fade into a veil of scattered light, and depth
+// becomes noisier or is lost. The rates describe the trend, not one particular water.
+//
 // Distances are metres of water between the camera and the object; infinite if the pixel shows no object. The
 // model neglects blur and the path of the light to the objects.
 class Water {

@@ -1,6 +1,7 @@
-// A synthetic structured-light depth camera: where it looks, what it would see ideally, and what it measures.
-// Depth is measured along the optical axis with Gaussian noise that grows with z^2, then quantised in steps
-// of quantisation_per_m z^2, and lost near depth edges.
+// Synthetic depth cameras: where they look, what they would see ideally, and what they measure. The depth of
+// the simple one is measured along the optical axis with Gaussian noise that grows with z^2, then quantised
+// in steps of quantisation_per_m z^2, and lost near depth edges. Beside it, sensors with the errors of real
+// ones.
 #pragma once
 
 #include <array>
@@ -87,8 +88,6 @@ class DepthCamera {
   RigidTransform X_WC_;
 };
 
-// A synthetic depth camera that looks at a ramp and a box on a table: Figs 4.15 and 4.16 without a recording.
-
 // A convex profile in the (z, y) plane, extruded along x: boxes and ramps, with exact distance and ray cast.
 class Extrusion {
  public:
@@ -107,6 +106,8 @@ class Extrusion {
   double x_low_, x_high_;
 };
 
+// A synthetic depth camera that looks at a ramp and a box on a table: Figs 4.15 and 4.16 without a recording.
+//
 // World frame: the table is y = 0, y up. Ramp and box lie one behind the other along z. The camera is beside
 // the gap between them, where it sees the walls on both sides of the gap.
 class CameraScene final : public Scenario {
@@ -140,9 +141,6 @@ Parameters parameters(CameraScene::Settings& s);
 inline std::string validate(const CameraScene::Settings& s) {
   return validate(s.camera);
 }
-
-// Sensors of depth images with the errors of real ones: structured light and active stereo, beside the simple
-// model of depth_camera.h.
 
 // The shadow that a second device beside a camera has: a projector of light, or the second camera of a pair.
 
@@ -178,6 +176,8 @@ struct WindowNoise {
 WindowNoise window_noise(int width, int height, int window_px, bool also_independent,
                          const NoiseStream& stream, const Kernels& kernels);
 
+// Sensors of depth images with the errors of real ones, beside the simple model above.
+//
 // Structured light and active stereo triangulate: a second device, a projector or a second camera, is at
 // (baseline, 0, 0) in the camera frame, to the right of the camera. The sensor measures the disparity
 // d = f b / z in pixels, with the focal length f and the baseline b. All errors arise there:

@@ -14,9 +14,6 @@
 
 namespace remote_touch {
 
-// The sheet of surface near a proxy in one frame: how it is found alone, registered to a prediction, and
-// searched without its noise.
-
 // Settings of the search for a sheet, and of the noise reduction of its points.
 struct SheetSettings {
   double gate_m = 0.015, initial_gate_m = 0.035, max_gate_m = 0.075;

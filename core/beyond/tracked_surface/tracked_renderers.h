@@ -1,11 +1,5 @@
-// 3-DOF rendering of a tracked sheet: the proxy of chapter 4 on a surface that is followed from frame to
-// frame and denoised. The method is not in the dissertation; its inputs are those of the proxy, points and
-// times.
-//
-// The sheet in front of the proxy is found again in each frame at its predicted position, and is registered
-// to the previous frame. A proxy that the sheet holds back moves with it; a free proxy moves only if the
-// sheet swept over it. The sheet's points are moved onto the local planes that fit them, as far as noise
-// explains their distances. The ticks are those of the proxy, with the measured velocity in (4.15).
+// Renderers of tracked sheets, surfaces that are followed from frame to frame and denoised: for a HIP, and
+// for a tool.
 #pragma once
 
 #include <limits>
@@ -18,6 +12,15 @@
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {
+
+// 3-DOF rendering of a tracked sheet: the proxy of chapter 4 on a surface that is followed from frame to
+// frame and denoised. The method is not in the dissertation; its inputs are those of the proxy, points and
+// times.
+//
+// The sheet in front of the proxy is found again in each frame at its predicted position, and is registered
+// to the previous frame. A proxy that the sheet holds back moves with it; a free proxy moves only if the
+// sheet swept over it. The sheet's points are moved onto the local planes that fit them, as far as noise
+// explains their distances. The ticks are those of the proxy, with the measured velocity in (4.15).
 
 struct TrackedSheetParameters {
   ProxyParameters proxy;

@@ -19,10 +19,6 @@
 
 namespace remote_touch {
 
-// The contacts of a tool of spheres with forbidden regions, (7.4).
-
-// Detects near pairs of a leaf of a tool's sphere tree and a forbidden region, 7.4.1.
-
 // A leaf of the tool at a pose, world frame, and the patches of regions near the node that it belongs to.
 struct CloseLeaf {
   std::uint32_t number;
@@ -30,7 +26,8 @@ struct CloseLeaf {
   Sphere sphere_W;
 };
 
-// Allocates in the constructor and in reserve(), and in on_frame() if reserve() was not called.
+// Detects near pairs of a leaf of a tool's sphere tree and a forbidden region, 7.4.1. Allocates in the
+// constructor and in reserve(), and in on_frame() if reserve() was not called.
 class TreeCollision {
  public:
   // tool: in the tool frame. Keeps references to tool and regions.
@@ -143,6 +140,8 @@ struct RegionTouch {
   double stiffness_N_per_m;     // mean of k_s over these pairs, weighted by depth; the tool's own without any
 };
 
+// The contacts of a tool of spheres with forbidden regions, (7.4).
+//
 // Each pair of leaves nearer than look_ahead_m is a constraint along the line of their centres, unless
 // another pair makes it redundant: see PairChoice. The motion program can handle only some of the remaining
 // pairs. If there are more and no leaf is deep, the pairs are dropped that only the longest motions can

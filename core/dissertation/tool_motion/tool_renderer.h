@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "core/dissertation/tool_motion/contact_list.h"
-#include "core/dissertation/tool_motion/motion_program.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/rendering/renderer.h"
 

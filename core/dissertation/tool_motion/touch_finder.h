@@ -24,10 +24,6 @@
 
 namespace remote_touch {
 
-// The points of a frame in the form that detection with a tool reads. Neighbouring points form tiles with
-// bounding spheres, and tiles form blocks with bounding spheres, so that one test skips everything that is
-// far from the tool.
-
 // The slab of a group of points: a flat disk that contains all of them. It is much thinner than a sphere
 // around points of a surface, so that a tool can rest close to it without being near its points. Not in the
 // dissertation.
@@ -84,6 +80,9 @@ class PointChange {
   virtual bool apply(Point& point) const = 0;
 };
 
+// The points of a frame in the form that detection with a tool reads. Neighbouring points form tiles with
+// bounding spheres, and tiles form blocks with bounding spheres, so that one test skips everything that is
+// far from the tool.
 class TiledCloud {
  public:
   // Assigns the points of a cloud. A tile of an organised cloud is 8 x 8 pixels; a tile of any other cloud is
