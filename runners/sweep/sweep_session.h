@@ -205,7 +205,7 @@ struct Recheck {
   std::size_t made = 0;                 // number of runs that were made again
   std::size_t cells = 0, cells_in = 0;  // number of cells of a tally that were made again; of all its cells
   // A text for each run that differs, with the first difference, such as "run 99: max_force = 1.5, now 1.25".
-  // For a tally a text for each cell that differs, such as "cell 3: mean of max_force = 1.5, now 1.25".
+  // A tally has a text for each cell that differs, such as "cell 3: mean of max_force = 1.5, now 1.25".
   std::vector<std::string> different = {};
 };
 

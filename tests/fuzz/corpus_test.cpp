@@ -25,8 +25,8 @@ TEST_P(Corpus, IsReadOrRefusedInOneLine) {
   }
 }
 
-// What remains of a file whose writer was killed, or of a message that was cut off. A seed that makes a
-// library hang may still do so when it is cut.
+// A seed that is cut is what a killed writer leaves of a file, or a lost connection of a message. A seed that
+// makes a library hang is left out, because it may still do so when it is cut.
 TEST_P(Corpus, IsReadOrRefusedInOneLineWhereverItEnds) {
   constexpr std::size_t kCuts = 24;
   const fs::path folder = fs::path(REMOTE_TOUCH_SOURCE_DIR) / "tests/fuzz/corpus" / GetParam().name;

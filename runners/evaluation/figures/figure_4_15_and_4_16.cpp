@@ -302,7 +302,7 @@ void add_claims(Figure& figure, const std::string& where, const Trace& trace) {
   const std::string prefix = where.empty() ? "" : where + ": ";
   add_side_claim(figure, prefix, trace);
   add_sound_claims(figure, prefix, trace);
-  // Nothing is claimed about the other ticks. NaN if the HIP is never held back.
+  // The claim leaves out the other ticks. Its value is NaN if the HIP is never held back.
   const auto touches = [&](std::size_t i) { return pressing(trace, i, kContactRadius_m); };
   const auto is_known = [&](std::size_t i) { return std::isnan(trace.signed_distance_m[i]) ? 0 : 1; };
   Claims(figure, prefix, &Claim::set_up)

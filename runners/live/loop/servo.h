@@ -125,7 +125,7 @@ struct LiveFrame {
   std::uint64_t hash = 0;  // frame_hash()
 };
 
-// What one tick has read, computed and written.
+// Everything that one tick has read, computed and written.
 struct LiveTick {
   std::int64_t number = 0;  // the tick's time since the start is number / haptic rate
   DeviceState device;

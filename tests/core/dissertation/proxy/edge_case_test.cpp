@@ -318,7 +318,7 @@ TEST(Crease, ProxyOnTheMeanPlaneWandersByUpTo3mmBelow100Degrees) {
     max_m = std::max(max_m, wander_m);
   });
   RecordProperty("max_wander_um", static_cast<int>(1e6 * sharp_m));
-  EXPECT_GT(sharp_m, 1e-3) << "the method got better: say so where its limits are told";
+  EXPECT_GT(sharp_m, 1e-3) << "the method got better: state it where its limits are listed";
   EXPECT_LT(sharp_m, 3e-3);
   EXPECT_LT(wide_m, 1e-6);
 }

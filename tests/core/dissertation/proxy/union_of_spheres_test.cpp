@@ -117,7 +117,7 @@ TEST(UnionOfSpheres, ATickMayEndInsideARegion) {
     RecordProperty(name(p) + "_centre_inside", centre_inside);
     RecordProperty(name(p) + "_deepest_m", std::to_string(deepest));
     EXPECT_GT(touching, ticks / 4);
-    EXPECT_GT(entrenched, 0) << "the method got better: say so where its limits are told";
+    EXPECT_GT(entrenched, 0) << "the method got better: state it where its limits are listed";
     EXPECT_LT(entrenched, 0.2 * touching) << name(p);
     EXPECT_LT(centre_inside, 1e-4 * ticks) << name(p);
     EXPECT_GT(deepest, -kDefault.contact_radius_m());

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+
 #include <filesystem>
 
 #include "analysis/storage/atomic_file.h"
@@ -10,8 +11,26 @@
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::command_line_test {
+namespace remote_touch::commands_test {
 namespace {
+
+namespace fs = std::filesystem;
+
+// A run takes a millisecond.
+constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
+  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
+  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 2}],
+  "replicates": 2, "measures": ["max_penetration"]})";
+
+constexpr const char* kNone = "no InputError";
+
+// The program without messages, as each command gets it.
+CommandLine quiet_line() {
+  CommandLine line;
+  line.quiet = true;
+  line.kernels = &kernels_for(best_isa());
+  return line;
+}
 
 TEST(OtherKind, NamesTheCommand) {
   EXPECT_EQ(other_kind("4.12", "run"), "is a figure: expected `remote-touch figure 4.12 -o FOLDER`");
@@ -31,12 +50,7 @@ TEST(OtherKind, IsEmptyForTheCommandsOwnNamesForFilesAndForNoWord) {
   EXPECT_EQ(other_kind("", "run"), "");
 }
 
-}  // namespace
-}  // namespace remote_touch::command_line_test
-
 // Tests of the text that the command `hashes` prints.
-namespace remote_touch::compare_test {
-namespace {
 
 std::string printed(int ticks) {
   const TestFolder folder("hashes");
@@ -54,18 +68,7 @@ TEST(Hashes, NameTheirLastTickIfThereIsOne) {
   EXPECT_HAS(printed(0), "hashes.h5: 0 hashes\n");
 }
 
-}  // namespace
-}  // namespace remote_touch::compare_test
-
 // The estimate of `sweep --dry-run`.
-namespace remote_touch::dry_run_test {
-namespace {
-
-// A run takes a millisecond.
-constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
-  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
-  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 2}],
-  "replicates": 2, "measures": ["max_penetration"]})";
 
 std::string printed(const CommandLine& line, const SweepRequest& request) {
   testing::internal::CaptureStdout();
@@ -75,9 +78,7 @@ std::string printed(const CommandLine& line, const SweepRequest& request) {
 
 TEST(DryRun, HasNoTimeToEstimateIfNoRunIsLeft) {
   const TestFolder folder("dry_run");
-  CommandLine line;
-  line.quiet = true;
-  line.kernels = &kernels_for(best_isa());
+  const CommandLine line = quiet_line();
   SweepRequest request;
   request.sweep = folder.write("quick.json", kQuick).string();
   request.output = (folder / "map.h5").string(), request.shard = "1/1", request.dry_run = true;
@@ -92,9 +93,7 @@ TEST(DryRun, HasNoTimeToEstimateIfNoRunIsLeft) {
 
 TEST(DryRun, RefusesATallyThatTheSweepWouldRefuse) {
   const TestFolder folder("dry_run");
-  CommandLine line;
-  line.quiet = true;
-  line.kernels = &kernels_for(best_isa());
+  const CommandLine line = quiet_line();
   SweepRequest request;
   request.sweep = folder.write("quick.json", kQuick).string(), request.dry_run = true;
   request.overrides = {"keep=tally"};
@@ -108,9 +107,7 @@ TEST(DryRun, RefusesATallyThatTheSweepWouldRefuse) {
 // Each run is tried once if there are fewer than it would try.
 TEST(DryRun, TriesEachOfFewRuns) {
   const TestFolder folder("dry_run");
-  CommandLine line;
-  line.quiet = true;
-  line.kernels = &kernels_for(best_isa());
+  const CommandLine line = quiet_line();
   SweepRequest request;
   request.sweep = folder.write("quick.json", kQuick).string(), request.dry_run = true;
   request.overrides = {"duration_s=0.01"};
@@ -120,9 +117,7 @@ TEST(DryRun, TriesEachOfFewRuns) {
 // A dry run reads the file as the sweep does.
 TEST(DryRun, KnowsWhatATallyHas) {
   const TestFolder folder("dry_run");
-  CommandLine line;
-  line.quiet = true;
-  line.kernels = &kernels_for(best_isa());
+  const CommandLine line = quiet_line();
   SweepRequest request;
   request.sweep = folder.write("quick.json", kQuick).string(), request.overrides = {"keep=tally"};
   request.output = (folder / "tally.h5").string();
@@ -133,14 +128,7 @@ TEST(DryRun, KnowsWhatATallyHas) {
   EXPECT_HAS(refusal([&] { command_sweep(line, request); }), "tally.h5: is of another configuration");
 }
 
-}  // namespace
-}  // namespace remote_touch::dry_run_test
-
 // A command writes no file twice, and none that it reads.
-namespace remote_touch::outputs_test {
-namespace {
-
-namespace fs = std::filesystem;
 
 class Outputs : public testing::Test {
  protected:
@@ -150,8 +138,6 @@ class Outputs : public testing::Test {
   }
   const TestFolder folder_{"outputs_test"};
 };
-
-constexpr const char* kNone = "no InputError";
 
 TEST_F(Outputs, OneFileForTwoOptionsIsRefusedHoweverItIsWritten) {
   fs::create_directory(folder_ / "sub");
@@ -208,12 +194,6 @@ TEST_F(Outputs, AFileThatAppearsMeanwhileIsKeptUnlessForced) {
   EXPECT_EQ(bytes_of(report), "new");
 }
 
-}  // namespace
-}  // namespace remote_touch::outputs_test
-
-namespace remote_touch::progress_test {
-namespace {
-
 TEST(ProgressText, StatesTheKnownProgress) {
   EXPECT_EQ(progress_text(0.25, 10), " 25 %, 2.5 %/s, 30 s left");
   EXPECT_EQ(progress_text(1, 10), "100 %, 10.0 %/s, 0 s left");
@@ -227,24 +207,11 @@ TEST(ProgressText, PromisesNothingBeforeAnythingIsDone) {
   EXPECT_EQ(progress_text(0, 100, 0, "runs", 0), "0 of 100 runs");
 }
 
-}  // namespace
-}  // namespace remote_touch::progress_test
-
 // Tests of the files that the command `merge` may overwrite.
-namespace remote_touch::sweep_test {
-namespace {
-
-// A run takes a millisecond.
-constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12",
-  "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
-  "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 2}],
-  "replicates": 2, "measures": ["max_penetration"]})";
 
 class Merge : public testing::Test {
  protected:
   Merge() {
-    line_.quiet = true;
-    line_.kernels = &kernels_for(best_isa());
     const std::string sweep = folder_.write("quick.json", kQuick).string();
     for (const char* shard : {"1/2", "2/2"})
       shards_.push_back(
@@ -272,12 +239,10 @@ class Merge : public testing::Test {
   }
 
   const TestFolder folder_{"merge_test"};
-  CommandLine line_;
+  CommandLine line_ = quiet_line();
   std::vector<std::string> shards_;
   std::string longer_;
 };
-
-constexpr const char* kNone = "no InputError";
 
 TEST_F(Merge, ReplacesAnotherFileOnlyIfForced) {
   const std::string output = folder_.write("notes.txt", "precious notes").string();
@@ -339,4 +304,4 @@ TEST_F(Merge, OfAnEmptyShardStatesTheSweep) {
 }
 
 }  // namespace
-}  // namespace remote_touch::sweep_test
+}  // namespace remote_touch::commands_test

@@ -333,7 +333,7 @@ TEST(ScenarioCamera, FramesComeAtTheTimesAtWhichTheyWereCaptured) {
   }
 }
 
-// What was set up between the start of the run and the first frame moves no frame in time.
+// The time that setting up takes before the first frame moves no frame in time.
 TEST(ScenarioCamera, CountsFromTheStartOfTheRun) {
   SimulatedClock clock;
   clock.sleep_s(5);
