@@ -29,9 +29,11 @@ class Recording:
     objects: int
 
 
-RECORDINGS = (Recording("rgbd/visp_cube_dragon", "", 0.003, 2), Recording("rgbd/visp_teabox_synthetic", "rendered ", 0, 1))
+RECORDINGS = (Recording("rgbd/visp_cube_dragon", "", 0.003, 2),
+              Recording("rgbd/visp_teabox_synthetic", "rendered ", 0, 1))
 
-# Three renderers are compared over the frames: the proxy, the tracked sheet, and a ball of 10 mm radius behind the default depth pipeline.
+# Three renderers are compared over the frames: the proxy, the tracked sheet, and a ball of 10 mm radius behind the
+# default depth pipeline.
 RENDERERS = (Toucher("proxy", {"name": "proxy"}, PROXY_REST_M), Toucher("tracked sheet", {"name": "tracked-sheet"}, PROXY_REST_M),
              Toucher("ball as tool", {"name": "tool", "tool_mesh": "ball"}, BALL_M, depth_pipeline={}))
 

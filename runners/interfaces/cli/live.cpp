@@ -259,8 +259,7 @@ int command_live(const CommandLine& line, const LiveRequest& request) {
 template <class Entry>
 void print_entry(const Entry& entry) {
   const Availability availability = entry.availability();
-  std::printf("  %-28s %s\n  %-28s %s%s%s\n", entry.example, entry.summary, "",
-              availability.compiled_in ? "" : "not compiled in: ",
+  std::printf("  %-28s %s\n  %-28s %s%s\n", entry.example, entry.summary, "",
               !availability.compiled_in || availability.found ? ""
               : availability.was_searched                     ? "not found: "
                                                               : "unknown: ",

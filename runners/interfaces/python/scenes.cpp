@@ -15,6 +15,7 @@
 #include "runners/interfaces/python/bindings.h"
 #include "runners/interfaces/python/clouds.h"
 #include "runners/interfaces/python/long_work.h"
+#include "runners/libraries/depth_device.h"
 #include "scenarios/objects/mesh_scene.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/simulated/depth_camera.h"
@@ -113,7 +114,7 @@ std::shared_ptr<PythonCloud> window_of(const PythonCloud& cloud, int left, int t
 std::shared_ptr<PythonCloud> filtered(const PythonCloud& cloud, int left, int top, int width, int height,
                                       const py::kwargs& settings) {
   const ImageLayout& layout = layout_of(cloud);
-  const auto given = settings_of<DepthPipelineSettings>(settings, "depth_pipeline");
+  const auto given = settings_of<DepthDeviceSettings>(settings, "depth_pipeline");
   const PixelRectangle at = checked({left, top, width, height}, layout.camera);
   const py::gil_scoped_release without_lock;
   const AloneInThread alone;
@@ -294,7 +295,7 @@ void bind_images(py::module_& module, CloudClass& cloud, SceneClass& scene) {
       .def(
           "filtered", &filtered, left, top, width, height,
           "A rectangle of pixels behind the depth pipeline, with settings of depth_pipeline: filtered points "
-          "with normals.")
+          "with normals. The CPU computes them, whatever device says.")
       .def("surface_distances", &surface_distances, py::arg("points"), py::arg("radius_m"),
            "Distances of points from the surface that the image shows: from planes through the pixels within "
            "radius_m.")

@@ -138,6 +138,8 @@ def test_doors_to_scenes_refuse_what_they_cannot_use():
     scene = rt.scene("mesh-scene", mesh="fork", sensor="structured-light", width=64, height=48, focal_px=52)
     cloud, times = scene.cloud(0), np.array([[0, 7], [0.1, 7], [0.2, 7]])[:, 0]
     points = np.zeros((3, 3))
+    smooth = [cloud.filtered(0, 0, 64, 48, filter_window=5, **more).points for more in ({}, {"device": "cpu", "exact": True})]
+    assert np.array_equal(*smooth, equal_nan=True)  # a whole section depth_pipeline is accepted
     assert scene.signed_distances(points, times).tolist() == [scene.signed_distance((0, 0, 0), time_s) for time_s in times]
     sensor = rt.DepthSensor(sensor="structured-light", width=np.int64(64), height=48, focal_px=52)
     proxy = rt.renderer("fig4.12")
