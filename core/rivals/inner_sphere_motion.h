@@ -30,6 +30,7 @@
 
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/sphere_tree.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/mesh/voxel_tool.h"

@@ -8,6 +8,7 @@
 #include "core/beyond/tracked_surface/sheet_patches.h"
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 #include "core/dissertation/proxy/proxy_renderer.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/rendering/renderer.h"
 

@@ -8,6 +8,7 @@
 
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/mesh/voxel_tool.h"
 #include "core/parameters/parameter.h"

@@ -11,6 +11,7 @@
 #include "core/dissertation/tool_motion/motion_program.h"
 #include "core/dissertation/tool_motion/near_points.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/kernels/tool_kernels.h"
 #include "core/mesh/distance_field.h"

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/dissertation/tool_motion/contact_list.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
 
 namespace remote_touch {

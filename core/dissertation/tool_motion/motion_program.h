@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/mesh/voxel_tool.h"
 
 namespace remote_touch {

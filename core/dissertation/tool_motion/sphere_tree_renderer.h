@@ -13,6 +13,7 @@
 #include "core/dissertation/tool_motion/look_ahead_motion.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/sphere_tree.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/kernels/kernels.h"
 #include "core/mesh/voxel_tool.h"
 #include "core/rendering/renderer.h"

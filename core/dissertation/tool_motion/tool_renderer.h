@@ -9,6 +9,7 @@
 
 #include "core/dissertation/tool_motion/contact_list.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/rendering/renderer.h"
 
 namespace remote_touch {

@@ -11,6 +11,7 @@
 #include "core/beyond/tracked_surface/tracked_renderers.h"
 #include "core/dissertation/tool_motion/compared_motions.h"
 #include "core/dissertation/tool_motion/sphere_tree.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/mesh/voxel_tool.h"
 #include "core/parameters/parameter.h"

@@ -1,4 +1,5 @@
 #include "core/dissertation/tool_motion/rigid_tool.h"
+#include "core/dissertation/tool_motion/tool_parameters.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/dissertation/tool_motion/tool_parameters.h"
 #include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/dissertation/virtual_fixtures/guided_renderer.h"
 #include "core/points/vector.h"
