@@ -13,7 +13,7 @@
 
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 namespace remote_touch {
 

@@ -15,7 +15,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/noise.h"
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 namespace remote_touch {
 

@@ -24,7 +24,7 @@
 #include "core/mesh/voxel_tool.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "scenarios/files/input_files.h"
 #include "scenarios/simulated/scenario.h"

@@ -6,7 +6,7 @@
 
 #include "core/dissertation/proxy/proxy_motion.h"
 #include "core/points/point_cloud.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 namespace remote_touch::naive {
 

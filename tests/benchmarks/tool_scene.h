@@ -8,7 +8,7 @@
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
 #include "core/mesh/voxel_tool.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 namespace remote_touch::benchmarks {
 

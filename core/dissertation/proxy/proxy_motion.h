@@ -13,7 +13,7 @@
 #include "core/parameters/parameter.h"
 #include "core/points/neighbour_search.h"
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 // The equations of 4.2 and 5.3 that a proxy P needs of every point x near it, one statement each. The kernels
 // of core/kernels/point_kernels.h compute them for many points at a time and are tested against this form.

@@ -17,7 +17,7 @@
 #include "core/kernels/tool_kernels.h"
 #include "core/mesh/voxel_tool.h"
 #include "core/points/neighbour_search.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 namespace remote_touch {
 

@@ -18,7 +18,7 @@
 
 #include "core/kernels/kernels.h"
 #include "core/points/neighbour_search.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 #include "runners/experiment/catalog/catalog.h"
 
 // A flat cloud as a frame, for tests and benchmarks.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/points/vector.h"
+#include "core/rendering/renderer.h"
 
 namespace remote_touch {
 namespace {

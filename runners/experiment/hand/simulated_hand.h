@@ -12,7 +12,7 @@
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 namespace remote_touch {
 

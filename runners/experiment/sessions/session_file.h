@@ -14,7 +14,7 @@
 #include "analysis/storage/hdf5_reader.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 #include "runners/experiment/sessions/sensor_frame.h"
 
 namespace remote_touch {

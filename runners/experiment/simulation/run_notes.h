@@ -15,7 +15,7 @@
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/simulated/scenario.h"

@@ -9,7 +9,7 @@
 
 #include "core/kernels/kernels.h"
 #include "core/points/noise.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 #include "runners/interfaces/python/arrays.h"
 #include "scenarios/simulated/scenario.h"
 

@@ -11,7 +11,7 @@
 
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/live/devices/clock.h"
 

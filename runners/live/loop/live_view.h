@@ -17,7 +17,7 @@
 #include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/live/devices/device_table.h"
 #include "runners/live/devices/haptic_device.h"

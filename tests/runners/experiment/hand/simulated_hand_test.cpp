@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/points/vector.h"
-#include "core/rendering/renderer.h"
+#include "core/rendering/frames_and_outputs.h"
 
 namespace remote_touch::device_model_test {
 namespace {
