@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 
 namespace remote_touch {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 
 namespace remote_touch {
 

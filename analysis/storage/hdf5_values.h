@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 
 namespace remote_touch {
 

@@ -8,7 +8,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 
 namespace remote_touch {
 

@@ -15,7 +15,7 @@
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/measures.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 
 namespace remote_touch {
 

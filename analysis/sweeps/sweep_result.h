@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/trace/interval_estimates.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 
 namespace remote_touch {
 

@@ -14,7 +14,7 @@
 
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 
 namespace remote_touch {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/frame_stream.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -16,7 +16,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/kernels/kernels.h"
 #include "core/mesh/voxel_tool.h"

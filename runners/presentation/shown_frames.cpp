@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "core/points/point_cloud.h"
 #include "runners/experiment/catalog/frame_stream.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "analysis/storage/trace_comparison.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"

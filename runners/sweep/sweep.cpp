@@ -10,7 +10,7 @@
 #include <set>
 
 #include "analysis/sweeps/sweep_tally.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"

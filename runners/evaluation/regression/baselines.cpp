@@ -15,7 +15,7 @@
 #include "analysis/storage/result_file.h"
 #include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"

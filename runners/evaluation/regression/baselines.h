@@ -12,7 +12,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/provenance.h"

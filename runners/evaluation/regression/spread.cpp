@@ -22,7 +22,7 @@
 #include "analysis/storage/other_processes.h"
 #include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_file.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/simulation/simulation.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <sstream>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/sessions/sensor_frame.h"

@@ -11,7 +11,7 @@
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/storage/trace_comparison.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"

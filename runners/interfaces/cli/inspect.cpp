@@ -12,7 +12,7 @@
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/sweep_tally.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/settings/json_parameters.h"

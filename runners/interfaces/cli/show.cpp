@@ -9,7 +9,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/kernels/kernels.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"

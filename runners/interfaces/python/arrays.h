@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/points/point_cloud.h"
 #include "core/points/vector.h"
 

@@ -11,7 +11,7 @@
 #include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "analysis/sweeps/sweep_tally.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/regression/result_comparison.h"
 #include "runners/evaluation/scorecard/benchmark.h"

@@ -7,7 +7,7 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_file.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/python/bindings.h"

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/kernels/kernels.h"
 #include "core/points/point_cloud.h"
 #include "core/rendering/frames_and_outputs.h"

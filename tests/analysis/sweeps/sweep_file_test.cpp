@@ -13,7 +13,7 @@
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/result_file.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"

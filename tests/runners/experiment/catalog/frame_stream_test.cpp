@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/dissertation/virtual_fixtures/fixture_rules.h"
 #include "scenarios/recordings/recorded_scene.h"
 #include "scenarios/simulated/grid_scenes.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/sweep/sweep_session.h"

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "analysis/storage/digest.h"
-#include "analysis/trace/trace.h"
+#include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/catalog/experiment.h"
