@@ -30,8 +30,8 @@ inline double time_of(const Trace& trace, double tick) {
 // pop-through.
 //
 // The proxy is behind the surface if its signed distance d is less than -held_depth_m, and else in front of
-// it. The held depth (see held_depth_m() in renderer.h) is 0 for a ball, whose centre stays in front.
-// A proxy that rests on the surface itself is slightly behind it as often as in front of it.
+// it. The held depth (see held_depth_m() in frames_and_outputs.h) is 0 for a ball, whose centre stays in
+// front. A proxy that rests on the surface itself is slightly behind it as often as in front of it.
 //
 // A proxy pops through if it moves from the front to the back while d is known in every tick.
 // A proxy that begins behind the surface has not passed through it. If d was unknown in between, the proxy
@@ -107,8 +107,8 @@ inline bool has_contact_force(const Trace& trace, std::size_t i) {
 }
 
 // The contact point of a ball: the point on the sphere of radius r_c around the proxy that faces the surface,
-// according to the renderer's normal. renderer.h defines the contact point of every renderer, by the
-// true normal.
+// according to the renderer's normal. frames_and_outputs.h defines the contact point of every renderer, by
+// the true normal.
 
 // P - r_c n, world frame.
 inline Vec3 contact_point(const Trace& trace, std::size_t i, double contact_radius_m) {
@@ -142,7 +142,7 @@ double force_fraction(const Trace& trace);
 double last_force_time_s(const Trace& trace);
 
 // Distance of the rendered surface from the true one, by one rule for every renderer: the height of the
-// contact point above the true surface, Trace::contact (renderer.h defines the contact point). Both
+// contact point above the true surface, Trace::contact (frames_and_outputs.h defines the contact point). Both
 // sides count, and so does every tick, not only the last.
 //
 // Only settled ticks are judged: those in which the renderer has had a frame and the HIP has been below the

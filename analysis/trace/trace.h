@@ -128,8 +128,8 @@ struct Trace {
 #undef TRACE_COLUMN
 
   // Depth behind the true surface, m, down to which the proxy still counts as held by the surface. 0 for a
-  // ball, whose centre stays in front. See held_depth_m() in renderer.h. Only measures use it, so it
-  // is not a column.
+  // ball, whose centre stays in front. See held_depth_m() in frames_and_outputs.h. Only measures use it, so
+  // it is not a column.
   double held_depth_m = 0;
   // Rows that only measures use. They are not stored as columns. Empty unless they were computed.
   std::vector<TrueContact> contact;

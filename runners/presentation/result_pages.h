@@ -312,7 +312,7 @@ struct TraceEvent {
 //                  at most 50
 //   task           a step of the task began or ended
 // steps: what the steps of the task do, for the text; may be fewer than there are. held_depth_m: see
-// renderer.h.
+// frames_and_outputs.h.
 std::vector<TraceEvent> trace_events(const ColumnSource& trace, const std::vector<std::string>& steps = {},
                                      double held_depth_m = 0);
 
