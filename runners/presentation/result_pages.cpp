@@ -87,16 +87,21 @@ void find_largest_forces(const ColumnSource& trace, std::vector<TraceEvent>& eve
 void find_spells(const ColumnSource& trace, const std::string& name, std::int32_t exhausted,
                  std::vector<TraceEvent>& events) {
   const auto column = values_or_none<std::int32_t>(trace, name);
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < column.size() && found < kMaxSpells; ++i)
-    if (column[i] == exhausted && (i == 0 || column[i - 1] != exhausted)) {
-      std::size_t end = i;
-      while (end < column.size() && column[end] == exhausted) ++end;
-      events.push_back({i, "not converged",
-                        end - i == 1 ? "A tick without convergence."
-                                     : std::to_string(end - i) + " ticks without convergence."});
-      ++found;
-    }
+  std::size_t found = 0, first_left_out = 0;
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (column[i] != exhausted || (i > 0 && column[i - 1] == exhausted)) continue;
+    if (++found == kMaxSpells + 1) first_left_out = i;
+    if (found > kMaxSpells) continue;
+    std::size_t end = i;
+    while (end < column.size() && column[end] == exhausted) ++end;
+    events.push_back({i, "not converged",
+                      end - i == 1 ? "A tick without convergence."
+                                   : std::to_string(end - i) + " ticks without convergence."});
+  }
+  if (found > kMaxSpells)
+    events.push_back({first_left_out, "not converged",
+                      "The first of " + std::to_string(found - kMaxSpells) +
+                          " more spells without convergence, which are not listed."});
 }
 
 std::string name_of_step(std::int32_t step, const std::vector<std::string>& steps) {

@@ -270,8 +270,10 @@ std::string_view viewer_script();
 std::string_view viewer_style();
 
 // Returns an HTML page of the viewer: its script and style, what to show as JSON, and numbers, compressed.
-// json: names the arrays in bytes as PackedArrays::add() does. Throws InputError without viewer_script().
-std::string page_file(const std::string& title, const std::string& json, const std::string& bytes);
+// json: names the arrays in bytes as PackedArrays::add() does. A stored page may not reach the network; the
+// server of a live page says what that may reach. Throws InputError without viewer_script().
+std::string page_file(const std::string& title, const std::string& json, const std::string& bytes,
+                      bool is_stored = true);
 
 // Returns the bytes as a page stores them: gzip, then Base64.
 std::string gzip_base64(const std::string& bytes);
@@ -309,7 +311,7 @@ struct TraceEvent {
 //   force jump     the largest change of the force from one tick to the next
 //   largest force  the first tick with the largest force
 //   not converged  the first tick of each spell in which a tick ended before the proxy or tool had converged,
-//                  at most 50
+//                  at most 50, then one event that says how many more there are
 //   task           a step of the task began or ended
 // steps: what the steps of the task do, for the text; may be fewer than there are. held_depth_m: see
 // frames_and_outputs.h.

@@ -126,14 +126,20 @@ std::string gzip_base64(const std::string& bytes) {
   return base64(gzip(bytes));
 }
 
-std::string page_file(const std::string& title, const std::string& json, const std::string& bytes) {
+std::string page_file(const std::string& title, const std::string& json, const std::string& bytes,
+                      bool is_stored) {
   if (viewer_script().empty())
     throw InputError("this program",
                      "was built without the viewer: expected a build by scripts/build, with Node");
   std::string html =
       "<!DOCTYPE html>\n<!-- remote-touch view -->\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-      xml_escaped(title, false) + "</title>\n<style>\n";
+      "<meta name=\"viewport\" content=\"width=device-width\">\n";
+  if (is_stored)
+    html +=
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src "
+        "'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; form-action "
+        "'none'\">\n";
+  html += "<title>" + xml_escaped(title, false) + "</title>\n<style>\n";
   html.append(viewer_style())
       .append("</style></head>\n<body>\n<script type=\"application/json\" id=\"view\">");
   html.append(in_script(json)).append("</script>\n<script type=\"text/plain\" id=\"numbers\">");

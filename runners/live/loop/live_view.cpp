@@ -298,7 +298,7 @@ LivePageFile page_of(const Experiment& experiment, const LiveViewSource& source,
   }
   run["near_m"] = near_m;
   const Json page{{"schema", kPageSchema}, {"runs", Json::array()}, {"live", run}};
-  return {page_file(configuration.value("title", "live"), page.dump(), numbers.bytes()), near_m};
+  return {page_file(configuration.value("title", "live"), page.dump(), numbers.bytes(), false), near_m};
 }
 
 }  // namespace

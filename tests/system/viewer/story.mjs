@@ -14,6 +14,8 @@ function makePage(name, ...args) {
 makePage("pop", "fig4.12", "--set", "scenario.acceleration_m_per_s2=15"); // the proxy pops through
 makePage("jump", "fig4.16", "--set", "duration_s=1"); // a camera, and no pop-through
 makePage("long", "fig4.14", "--set", "duration_s=15");
+remoteTouch("run", "fig4.12", "--set", "scenario.acceleration_m_per_s2=3", "-o", "calm.h5"); // it does not
+remoteTouch("view", "calm.h5", "pop.h5", "-o", "both.html");
 
 const browser = await openBrowser(chromium);
 test.after(() => browser.close());
@@ -80,6 +82,67 @@ test("events are a list in words, with next and previous", async () => {
     await page.keyboard.press("E");
     assert.equal(await tick(page), ticks.at(-2));
   });
+});
+
+test("the list of events shows the current one, and is one stop of the keyboard", async () => {
+  await withPage("pop.html", {}, async (page) => {
+    await page.addStyleTag({ content: ".events ol { max-height: 50px; }" });
+    const all = await events(page), isSeen = () => page.evaluate(() => {
+      const box = document.querySelector(".events ol").getBoundingClientRect(), row = document.querySelector(".events [aria-current=time]").getBoundingClientRect();
+      return row.top >= box.top - 1 && row.bottom <= box.bottom + 1;
+    });
+    for (const event of [all.at(-1), all[0], all.at(-1)]) {
+      await goTo(page, event.tick);
+      assert.ok(await isSeen(), `tick ${event.tick}`);
+    }
+    assert.equal(await page.locator(".events button[tabindex='0']").count(), 1);
+    await page.locator(".events button[tabindex='0']").focus();
+    await page.keyboard.press("Home");
+    await page.keyboard.press("ArrowDown");
+    assert.equal(await page.evaluate(() => document.activeElement.textContent), `tick ${all[1].tick}: ${all[1].text}`);
+    await page.keyboard.press("Enter");
+    assert.equal(await tick(page), all[1].tick);
+  });
+});
+
+test("two runs have their story in one sentence", async () => {
+  await withPage("both.html", {}, async (page) => {
+    const pop = await page.evaluate(() => window.remoteTouch.runs.map((run) => run.events.find((event) => event.kind === "pop-through")?.tick));
+    assert.equal(pop[0], undefined);
+    assert.equal(await page.textContent(".story"), `Run 2 pops through at ${(pop[1] / 1000).toFixed(3)} s, run 1 does not.`);
+  });
+});
+
+test("the shown time is not cut off at any width", async () => {
+  for (const width of [1440, 1024, 390])
+    await withPage("jump.html", { viewport: { width, height: 800 } }, async (page) => {
+      const [inside, right] = await page.evaluate(() => {
+        const range = document.querySelector(".zoom output"), side = document.querySelector("aside").getBoundingClientRect();
+        return [range.scrollWidth <= range.clientWidth + 1, side.right - range.getBoundingClientRect().right];
+      });
+      assert.ok(inside && right >= 0, `${width} pixels: ${inside}, ${right} pixels left`);
+    });
+});
+
+test("no arrow is longer than the legend says", async () => {
+  await withPage("pop.html", {}, async (page) => {
+    const [long, most] = await page.evaluate(() => {
+      const { scene } = window.remoteTouch, { velocity } = scene.hands[0];
+      velocity.show([0, 0, 0], [0, 100, 0], 1000 / 15);
+      return [velocity.tip.position.y + velocity.tip.scale.y, scene.longestMm];
+    });
+    assert.ok(Math.abs(long - most) < 1e-6, `${long} mm, at most ${most} mm`);
+  });
+});
+
+test("a stored page may not reach the network", async () => {
+  const opened = await openPage(browser, "jump.html");
+  try {
+    assert.equal(await opened.page.evaluate(() => fetch("https://example.org/").then(() => "reached", (error) => error.name)), "TypeError");
+    assert.ok(opened.complaints.some((text) => text.includes("Content Security Policy")), opened.complaints.join("\n"));
+  } finally {
+    await opened.context.close();
+  }
 });
 
 test("the address names the moment, and the history stays short", async () => {

@@ -55,6 +55,8 @@ export function ticksOf(times: Numbers, rateHz: number, last: number): number[] 
 // A column of a trace; value(tick, part) of a vector's part. kept: a live run overwrites its oldest ticks. rows: the row of
 // each tick, or -1; null: row and tick are the same.
 export class Column {
+  private leastShown = 0; // 0: not known yet
+
   constructor(readonly name: string, readonly unit: string, readonly meaning: string, readonly width: number,
     readonly names: string[], readonly numbers: Numbers, private readonly kept = Number.POSITIVE_INFINITY,
     private readonly rows: Int32Array | null = null) {}
@@ -73,8 +75,21 @@ export class Column {
     return Math.sqrt(sum);
   }
   text(tick: number): string {
-    if (this.width === 1) return this.names[this.value(tick)] ?? (this.name === "time" ? timeDigits : digits)(this.value(tick));
-    return Array.from({ length: this.width }, (_, part) => digits(this.value(tick, part))).join("  ");
+    if (this.width === 1) return this.names[this.value(tick)] ?? (this.name === "time" ? timeDigits(this.value(tick)) : this.digits(this.value(tick)));
+    return Array.from({ length: this.width }, (_, part) => this.digits(this.value(tick, part))).join("  ");
+  }
+  // A value that only rounding of larger ones has left is shown as 0.
+  digits(value: number): string {
+    return digits(Math.abs(value) < this.rounding() ? 0 : value);
+  }
+  private rounding(): number {
+    const isLive = this.kept < Number.POSITIVE_INFINITY; // its largest value is not known yet
+    if (this.leastShown === 0) {
+      let largest = 0;
+      if (!isLive) for (const value of this.numbers) if (Number.isFinite(value)) largest = Math.max(largest, Math.abs(value));
+      this.leastShown = Math.max(1e-12 * largest, 1e-15);
+    }
+    return this.leastShown;
   }
 }
 

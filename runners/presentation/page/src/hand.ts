@@ -4,8 +4,8 @@ import { colours } from "./colours";
 import type { Run, Vector } from "./data";
 
 const wayS = 0.3;
-// The arrow of a force, as a part of the scene; that of a greater force is no longer.
-export const longestForce = 0.3;
+// The longest arrow of a force or a velocity, as a part of the scene; that of a greater one is no longer.
+export const longestArrow = 0.3;
 // The arrow of a velocity of 1 m/s, mm: how far the surface moves in 1/15 s.
 export const mmPerMetreASecond = 1000 / 15;
 
@@ -100,9 +100,9 @@ export class HandView {
     this.ghost = run.stored.tool ? toolMesh(run, hipColour, 0.18) : null;
     this.spheres = this.toolSpheres();
     if (this.spheres) this.proxy.add(this.spheres);
-    this.force = new Arrow(colours.force, 1.3 * head, longestForce * sizeMm, true);
+    this.force = new Arrow(colours.force, 1.3 * head, longestArrow * sizeMm, true);
     this.normal = new Arrow(colours.normal, head);
-    this.velocity = new Arrow(colours.velocity, head);
+    this.velocity = new Arrow(colours.velocity, head, longestArrow * sizeMm);
     this.spring = this.line(hipColour, 2);
     this.way = this.line(proxyColour, Math.round(wayS * run.stored.haptic_rate_hz) + 1);
     const parts = [this.hip, this.slave, this.goal, this.proxy, this.spring, this.way, this.force.object,

@@ -9,7 +9,7 @@ import { KeptRange } from "./kept_range";
 import { type LinkState, stateOf } from "./link_state";
 import { type ColumnInfo, type Limit, limitOf, LiveRun, type Trouble } from "./live_run";
 import { MouseHand } from "./mouse_hand";
-import { Pace } from "./pace";
+import { Pace, PaceNote } from "./pace";
 import { aboutDialog, keysDialog, legend, licence, Values } from "./panel";
 import { curvesOf, forceCurves, Plot } from "./plots";
 import { type CameraPreset, SceneView } from "./scene";
@@ -41,6 +41,7 @@ class LivePage {
   private readonly plots: Plot[];
   private readonly values: Values;
   private readonly pace = new Pace();
+  private readonly paceNote: PaceNote;
   private readonly sound = new ForceSound();
   private readonly hint = document.createElement("span");
   private readonly steps = document.createElement("span"); // of keys and wheel
@@ -69,6 +70,7 @@ class LivePage {
     this.scene = new SceneView(canvas, bar, [this.run], 5);
     if (this.isHand) this.scene.leaveLeftButtonAndWheel();
     this.canvas = canvas;
+    this.paceNote = new PaceNote(box);
     this.values = new Values([this.run]);
     this.sliders = new Sliders(stored.parameters, (changes) => this.connection.change(changes));
     const curves = [forceCurves([this.run]), ...plotted.map(([name, colour, label]) => curvesOf([this.run], name, colour, label))];
@@ -221,8 +223,8 @@ class LivePage {
     this.showStatus();
     this.steps.textContent = this.mouse?.stepText ?? "";
     const seconds = (performance.now() - this.startMs) / 1000, time = `${this.run.column("time").value(tick).toFixed(1)} s`;
-    const thinned = this.pace.share < 1 ? `; slow graphics: 1 of ${1 / this.pace.share} points is drawn, and all near the hand` : "";
-    this.clock.textContent = this.isLive ? `${time}, ${(this.pictures / seconds).toFixed(0)} pictures/s${thinned}` : `last tick: ${time}`;
+    this.paceNote.show(this.pace.share, ", and all near the hand");
+    this.clock.textContent = this.isLive ? `${time}, ${(this.pictures / seconds).toFixed(0)} pictures/s` : `last tick: ${time}`;
   }
 }
 

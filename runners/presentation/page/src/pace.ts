@@ -24,3 +24,17 @@ export class Pace {
     return true;
   }
 }
+
+// Says in the picture that not all points are drawn.
+export class PaceNote {
+  private readonly element = document.createElement("small");
+
+  constructor(picture: HTMLElement) {
+    this.element.className = "pace";
+    picture.append(this.element);
+  }
+  // but: which points are always drawn.
+  show(share: number, but = ""): void {
+    this.element.textContent = share < 1 ? `slow graphics: 1 of ${1 / share} points is drawn${but}` : "";
+  }
+}

@@ -2,6 +2,7 @@
 import { colours, curveColour, heights, rampStyle } from "./colours";
 import { type Claim, type Run, digits } from "./data";
 import { mmPerMetreASecond } from "./hand";
+import { storyOf } from "./story";
 
 function element(name: string, text = "", className = ""): HTMLElement {
   const made = document.createElement(name);
@@ -24,15 +25,24 @@ function isUsed(run: Run, name: string): boolean {
   const column = run.columns.get(name);
   return column !== undefined && (run.ticks === 0 || column.numbers.some((value) => Number.isFinite(value) && value !== 0));
 }
+// Of a live run that has not begun nobody knows.
 function slaveDiffers(run: Run): boolean {
   for (let tick = 0; tick < run.ticks; ++tick) {
     const proxy = run.vector("proxy_position", tick);
     if (run.vector("slave_command", tick).some((x, k) => Math.abs(x - proxy[k]) > 0)) return true;
   }
-  return run.ticks === 0;
+  return run.ticks === 0 && run.slaveRadiusM > 0;
 }
 
-// What is in the picture. longestMm: of the arrow of a force; infinite where none is longer.
+// Whether an arrow of a column can be longer than the longest that is drawn. Of a live run nobody knows.
+function isCut(run: Run, name: string, mmPerUnit: number, longestMm: number): boolean {
+  const column = run.columns.get(name);
+  if (!column || run.ticks === 0) return column !== undefined;
+  for (let tick = 0; tick < run.ticks; ++tick) if (mmPerUnit * Math.abs(column.magnitude(tick)) > longestMm) return true;
+  return false;
+}
+
+// What is in the picture. longestMm: of an arrow.
 export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_INFINITY): HTMLElement {
   const list = element("ul", "", "legend"), run = runs[0], { tool } = run.stored, frames = [...run.frames.values()];
   const add = (colour: string, text: string) => {
@@ -41,17 +51,18 @@ export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_
     list.append(item);
   };
   const two = (mm: number) => digits(Number(mm.toPrecision(2)));
+  const most = (cut: boolean) => (cut ? `, at most ${two(longestMm)} mm` : "");
   add(colours.hip, tool ? "HIP and device's pose" : "HIP: where the hand is");
   add(colours.proxy, tool ? "tool" : `proxy${run.contactRadiusM > 0 ? ", radius r_c" : ""}; path of 0.3 s`);
   const hasSlave = runs.some((one) => one.slaveRadiusM > 0);
   if (runs.length === 2) add(colours.second, `${runs[1].slaveRadiusM > 0 ? "HIP, proxy and slave" : "HIP and proxy"} of run 2`);
-  add(colours.force, `${run.forceName === "force" ? "force" : "force of the device"}: ${two(mmPerN)} mm per N${Number.isFinite(longestMm) ? `, max ${two(longestMm)} mm` : ""}`);
+  add(colours.force, `${run.forceName === "force" ? "force" : "force of the device"}: ${two(mmPerN)} mm per N${most(runs.some((one) => isCut(one, one.forceName, mmPerN, longestMm) || isCut(one, "slave_force", mmPerN, longestMm)))}`);
   add(colours.normal, "surface normal");
   add(colours.touching, "points that touch");
   if (frames.length === 0 || frames.some((frame) => !frame.colours)) add(rampStyle(heights), frames.length === 0 ? "points: own colours, or dark low" : "points: dark low, light high");
   if (run.stored.truth) add(colours.truth, run.truthName);
   if (run.stored.true_meshes) add(colours.truth, `true surface: ${run.stored.true_meshes.map((mesh) => mesh.name).join(", ")}`);
-  if (isUsed(run, "surface_velocity")) add(colours.velocity, `velocity estimate: ${two(mmPerMetreASecond)} mm per m/s`);
+  if (isUsed(run, "surface_velocity")) add(colours.velocity, `velocity estimate: ${two(mmPerMetreASecond)} mm per m/s${most(isCut(run, "surface_velocity", mmPerMetreASecond, longestMm))}`);
   if (frames.some((frame) => frame.fixtureRadiusM)) add(colours.fixture, "forbidden regions");
   if (isUsed(run, "guidance_goal")) add(colours.guidance, "goal of the guidance");
   if (slaveDiffers(run)) add(colours.slave, "slave command, if not the proxy");
@@ -65,8 +76,9 @@ function settings(value: unknown, name = ""): Map<string, string> {
   return new Map(Object.entries(value).flatMap(([key, part]) => [...settings(part, name ? `${name}.${key}` : key)]));
 }
 
-// A list of two runs: the file of each, and the settings in which they differ. The titles say the same at greater length.
-export function whichIsWhich(runs: Run[]): HTMLElement {
+// What happens in two runs, and a list of them: the file of each, and the settings in which they differ. The titles say the
+// same at greater length.
+export function whichIsWhich(runs: Run[]): HTMLElement[] {
   const most = 4, [a, b] = runs.map((run) => settings(run.stored.configuration));
   const names = [...new Set([...a.keys(), ...b.keys()])].filter((name) => name !== "title" && a.get(name) !== b.get(name));
   const list = element("ul", "", "legend which");
@@ -77,7 +89,7 @@ export function whichIsWhich(runs: Run[]): HTMLElement {
     item.style.setProperty("--dot", i === 0 ? curveColour(colours.proxy) : colours.second);
     list.append(item);
   });
-  return list;
+  return [element("p", storyOf(runs), "story"), list];
 }
 
 // All columns at a tick; "-" where a run has no such tick.

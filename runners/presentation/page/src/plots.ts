@@ -278,7 +278,7 @@ export class Plot {
       const { name } = unitOf(curve.column);
       part.style.setProperty("--dot", curveColour(curve.colour));
       part.title = curve.column.meaning;
-      const number = curve.column.name === "time" ? timeDigits(value) : digits(Number(value.toPrecision(4)));
+      const number = curve.column.name === "time" ? timeDigits(value) : curve.column.digits(Number(value.toPrecision(4)));
       const shown = Number.isFinite(value) ? `${number} ${name}` : digits(value);
       part.textContent = `${curve.label} ${curve.column.names[value] ?? shown}`;
       return part;

@@ -3,7 +3,7 @@ import { Address, type RunPlace } from "./address";
 import { button } from "./button";
 import type { Run } from "./data";
 import { FlatView } from "./flat";
-import { Pace } from "./pace";
+import { Pace, PaceNote } from "./pace";
 import { aboutDialog, helpDialog, legend, licence, Values, whichIsWhich } from "./panel";
 import { Player } from "./player";
 import { RunPlots } from "./run_plots";
@@ -23,7 +23,9 @@ function firstTicksOfFrames(run: Run): number[] {
   return list;
 }
 
-interface Picture { box: HTMLElement; show: (tick: number) => void; save: (name: string) => void; scene: SceneView | null }
+interface Picture {
+  box: HTMLElement; show: (tick: number) => void; save: (name: string) => void; scene: SceneView | null; mmPerN: number; longestMm: number;
+}
 
 function makePicture(runs: Run[]): Picture {
   const box = document.createElement("div"), canvas = document.createElement("canvas"), bar = document.createElement("span");
@@ -36,7 +38,12 @@ function makePicture(runs: Run[]): Picture {
       scene.draw();
       savePng(canvas, bar, name);
     };
-    return { box, scene, save, show: (tick) => scene.show(tick) };
+    const overview = new FlatView(overviewIn(box), runs, true);
+    const show = (tick: number) => {
+      scene.show(tick);
+      overview.show(tick);
+    };
+    return { box, scene, save, show, mmPerN: scene.mmPerN, longestMm: scene.longestMm };
   } catch (error) {
     const note = document.createElement("p");
     note.className = "note";
@@ -46,8 +53,18 @@ function makePicture(runs: Run[]): Picture {
     plain.ariaLabel = "the scene from the side: x to the right, y up";
     box.replaceChildren(plain, note);
     const flat = new FlatView(plain, runs);
-    return { box, scene: null, save: (name) => savePng(plain, null, name), show: (tick) => flat.show(tick) };
+    const { mmPerN, longestMm } = flat;
+    return { box, scene: null, save: (name) => savePng(plain, null, name), show: (tick) => flat.show(tick), mmPerN, longestMm };
   }
+}
+
+function overviewIn(box: HTMLElement): HTMLCanvasElement {
+  const canvas = document.createElement("canvas");
+  canvas.className = "overview";
+  canvas.role = "img";
+  canvas.ariaLabel = "overview of the whole scene from the side, with a ring around the proxy";
+  box.append(canvas);
+  return canvas;
 }
 
 const presets: CameraPreset[] = ["sensor", "side", "follow", "across"];
@@ -96,11 +113,13 @@ function listenToKeys(player: Player, timeline: Timeline, plots: RunPlots, scene
 }
 
 // While it plays, slow graphics draw fewer points; a picture that stands has all of them.
-function keepPace(player: Player, timeline: Timeline, scene: SceneView): void {
+function keepPace(player: Player, { scene, box }: Picture): void {
+  if (!scene) return;
+  const note = new PaceNote(box);
   let pace = new Pace();
   const draw = (share: number) => {
     for (const cloud of scene.clouds) cloud.setShare(share);
-    timeline.tell(share < 1 ? `slow graphics: 1 of ${1 / share} points` : "");
+    note.show(share);
   };
   player.onChange(() => {
     if (player.playing && pace.picture(performance.now())) draw(pace.share);
@@ -139,10 +158,8 @@ export function showRuns(runs: Run[], top: HTMLElement | null, heading = "", pla
   const dialogs = { help: helpDialog(), about: aboutDialog(runs, licence) };
   const head = headerOf(heading || run.stored.title || run.stored.file, picture, dialogs, () => pictureName(run.stored.file, player.tick, "png"));
   const side = document.createElement("aside"), details = detailsOf(values, player);
-  // The force on a slave can be far above that on the hand, which gives the scale.
-  const longestMm = runs.some((one) => one.slaveRadiusM > 0) ? picture.scene?.longestMm : undefined;
-  side.append(...notes(runs), ...(runs.length === 2 ? [whichIsWhich(runs)] : []), ...(top ? [top] : []), list.element,
-    legend(runs, picture.scene?.mmPerN ?? 5, longestMm), plots.element, details, ...shownPoints(runs));
+  side.append(...notes(runs), ...(runs.length === 2 ? whichIsWhich(runs) : []), ...(top ? [top] : []), list.element,
+    legend(runs, picture.mmPerN, picture.longestMm), plots.element, details, ...shownPoints(runs));
   const parts = [head, picture.box, side, timeline.element, dialogs.help, dialogs.about];
   document.body.append(...parts);
   player.onChange(() => {
@@ -150,7 +167,7 @@ export function showRuns(runs: Run[], top: HTMLElement | null, heading = "", pla
     list.show(player.tick);
     if (details.open) values.show(player.tick);
   });
-  if (picture.scene) keepPace(player, timeline, picture.scene);
+  keepPace(player, picture);
   listenToKeys(player, timeline, plots, picture.scene, dialogs, ended.signal);
   picture.scene?.setCamera("across");
   const address = new Address(place);

@@ -4,13 +4,13 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { CloudView } from "./cloud";
 import { round125, type Run, type Vector } from "./data";
 import { DepthCue } from "./depth_cue";
-import { HandView, longestForce } from "./hand";
+import { HandView, longestArrow } from "./hand";
 import { SlaveView } from "./slave_view";
 import { TrueMeshesView } from "./true_meshes";
 import { TruthView } from "./truth";
 import { acrossForce, distanceOf } from "./viewpoint";
 
-const fullForce = 0.2; // the arrow of the largest force to expect, as a part of the hand's scale
+export const fullForce = 0.2; // the arrow of the largest force to expect, as a part of the hand's scale
 const radiiOfHand = 38; // the hand's scale in contact radii: the head of the force's arrow is 0.039 of it, at most 1.5 r_c
 const leastProxyPx = 30; // how wide the proxy is in the view across the force
 const seen = 0.86; // of the picture: what the camera is to see; the rest is for labels
@@ -19,7 +19,7 @@ const labelHeight = 0.022; // where the camera sees 0.7 at a distance of 1
 export type CameraPreset = "sensor" | "side" | "follow" | "across";
 
 // Returns the largest force on a hand, or, if no hand feels one, on a slave.
-function largestForce(runs: Run[]): number {
+export function largestForce(runs: Run[]): number {
   const largest = (nameOf: (run: Run) => string) => {
     let found = 0;
     for (const run of runs) {
@@ -117,9 +117,9 @@ export class SceneView {
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
-  // How long the arrow of a force is at most, mm.
+  // How long an arrow of a force or a velocity is at most, mm.
   get longestMm(): number {
-    return longestForce * this.handSize;
+    return longestArrow * this.handSize;
   }
   show(tick: number): void {
     this.tick = tick;

@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { colours } from "./colours";
 import type { Run } from "./data";
-import { Arrow, ball, longestForce, toolMesh, turn } from "./hand";
+import { Arrow, ball, longestArrow, toolMesh, turn } from "./hand";
 
 export class SlaveView {
   readonly object = new THREE.Group();
@@ -17,7 +17,7 @@ export class SlaveView {
     const opacity = second ? 0.4 : 0.6;
     this.shape = this.isTool ? toolMesh(run, colour, opacity) : ball(1000 * run.slaveRadiusM, colour, opacity);
     this.shape.renderOrder = 1; // as the proxy
-    this.force = new Arrow(colours.robot, 0.039 * sizeMm, longestForce * sizeMm, true);
+    this.force = new Arrow(colours.robot, 0.039 * sizeMm, longestArrow * sizeMm, true);
     const ends = new THREE.BufferGeometry();
     ends.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6), 3));
     this.line = new THREE.Line(ends, new THREE.LineBasicMaterial({ color: colour }));

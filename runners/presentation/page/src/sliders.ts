@@ -1,6 +1,7 @@
 // Sliders for the parameters that may change during a live run.
 import { button } from "./button";
 import { digits, type LiveParameter } from "./data";
+import { named } from "./words";
 
 export interface Change { parameter: number; value: number }
 
@@ -79,9 +80,9 @@ export class Sliders {
 
   private row(group: number[]): HTMLLabelElement {
     const label = document.createElement("label"), name = document.createElement("span"), value = document.createElement("output");
-    const input = document.createElement("input"), first = this.parameters[group[0]];
+    const input = document.createElement("input"), first = this.parameters[group[0]], { words, factor, name: unit } = named(first.name);
     label.title = group.map((i) => `${this.parameters[i].name}: ${this.parameters[i].meaning}`).join("\n");
-    name.textContent = group.length > 1 ? "contact radius (r1_m, r2_m, r3_m)" : first.name;
+    name.textContent = group.length > 1 ? "radii r1, r2, r3 of the proxy" : words;
     if (first.is_switch) {
       input.type = "checkbox";
       label.className = "switch";
@@ -104,7 +105,7 @@ export class Sliders {
         });
       this.shows.push((values) => {
         if (this.dragged !== input) input.value = String(positionOf(values[group[0]], first));
-        value.textContent = group.map((i) => digits(values[i])).join(", ");
+        value.textContent = `${group.map((i) => digits(Number((factor * values[i]).toPrecision(4)))).join(", ")} ${unit}`.trimEnd();
       });
     }
     label.append(input, name, value);

@@ -1,6 +1,6 @@
 // The events of a run: as a list in words, and which of them is the most important one.
 import { eventColours } from "./colours";
-import type { Run, RunEvent } from "./data";
+import { differenceOf, digits, type Run, type RunEvent } from "./data";
 
 const byImportance = ["divergence", "pop-through", "slave contact", "hardest hit", "force jump", "largest force", "first contact", "task", "not converged"];
 
@@ -26,6 +26,24 @@ export function leastImportantFirst(events: RunEvent[]): RunEvent[] {
   return [...events].sort((a, b) => rank(b) - rank(a));
 }
 
+// What happens in two runs, in one sentence: the most important kind of event that only one of them has, or that they have
+// at different times, such as "Run 2 pops through at 0.567 s, run 1 does not."
+export function storyOf(runs: Run[]): string {
+  const acts: [string, string][] = [["pop-through", "pops through"], ["slave contact", "touches the scene with its slave"], ["first contact", "first touches"]];
+  for (const [kind, act] of acts) {
+    const [a, b] = runs.map((run) => {
+      const first = run.events.find((event) => event.kind === kind);
+      return first && first.tick / run.stored.haptic_rate_hz;
+    });
+    if (a === b) continue; // both at the same time, or neither
+    if (a === undefined || b === undefined) return `Run ${a === undefined ? 2 : 1} ${act} at ${(a ?? b ?? 0).toFixed(3)} s, run ${a === undefined ? 1 : 2} does not.`;
+    return `Run 1 ${act} at ${a.toFixed(3)} s, run 2 at ${b.toFixed(3)} s.`;
+  }
+  const apart = differenceOf(runs, "proxy_position"), numbers = apart ? [...apart.numbers].filter(Number.isFinite) : [];
+  const mostMm = 1000 * numbers.reduce((most, value) => Math.max(most, value), 0);
+  return mostMm > 0 ? `The proxies are at most ${digits(Number(mostMm.toPrecision(2)))} mm apart.` : "The proxies move alike in both runs.";
+}
+
 export class EventList {
   readonly element = document.createElement("section");
   private readonly list = document.createElement("ol");
@@ -39,11 +57,14 @@ export class EventList {
       row.type = "button";
       row.textContent = `tick ${event.tick}: ${event.text}`;
       row.style.setProperty("--dot", eventColours[event.kind] ?? "grey");
+      row.tabIndex = -1; // the list is one stop of the keyboard; arrows move in it
       row.addEventListener("click", () => goTo(event.tick));
       item.append(row);
       this.list.append(item);
       return row;
     });
+    if (this.rows.length > 0) this.rows[0].tabIndex = 0;
+    this.list.addEventListener("keydown", (event) => this.move(event));
     this.element.append(this.list);
     this.element.hidden = events.length === 0;
   }
@@ -53,10 +74,23 @@ export class EventList {
       this.rows[i].ariaCurrent = event.tick === tick ? "time" : null;
       if (event.tick === tick) seen ??= this.rows[i];
     });
-    if (seen) this.scrollTo(seen);
+    if (!seen) return;
+    this.scrollTo(seen);
+    if (!this.list.contains(document.activeElement)) this.makeStop(seen);
+  }
+  private makeStop(row: HTMLButtonElement): void {
+    for (const other of this.rows) other.tabIndex = other === row ? 0 : -1;
+  }
+  private move(event: KeyboardEvent): void {
+    const at = this.rows.findIndex((row) => row === document.activeElement), last = this.rows.length - 1;
+    const to = ({ ArrowUp: Math.max(at - 1, 0), ArrowDown: Math.min(at + 1, last), Home: 0, End: last } as Record<string, number>)[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    this.makeStop(this.rows[to]);
+    this.rows[to].focus();
   }
   private scrollTo(row: HTMLElement): void {
-    const { list } = this, top = row.offsetTop - list.offsetTop;
+    const { list } = this, top = row.offsetTop; // from the list, which is positioned
     if (top < list.scrollTop || top + row.offsetHeight > list.scrollTop + list.clientHeight) list.scrollTop = top;
   }
 }

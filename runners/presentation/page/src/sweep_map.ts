@@ -1,14 +1,33 @@
 // The map of a sweep: a measure over two of its axes. Cells whose run is on the page have a frame and can be clicked.
-import { colours, measures, rampColour } from "./colours";
+import { colours, measures, rampColour, rampStyle } from "./colours";
 import { digits, type Numbers, type Sweep } from "./data";
+import { named } from "./words";
 
 const left = 64, bottom = 34, margin = 4; // at the top and to the right, for frames of cells
+
+interface Axis { name: string; unit: string; values: (number | string)[] }
+
+// "noise sigma (mm)"
+function axisName({ name, unit }: Axis): string {
+  const { words, name: shown } = named(name), of = shown || (unit === "1" ? "" : unit);
+  return of ? `${words} (${of})` : words;
+}
+
+// At most `most` values of an axis, evenly apart and with the first and the last: how far along the axis each is, and its text.
+function ticksOf(values: (number | string)[], factor: number, most: number): [number, string][] {
+  const count = Math.max(Math.min(values.length, most, 6), Math.min(values.length, 2)), ticks: [number, string][] = [];
+  for (let k = 0; k < count; ++k) {
+    const i = count > 1 ? Math.round((k * (values.length - 1)) / (count - 1)) : 0, value = values[i];
+    ticks.push([(i + 0.5) / values.length, typeof value === "number" ? digits(Number((factor * value).toPrecision(3))) : value]);
+  }
+  return ticks;
+}
 
 export class SweepMap {
   readonly element = document.createElement("section");
   private readonly canvas = document.createElement("canvas");
   private readonly caption = document.createElement("figcaption");
-  private readonly scale = document.createElement("figcaption");
+  private readonly scale = document.createElement("figcaption"); // the bar of colours with its ends
   private readonly choice = document.createElement("select");
   private readonly runs = document.createElement("select");
   private readonly fixed: HTMLSelectElement[]; // the places on the axes that the map does not show
@@ -71,10 +90,19 @@ export class SweepMap {
       if (Number.isFinite(mean)) [low, high] = [Math.min(low, mean), Math.max(high, mean)];
     }
     this.range = high > low ? [low, high] : [low, low + 1];
-    const unit = this.unit();
-    this.scale.textContent = high > low ? `purple ${digits(low)}${unit}, yellow ${digits(high)}${unit}; white frames: the runs of this page` : "";
+    this.showScale(low, high);
     this.describe(this.sweep.cellOf(this.shown));
     this.draw();
+  }
+  private showScale(low: number, high: number): void {
+    const bar = document.createElement("i"), span = (text: string) => {
+      const made = document.createElement("span");
+      made.textContent = text;
+      return made;
+    };
+    bar.style.background = rampStyle(measures);
+    this.scale.className = "scale";
+    this.scale.replaceChildren(...(high > low ? [span(digits(low)), bar, span(`${digits(high)}${this.unit()}`)] : []), span("white frames: the runs of this page"));
   }
   private unit(): string {
     const unit = this.sweep.stored.measures.find((measure) => measure.name === this.choice.value)?.unit ?? "1";
@@ -155,23 +183,30 @@ export class SweepMap {
   }
   private drawAxes(pen: CanvasRenderingContext2D, width: number, height: number): void {
     const { axes } = this.sweep.stored, across = axes[axes.length - 1], up = axes[axes.length - 2];
-    const text = (value: number | string | undefined) => typeof value === "number" ? digits(value) : (value ?? "");
-    pen.fillStyle = getComputedStyle(this.canvas).color;
+    pen.fillStyle = pen.strokeStyle = getComputedStyle(this.canvas).color;
     pen.font = "11px system-ui, sans-serif";
+    pen.lineWidth = 1;
     const write = (what: string, x: number, y: number, align: CanvasTextAlign) => {
       pen.textAlign = align;
       pen.fillText(what, x, y);
     };
-    write(text(across.values[0]), left, height - bottom + 12, "left");
-    write(text(across.values.at(-1)), width - margin, height - bottom + 12, "right");
-    write(`${across.name}${across.unit === "1" ? "" : ` (${across.unit})`}`, (left + width) / 2, height - 6, "center");
+    const wide = width - left - margin, high = height - bottom - margin;
+    for (const [part, text] of ticksOf(across.values, named(across.name).factor, Math.floor(wide / 60))) {
+      const x = left + part * wide;
+      pen.fillRect(x, height - bottom, 1, 4);
+      write(text, x, height - bottom + 15, "center");
+    }
+    write(axisName(across), left + wide / 2, height - 4, "center");
     if (!up) return;
-    write(text(up.values.at(-1)), left - 4, 10, "right");
-    write(text(up.values[0]), left - 4, height - bottom, "right");
+    for (const [part, text] of ticksOf(up.values, named(up.name).factor, Math.floor(high / 30))) {
+      const y = margin + (1 - part) * high;
+      pen.fillRect(left - 4, y, 4, 1);
+      write(text, left - 7, y + 4, "right");
+    }
     pen.save();
-    pen.translate(11, (height - bottom) / 2);
+    pen.translate(11, margin + high / 2);
     pen.rotate(-Math.PI / 2);
-    write(`${up.name}${up.unit === "1" ? "" : ` (${up.unit})`}`, 0, 0, "center");
+    write(axisName(up), 0, 0, "center");
     pen.restore();
   }
 }
