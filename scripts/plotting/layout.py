@@ -23,6 +23,7 @@ MARGIN_IN = 0.45  # the widest right margin that is made for titles
 LABELS_IN = 0.6  # about what the labels of an axis and the gap to the next panel take
 TALLEST_IN, SMALLEST = 9.2, 0.5  # a picture fits on a page, unless its plots became smaller than this share
 BESIDE = 0.75  # how high a plot is, if a panel beside it cannot be higher
+FLAT = 0.3  # a panel of equal aspect that is lower than this share of its width needs a wide picture
 DENSE = 30  # a curve that goes up and down so often needs a wide picture
 
 
@@ -48,9 +49,18 @@ def places(panels):
     return given
 
 
+def is_flat(panel):
+    """Returns whether a panel of equal aspect would be a narrow strip in one column."""
+    if not panel.equal_aspect or math.isnan(panel.x_range[0]):
+        return False
+    heights = np.concatenate([np.ravel(curve.y.values) for curve in panel.curves] or [np.zeros(0)])
+    heights = heights[np.isfinite(heights)]
+    return heights.size > 0 and np.ptp(heights) < FLAT * (panel.x_range[1] - panel.x_range[0])
+
+
 def widths_in(panels, columns):
     """The widths that the picture may have, the first that is wide enough for its legends is taken."""
-    wide = columns > 1 or any(is_surface(panel) or any(map(is_dense, panel.curves)) for panel in panels)
+    wide = columns > 1 or any(is_surface(panel) or is_flat(panel) or any(map(is_dense, panel.curves)) for panel in panels)
     return (PAGE_IN,) if wide else (COLUMN_IN, PAGE_IN)
 
 

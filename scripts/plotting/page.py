@@ -9,7 +9,7 @@ from .style import COLUMN_IN
 from .typeset import in_mm, typeset_html
 
 CSS = """
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; background: #fff; max-width: 62rem;
+body { font: 16px/1.5 system-ui, sans-serif; color-scheme: light dark; color: #222; background: #fff; max-width: 62rem;
        margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 3rem; border-top: 1px solid #ddd; padding-top: 1rem; }
 img { max-width: 100%; height: auto; } img.column { width: 34rem; }
@@ -32,7 +32,16 @@ td.verdict, td.short { white-space: nowrap; }
 .progress { background: #eef3f8; border-left: 4px solid #1f4e79; padding: .6rem 1rem; }
 details { margin-top: .6rem; font-size: .9rem; color: #444; } pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #ddd; padding-top: 1rem; font-size: .85rem; color: #555; }
+@media (prefers-color-scheme: dark) {
+  body { color: #e2e2e2; background: #16181b; } a { color: #8fbfe8; } th, footer, details, .none { color: #a8a8a8; }
+  h2, th, td, footer { border-color: #3a3d42; } img { background: #fff; border-radius: 4px; }
+  .pass { color: #6fce92; } .fail { color: #ff7b80; } .differs { color: #e8b45a; } tr:target { background: #4a3d10; }
+  .progress { background: #1f2a35; border-color: #8fbfe8; } .gallery li > a:first-child { border-color: #3a3d42; }
+}
 """
+
+INTRODUCTION = """Haptic rendering of streaming point clouds, computed from simulated and recorded scenes: each figure with \
+its claims, and whether they hold. No haptic device was used."""
 
 
 def pretty(config):
@@ -130,6 +139,7 @@ def page(figures, claims, progress=None, views=None, formats=()):
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">{again}
 <title>Remote Touch: figures and claims</title><style>{CSS}</style></head><body>
 <h1>Remote Touch: figures and claims</h1>
+<p>{INTRODUCTION}</p>
 {progress_box(progress)}
 {gallery(figures, of, views)}
 {overview(anchored) if anchored else ""}

@@ -289,7 +289,9 @@ Figure figure_4_11(FigureContext& context) {
                         {{"heights", "time", "hip_y", CurveStyle::dashed, "HIP"},
                          {"heights", "time", "proxy_y", CurveStyle::line, "proxy"}}),
                    plot("Height of the contact point", "time (s)", "y (m)",
-                        {{"contact", "time", "contact_y", CurveStyle::line, ""}})};
+                        {{"contact", "time", "contact_y", CurveStyle::line, ""}},
+                        {.x_range = {{0, trace.time_s.back()}}})};
+  figure.panels[0].x_range = figure.panels[1].x_range;
   const Claims claims(figure);
   claims.between("the contact point ripples over the points of the flat grid: height from peak to peak",
                  max_of(contact_m) - min_of(contact_m), 4.0e-5, 5.7e-5, "m", "5e-5");

@@ -42,7 +42,7 @@ Figure figure_5_5(FigureContext& context) {
   figure.panels = {
       plot("Distance to the point", "time (s)", "distance (m)",
            {{"distances", "time", "boundary", CurveStyle::dashed, "r_f + r_c"},
-            {"distances", "time", "radius", CurveStyle::dashed, "boundary of the region, r_f"},
+            {"distances", "time", "radius", CurveStyle::line, "boundary of the region, r_f"},
             {"distances", "time", "hip", CurveStyle::dashed, "HIP"},
             {"distances", "time", "proxy", CurveStyle::line, "proxy"}}),
       plot("Force", "time (s)", "force (N)", {{"distances", "time", "force", CurveStyle::line, ""}})};
@@ -143,8 +143,8 @@ Panel path_panel(const std::string& title, const std::string& table) {
 }
 
 // Force panels have the same range.
-Panel force_panel(const std::string& table, const PanelFrame& frame = {}) {
-  Panel panel = plot("Force", "x of the HIP (m)", "force (N)",
+Panel force_panel(const std::string& title, const std::string& table, const PanelFrame& frame = {}) {
+  Panel panel = plot(title, "x of the HIP (m)", "force (N)",
                      {{table, "hip_x", "force", CurveStyle::line, ""}}, frame);
   panel.y_range = {0, 12};
   return panel;
@@ -212,14 +212,14 @@ Figure figure_5_6(FigureContext& context) {
     figure.tables.push_back(table);
   const PanelFrame step{.x_range = {{-0.03, 0.03}}};
   figure.panels = {path_panel("HIP at y = 0", "at_zero"),
-                   force_panel("at_zero", step),
+                   force_panel("Force, HIP at y = 0", "at_zero", step),
                    path_panel("HIP at y = -5 mm", "below"),
-                   force_panel("below", step),
+                   force_panel("Force, HIP at y = -5 mm", "below", step),
                    plot("Stiffness", "x of the contact point (m)", "stiffness (N/m)",
                         {{"stiffness", "contact_x", "assigned", CurveStyle::dashed, "assigned to points"},
                          {"stiffness", "contact_x", "felt", CurveStyle::line, "felt"}},
                         {.y_range = {{0, 1000}}}),
-                   force_panel("stiffness_run")};
+                   force_panel("Force over this stiffness", "stiffness_run")};
   for (std::size_t i = 0; i < figure.panels.size(); ++i) figure.panels[i].grid_position = {i % 2, i / 2};
   const double most_N = max_of(numbers(at_zero, "force")), most_below_N = max_of(numbers(below, "force"));
   const double on_fixture_m = 0.99 * (kRegionRadius_m + kContactRadius_m);
