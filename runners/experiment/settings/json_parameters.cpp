@@ -207,6 +207,12 @@ void refuse_key(const std::string& key, const std::vector<std::string>& known, c
   throw InputError(prefix + key, "unknown; did you mean " + without_label(prefix) + nearest_key(key, known));
 }
 
+std::string similar_key(const std::string& key, const std::vector<std::string>& known) {
+  if (known.empty()) return {};
+  const std::string& nearest = nearest_key(key, known);
+  return 3 * edit_distance(key, nearest).second <= std::max(key.size(), nearest.size()) ? nearest : "";
+}
+
 std::string allowed(const Parameter& parameter) {
   return std::visit(Allowed{parameter}, parameter.value);
 }

@@ -58,6 +58,10 @@ void read_parameters(const Json& object, const Parameters& parameters, const std
 [[noreturn]] void refuse_key(const std::string& key, const std::vector<std::string>& known,
                              const std::string& prefix);
 
+// Returns the known key with the most similar spelling, if at most a third of the letters differ; else an
+// empty text.
+std::string similar_key(const std::string& key, const std::vector<std::string>& known);
+
 // Writes all parameters with their present values, in the order of the list.
 void write_parameters(const Parameters& parameters, Json& object);
 

@@ -1,18 +1,24 @@
 // The command line: shared options, and which command the words select.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <sstream>
+#include <utility>
 
 #include "analysis/storage/digest.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/figures/figure_recipe.h"
 #include "runners/experiment/catalog/catalog.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
+#include "runners/interfaces/cli/terminal.h"
 #include "runners/interfaces/plugins/plugin_library.h"
+#include "runners/sweep/sweep.h"
 #include "runners/sweep/work_pool.h"
 
 namespace remote_touch {
@@ -48,7 +54,43 @@ void load_plugins(const std::vector<std::string>& files) {
   identify_program(std::move(program));
 }
 
-// Returns an error that names an unknown command, because CLI11's own error does not.
+constexpr const char* kExamples = R"(Examples:
+  remote-touch run fig4.12 -o lift.h5            # a run, and its measures
+  remote-touch view lift.h5 -o lift.html         # a page that shows it in 3-D
+  remote-touch figure 4.12 -o out                # a figure of the dissertation, with its claims
+Pages: README.md and runners/interfaces/cli/README.md)";
+
+// Throws InputError if the name that `run` or `sweep` was given does not exist: that is told before what is
+// missing beside it.
+void check_name(const CLI::App& command) {
+  for (const auto& [name, positional] : {std::pair{"run", "experiment"}, std::pair{"sweep", "sweep"}}) {
+    if (command.get_name() != name) continue;
+    const std::vector<std::string> given = command.get_option(positional)->results();
+    if (given.empty()) continue;
+    require_own_kind(given.front(), name);
+    if (command.get_name() == "run")
+      Experiment::load(given.front());
+    else
+      Sweep::load(given.front());
+  }
+}
+
+// Returns the error of a word that is no command and no option here.
+InputError unknown_word(const std::string& word, const CLI::App& place, const CLI::App& app,
+                        const std::string& called) {
+  std::vector<std::string> known;
+  if (word.starts_with('-')) {
+    for (const CLI::App* owner : {&place, &app})
+      for (const CLI::Option* option : owner->get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  } else {
+    for (const CLI::App* command : place.get_subcommands(nullptr)) known.push_back(command->get_name());
+  }
+  const std::string what = word.starts_with('-') ? "unknown option" : "unknown";
+  return InputError(word, what + suggestion(word, known) + ": see " + called + " --help");
+}
+
+// Returns an error that names an unknown command or option, because CLI11's own error does not.
 InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> left = app.remaining(true);
   CLI::App* place = &app;
@@ -57,12 +99,12 @@ InputError usage_error(CLI::App& app, const CLI::ParseError& error) {
     place = place->get_subcommands().front();
     called += " " + place->get_name();
   }
-  if (place->get_subcommands(nullptr).empty() || left.empty())
-    return InputError(error.what(), "see " + called + " --help");
-  std::string known;
-  for (const CLI::App* command : place->get_subcommands(nullptr))
-    known += (known.empty() ? "" : ", ") + command->get_name();
-  return InputError(left.front(), "unknown: expected " + known);
+  const auto option = std::ranges::find_if(left, [](const auto& word) { return word.starts_with('-'); });
+  if (option != left.end()) return unknown_word(*option, *place, app, called);
+  if (!place->get_subcommands(nullptr).empty() && !left.empty())
+    return unknown_word(left.front(), *place, app, called);
+  check_name(*place);
+  return InputError(error.what(), "see " + called + " --help");
 }
 
 }  // namespace
@@ -103,14 +145,19 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   std::function<int()> act;
   int threads = -1;
   Subcommands commands{app, line, act, threads};
-#define COMMAND(name) add_##name(commands);
+#define COMMAND(name, of) add_##name(commands), app.get_subcommand(#name)->group("Subcommands, " of);
   REMOTE_TOUCH_COMMANDS(COMMAND)
 #undef COMMAND
+  app.footer(kExamples);
+  wrap_standard_output();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    throw usage_error(app, error);
+    if (error.get_exit_code() != 0) throw usage_error(app, error);
+    std::ostringstream text;  // of --help or --version
+    app.exit(error, text, text);
+    std::fputs(text.str().c_str(), stdout);
+    return kDone;
   }
   if (threads >= 0) use_threads(threads);
   line.kernels = &choose_kernels();

@@ -130,16 +130,21 @@ std::string other_kind(const std::string& name, const std::string& command);
 // Throws InputError with this text.
 void require_own_kind(const std::string& name, const std::string& command);
 
-// The commands in the order of --help. add_run() adds `run`, and so on.
+// The commands in the order of --help, in the groups that it shows. add_run() adds `run`, and so on.
 // clang-format off
 #define REMOTE_TOUCH_COMMANDS(COMMAND) \
-  COMMAND(list) COMMAND(describe) COMMAND(view) COMMAND(export) COMMAND(inspect) \
-  COMMAND(run) COMMAND(sweep) COMMAND(merge) COMMAND(replay) COMMAND(recheck) COMMAND(analyse) \
-  COMMAND(figure) COMMAND(scorecard) COMMAND(compare) COMMAND(hashes) COMMAND(baseline) \
-  COMMAND(repro) COMMAND(cite) COMMAND(verify) COMMAND(live) COMMAND(recover) COMMAND(devices) \
-  COMMAND(jitter) COMMAND(cache)
+  COMMAND(list, "what there is") COMMAND(describe, "what there is") COMMAND(devices, "what there is") \
+  COMMAND(run, "make results") COMMAND(sweep, "make results") COMMAND(merge, "make results") \
+  COMMAND(figure, "make results") COMMAND(scorecard, "make results") \
+  COMMAND(view, "look at results") COMMAND(inspect, "look at results") COMMAND(analyse, "look at results") \
+  COMMAND(export, "look at results") COMMAND(cite, "look at results") \
+  COMMAND(compare, "check results") COMMAND(replay, "check results") COMMAND(recheck, "check results") \
+  COMMAND(repro, "check results") COMMAND(hashes, "check results") COMMAND(baseline, "check results") \
+  COMMAND(verify, "check results") \
+  COMMAND(live, "in real time") COMMAND(recover, "in real time") COMMAND(jitter, "in real time") \
+  COMMAND(cache, "others")
 // clang-format on
-#define COMMAND(name) void add_##name(Subcommands& commands);
+#define COMMAND(name, group) void add_##name(Subcommands& commands);
 REMOTE_TOUCH_COMMANDS(COMMAND)
 #undef COMMAND
 

@@ -20,6 +20,7 @@
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/sweep/stored_sweep.h"
+#include "runners/sweep/work_pool.h"
 #include "scenarios/files/input_files.h"
 
 namespace remote_touch {
@@ -32,6 +33,7 @@ struct RunRequest {
   bool timing = false;
   bool strict = false;
   bool all = false;  // prints all measures
+  int threads = 0;   // 0: as OpenMP decides
 };
 
 // The log of a task: a line for every step.
@@ -249,6 +251,8 @@ void add_run(Subcommands& commands) {
       ->required();
   add_set(command, run->overrides, "parameter=value, for example renderer.r1_m=0.004");
   command->add_option("-o,--output", run->output, "the HDF5 file to write")->required();
+  command->add_option("--threads", run->threads, "number of threads (default: OMP_NUM_THREADS, or all)")
+      ->check(CLI::Range(1, kMaxThreads));
   command->add_flag("--timing", run->timing, "also store the duration of each tick");
   command->add_flag("--all", run->all, "print all measures, not only those that matter most for this run");
   command->add_flag("--strict", run->strict,
