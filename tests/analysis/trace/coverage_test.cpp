@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "analysis/trace/curve_fits.h"
@@ -31,8 +32,10 @@ class Random {
   std::normal_distribution<double> normal_;
 };
 
+using Draw = std::function<Estimate(Random&)>;
+
 // Fraction of the printed intervals that hold the truth.
-double coverage(const std::function<Estimate(Random&)>& draw, double truth, unsigned seed) {
+double coverage(double truth, unsigned seed, const Draw& draw) {
   Random random(seed);
   double printed = 0, held = 0;
   for (int i = 0; i < kRepeats; ++i) {
@@ -44,9 +47,17 @@ double coverage(const std::function<Estimate(Random&)>& draw, double truth, unsi
 }
 
 // Reports a row, and fails if it is below the bound by more than chance: 2.3 standard deviations.
-void expect_covers(const char* row, double measured, double bound) {
-  std::printf("  %-58s %.3f\n", row, measured);
+void expect_covers(const std::string& row, double bound, double measured) {
+  std::printf("  %-58s %.3f\n", row.c_str(), measured);
   EXPECT_GE(measured, bound - 2.3 * std::sqrt(bound * (1 - bound) / kRepeats) - 1e-9) << row;
+}
+// The same for a fraction that must not be above the limit.
+void expect_at_most(const std::string& row, double limit, double measured) {
+  std::printf("  %-58s %.3f\n", row.c_str(), measured);
+  EXPECT_LE(measured, limit) << row;
+}
+std::string short_text(double number) {
+  return std::to_string(number).substr(0, 4);
 }
 
 struct Shape {
@@ -77,23 +88,22 @@ TEST(Coverage, OfMeans) {
   } rows[] = {{kNormal, 12, 0.957},    {kExponential, 12, 0.944}, {kLognormal, 12, 0.907},
               {kLognormal, 40, 0.939}, {zeros(0.5), 12, 0.953},   {zeros(0.8), 12, 0.929},
               {zeros(0.8), 20, 0.950}};
-  for (const auto& row : rows)
-    expect_covers(
-        (std::string("mean, ") + row.shape.name + ", n = " + std::to_string(row.n)).c_str(),
-        coverage([&](Random& r) { return estimated_mean(sample(row.shape, row.n, r)); }, row.shape.mean, 1),
-        row.bound);
+  for (const auto& [shape, n, bound] : rows)
+    expect_covers(std::string("mean, ") + shape.name + ", n = " + std::to_string(n), bound,
+                  coverage(shape.mean, 1, [&, n = n, &shape = shape](Random& r) {
+                    return estimated_mean(sample(shape, n, r));
+                  }));
 }
 
 TEST(Coverage, OfDifferences) {
   for (const int n : {8, 12, 24})
-    expect_covers(("difference, normal, n = " + std::to_string(n)).c_str(),
-                  coverage([&](Random& r) { return estimated_difference(sample(kNormal, n, r)); }, 0, 2),
-                  0.945);
+    expect_covers("difference, normal, n = " + std::to_string(n), 0.945,
+                  coverage(0, 2, [&](Random& r) { return estimated_difference(sample(kNormal, n, r)); }));
   for (const auto& [shape, bound] : {std::pair{kExponential, 0.917}, {kLognormal, 0.860}}) {
-    expect_covers(
-        (std::string("difference, ") + shape.name + ", n = 12").c_str(),
-        coverage([&](Random& r) { return estimated_difference(sample(shape, 12, r)); }, shape.mean, 3),
-        bound);
+    expect_covers(std::string("difference, ") + shape.name + ", n = 12", bound,
+                  coverage(shape.mean, 3, [&, &shape = shape](Random& r) {
+                    return estimated_difference(sample(shape, 12, r));
+                  }));
     Random random(4);
     double found = 0;
     for (int i = 0; i < kRepeats; ++i) {
@@ -102,10 +112,8 @@ TEST(Coverage, OfDifferences) {
       const Estimate e = estimated_difference(d);
       found += e.p <= 0.05 && !e.is_skewed ? 1 : 0;
     }
-    std::printf("  %-58s %.3f\n",
-                (std::string("its false p <= 0.05 without the note, ") + shape.name).c_str(),
-                found / kRepeats);
-    EXPECT_LE(found / kRepeats, (shape.mean == 1 ? 0.063 : 0.094) + 0.015);
+    expect_at_most(std::string("its false p <= 0.05 without the note, ") + shape.name,
+                   (shape.mean == 1 ? 0.063 : 0.094) + 0.015, found / kRepeats);
   }
 }
 
@@ -121,49 +129,36 @@ TEST(Coverage, OfFractions) {
   const std::pair<double, double> rare = {2.0537, 0.02}, more = {1.2816, 0.1};
   for (const auto& [threshold, p] : {rare, more})
     for (const int clusters : {5, 12, 40})
-      expect_covers(("pooled event, " + std::to_string(clusters) +
-                     " clusters of 8, p = " + std::to_string(p).substr(0, 4))
-                        .c_str(),
-                    coverage(
-                        [&, threshold = threshold](Random& r) {
-                          std::vector<EventCounts> all;
-                          for (int c = 0; c < clusters; ++c)
-                            all.push_back(cluster_of(r.normal(), threshold, r));
-                          return estimated_fraction(all);
-                        },
-                        p, 5),
-                    0.92);
-  expect_covers("event, 20 % unknown, all of them events, n = 40",
-                coverage(
-                    [](Random& r) {
-                      EventCounts counts;
-                      for (int i = 0; i < 40; ++i) {
-                        const bool event = r.happens(0.5);
-                        ++(event && r.happens(0.4) ? counts.unknown : event ? counts.events : counts.without);
-                      }
-                      return estimated_fraction(counts);
-                    },
-                    0.5, 6),
-                0.95);
+      expect_covers("pooled event, " + std::to_string(clusters) + " clusters of 8, p = " + short_text(p),
+                    0.92, coverage(p, 5, [&, threshold = threshold](Random& r) {
+                      std::vector<EventCounts> all;
+                      for (int c = 0; c < clusters; ++c) all.push_back(cluster_of(r.normal(), threshold, r));
+                      return estimated_fraction(all);
+                    }));
+  expect_covers("event, 20 % unknown, all of them events, n = 40", 0.95, coverage(0.5, 6, [](Random& r) {
+                  EventCounts counts;
+                  for (int i = 0; i < 40; ++i) {
+                    const bool event = r.happens(0.5);
+                    ++(event && r.happens(0.4) ? counts.unknown : event ? counts.events : counts.without);
+                  }
+                  return estimated_fraction(counts);
+                }));
 }
 
 TEST(Coverage, OfPairedEvents) {
   double least = 1;
   for (const int n : {6, 12, 24, 40})
     for (const auto& [up, down] : {std::pair{0.1, 0.1}, {0.3, 0.05}, {0.5, 0.3}, {0.8, 0.1}, {0.05, 0.0}})
-      least = std::min(least, coverage(
-                                  [&, up = up, down = down](Random& r) {
-                                    std::vector<std::vector<OutcomePair>> pairs;
-                                    for (int i = 0; i < n; ++i) {
-                                      const double u = r.uniform();
-                                      pairs.push_back({u < up          ? OutcomePair{0, 1}
-                                                       : u < up + down ? OutcomePair{1, 0}
-                                                                       : OutcomePair{0, 0}});
-                                    }
-                                    return estimated_event_difference(pairs);
-                                  },
-                                  up - down, 7));
-  expect_covers("paired events, n = 6..40, least", least, 0.928);
+      least = std::min(
+          least, coverage(up - down, 7, [&, up = up, down = down](Random& r) {
+            std::vector<std::vector<OutcomePair>> pairs;
+            for (int i = 0; i < n; ++i) {
+              const double u = r.uniform();
+              pairs.push_back({OutcomePair{u >= up && u < up + down ? 1.0 : 0.0, u < up ? 1.0 : 0.0}});
+            }
+            return estimated_event_difference(pairs);
+          }));
+  expect_covers("paired events, n = 6..40, least", 0.928, least);
 }
 
 std::vector<OutcomesAtValue> curve_of(double limit, double width, int runs, Random& random) {
@@ -182,18 +177,13 @@ TEST(Coverage, OfLimits) {
   for (const auto& [level, runs] : {std::pair{0.5, 40}, {0.05, 200}})
     for (const double width : {0.02, 0.3, 1.0}) {
       const double truth = 5.37 + width * std::log(level / (1 - level));
-      expect_covers(("limit " + std::to_string(level).substr(0, 4) + ", width of the rise " +
-                     std::to_string(width).substr(0, 4))
-                        .c_str(),
-                    coverage(
-                        [&, level = level, runs = runs](Random& r) {
-                          std::vector<RunsAtValue> values;
-                          for (const OutcomesAtValue& value : curve_of(5.37, width, runs, r))
-                            values.push_back(value.runs());
-                          return estimated_limit(values, {level}).estimate;
-                        },
-                        truth, 8),
-                    0.997);
+      expect_covers("limit " + short_text(level) + ", width of the rise " + short_text(width), 0.997,
+                    coverage(truth, 8, [&, level = level, runs = runs](Random& r) {
+                      std::vector<RunsAtValue> values;
+                      for (const OutcomesAtValue& value : curve_of(5.37, width, runs, r))
+                        values.push_back(value.runs());
+                      return estimated_limit(values, {level}).estimate;
+                    }));
     }
 }
 
@@ -223,8 +213,7 @@ TEST(Coverage, OfHolmsFamily) {
         break;
       }
   }
-  std::printf("  %-58s %.3f\n", "4 tables of 6 true nulls: any adjusted p < 0.05", found / kRepeats);
-  EXPECT_LE(found / kRepeats, 0.05 + 0.011);
+  expect_at_most("4 tables of 6 true nulls: any adjusted p < 0.05", 0.05 + 0.011, found / kRepeats);
 }
 
 }  // namespace

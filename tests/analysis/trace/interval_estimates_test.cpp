@@ -1,3 +1,5 @@
+// Statistics of plain numbers: means and extremes, distributions, the sign test, and fits of curves, against
+// closed forms, published examples, enumeration and simulation.
 #include "analysis/trace/interval_estimates.h"
 
 #include <gtest/gtest.h>
@@ -11,22 +13,20 @@
 
 #include "analysis/trace/curve_fits.h"
 
-namespace remote_touch::means_and_extremes_test {
+namespace remote_touch::interval_estimates_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+// They are NaN if a value is NaN, or if there is none.
 TEST(Extremes, AreTheLargestAndTheSmallestValue) {
   EXPECT_EQ(max_of(std::vector<double>{-3, 2, -7}), 2);
   EXPECT_EQ(min_of(std::vector<double>{-3, 2, -7}), -7);
   EXPECT_EQ(max_or_nan(-3, -7), -3);
   EXPECT_EQ(min_or_nan(-3, -7), -7);
-}
-
-TEST(Extremes, AreNanIfAValueIsNanOrMissing) {
-  EXPECT_TRUE(std::isnan(max_of({})) && std::isnan(min_of({})));
   for (const std::vector<double>& values :
-       {std::vector<double>{kNan, 1}, {1, kNan}, {1, kNan, 2}, {2, kNan, 1}})
+       {std::vector<double>{}, {kNan, 1}, {1, kNan}, {1, kNan, 2}, {2, kNan, 1}})
     EXPECT_TRUE(std::isnan(max_of(values)) && std::isnan(min_of(values)));
   EXPECT_TRUE(std::isnan(max_or_nan(1, kNan)) && std::isnan(max_or_nan(kNan, 1)));
   EXPECT_TRUE(std::isnan(min_or_nan(1, kNan)) && std::isnan(min_or_nan(kNan, 1)));
@@ -38,11 +38,6 @@ TEST(Extremes, AreOverTheValuesThatQualify) {
   const auto is_even = [](std::size_t i) { return i % 2 == 0; };
   EXPECT_EQ(max_where(values.size(), is_even, value), 4);
   EXPECT_EQ(min_where(values.size(), is_even, value), -3);
-}
-
-TEST(Extremes, AreNanIfNoValueQualifiesOrOneThatDoesIsNan) {
-  const std::vector<double> values = {4, kNan};
-  const auto value = [&](std::size_t i) { return values[i]; };
   for (const bool all : {false, true}) {
     const auto qualifies = [&](std::size_t) { return all; };
     EXPECT_TRUE(std::isnan(max_where(values.size(), qualifies, value)));
@@ -50,28 +45,13 @@ TEST(Extremes, AreNanIfNoValueQualifiesOrOneThatDoesIsNan) {
   }
 }
 
-}  // namespace
-}  // namespace remote_touch::means_and_extremes_test
-
-namespace remote_touch::mean_of_numbers_test {
-namespace {
-
 TEST(Mean, IsTheSumInItsOrderOverTheCount) {
   EXPECT_EQ(mean({1, 2, 4.5}), 2.5);
   EXPECT_EQ(mean({1e16, 1, -1e16}), 0) << "1 is lost beside 1e16";
   EXPECT_EQ(mean({1e16, -1e16, 1}), 1.0 / 3);
-}
-
-TEST(Mean, IsAPositiveNanForAnEmptyList) {
   EXPECT_TRUE(std::isnan(mean({})));
   EXPECT_FALSE(std::signbit(mean({}))) << "the bits that kNoValue has";
 }
-
-}  // namespace
-}  // namespace remote_touch::mean_of_numbers_test
-
-namespace remote_touch::interval_estimates_test {
-namespace {
 
 // The distribution of 1 degree of freedom is Cauchy's, and that of 2 is t / sqrt(2 + t^2). Quantiles are
 // those of printed tables.
@@ -88,10 +68,6 @@ TEST(Student, TheDistributionIsThatOfTheTables) {
   EXPECT_NEAR(student_quantile(0.01, 30), 2.7500, 5e-5);
   EXPECT_NEAR(student_quantile(0.05, 100000), 1.95999, 5e-5);
 }
-
-// Exact intervals of fractions, and quantiles.
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // The exact interval covers the probability in at least 95 % of the experiments at every probability.
 TEST(ExactInterval, CoversAtEveryProbability) {
@@ -123,15 +99,6 @@ TEST(ExactFraction, HasAnIntervalOnlyIfOutcomesAreUnknown) {
   EXPECT_EQ(unknown.high, 7.0 / 8);
 }
 
-}  // namespace
-}  // namespace remote_touch::interval_estimates_test
-
-// Tests and intervals for pairs: closed forms, published examples, enumeration and simulation.
-namespace remote_touch::paired_test_test {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 TEST(RootMeanSquare, NeitherOverflowsNorVanishes) {
   EXPECT_EQ(root_mean_square({}), 0);
   EXPECT_EQ(root_mean_square({0, 0}), 0);
@@ -141,18 +108,10 @@ TEST(RootMeanSquare, NeitherOverflowsNorVanishes) {
   EXPECT_EQ(root_mean_square({1, kInfinity}), kInfinity);
 }
 
-// If all n pairs differ the same way, p is 2 / 2^n.
-TEST(SignTest, IsThatOfAFairCoin) {
-  EXPECT_EQ(sign_test(0, 0), 1);
-  EXPECT_EQ(sign_test(0, 5), 0.0625);
-  for (int n = 1; n <= 900; ++n)
-    EXPECT_NEAR(sign_test(0, n) / std::min(1.0, std::ldexp(2.0, -n)), 1, 1e-12) << n;
-  for (int n = 1; n <= 900; ++n) EXPECT_EQ(sign_test(n, n), 1);
-  for (int n = 1; n <= 900; ++n) EXPECT_EQ(sign_test(n, n - 1), 1);
-}
-
 TEST(SignTest, IsTheSumOfTheTails) {
+  EXPECT_EQ(sign_test(0, 0), 1);
   for (int n = 1; n <= 50; ++n) {
+    EXPECT_EQ(sign_test(n, n), 1);
     double choose = 1, tail = 0;  // integers below 2^53
     for (int k = 0; 2 * k < n; ++k) {
       tail += choose;
@@ -164,18 +123,14 @@ TEST(SignTest, IsTheSumOfTheTails) {
   }
 }
 
+// The expected values are sums of integers of arbitrary length. The first examples of McNemar's test are from
 // Bentur et al. (2009) and Cavo et al. (2012), as in M. W. Fagerland et al., BMC Med. Res. Methodology 13:91
-// (2013); the example of R's exact2x2; approval in two surveys, A. Agresti, Categorical Data Analysis, whose
-// z = -4.17 is p = 3.1e-5 when approximated.
-TEST(SignTest, IsMcNemarsExactTest) {
+// (2013), and from R's exact2x2; 86 and 150 are approvals in two surveys, A. Agresti, Categorical Data
+// Analysis.
+TEST(SignTest, IsMcNemarsExactTestAndPreciseFarOut) {
   EXPECT_NEAR(sign_test(1, 7), 0.0703, 5e-5);
   EXPECT_NEAR(sign_test(6, 16), 0.0525, 5e-5);
   EXPECT_NEAR(sign_test(2, 9), 0.06543, 5e-6);
-  EXPECT_NEAR(sign_test(86, 150), 3.716e-5, 5e-9);
-}
-
-// The expected values are sums of integers of arbitrary length.
-TEST(SignTest, IsPreciseFarOut) {
   EXPECT_NEAR(sign_test(86, 150) / 3.715936139571442342e-5, 1, 1e-12);
   EXPECT_NEAR(sign_test(400, 600) / 2.728464156066018426e-10, 1, 1e-12);
   EXPECT_NEAR(sign_test(1000, 1500) / 1.332587164837625313e-23, 1, 1e-12);
@@ -209,28 +164,7 @@ TEST(SignTest, UnderflowsToZero) {
   }
 }
 
-// The adjusted values are 0.005 * 4, 0.01 * 3, 0.03 * 2, and 0.04 * 1, which is raised to the value before
-// it.
-TEST(HolmAdjusted, EqualsAnExampleComputedByHand) {
-  const std::vector<double> adjusted = holm_adjusted({0.01, 0.04, 0.03, 0.005});
-  const double expected[] = {0.03, 0.06, 0.06, 0.02};
-  ASSERT_EQ(adjusted.size(), 4u);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(adjusted[i], expected[i], 1e-15) << i;
-}
-
-TEST(HolmAdjusted, IsNeverAboveOne) {
-  EXPECT_TRUE(holm_adjusted({}).empty());
-  EXPECT_EQ(holm_adjusted({0.02}), std::vector<double>{0.02});
-  EXPECT_EQ(holm_adjusted({1, 0.4, 1, 0.9}), (std::vector<double>{1, 1, 1, 1}));
-  EXPECT_EQ(holm_adjusted({0.25, 0.25}), (std::vector<double>{0.5, 0.5}));
-  EXPECT_EQ(holm_adjusted({0, 0, 1}), (std::vector<double>{0, 0, 1}));
-}
-
-}  // namespace
-}  // namespace remote_touch::paired_test_test
-
-namespace remote_touch::curve_fits_test {
-namespace {
+// --- fits of curves ---
 
 TEST(PolynomialFit, FindsTheCoefficientsOfAnExactPolynomial) {
   // The coefficients are of the size of (4.24): from 16 to 3e10 at x below 0.01.
@@ -276,16 +210,6 @@ TEST(PolynomialFit, BandHoldsTheTruthAsOftenAsItSays) {
     held += std::abs(fit.at(1.7) - (3 * 1.7 - 1.7 * 1.7)) < fit.half_width(1.7) ? 1 : 0;
   }
   EXPECT_NEAR(held / double{kRepetitions}, 0.95, 0.025);
-}
-
-TEST(FallingCurve, KeepsADecreasingCurve) {
-  const std::vector<double> values = {1, 0.9, 0.9, 0.2, 0};
-  EXPECT_EQ(isotonic_falling(values, {1, 2, 3, 4, 5}), values);
-}
-
-TEST(FallingCurve, PoolsByWeight) {
-  EXPECT_EQ(isotonic_falling({1, 0, 3}, {1, 1, 1}), (std::vector<double>{4.0 / 3, 4.0 / 3, 4.0 / 3}));
-  EXPECT_EQ(isotonic_falling({1, 0, 0.5}, {1, 3, 1}), (std::vector<double>{1, 0.125, 0.125}));
 }
 
 // No decreasing curve in its neighbourhood is nearer to the values.
@@ -347,11 +271,8 @@ Sinusoid part_of(const Signal& s) {
 TEST(Sinusoid, HasTheAmplitudeOfItsFrequencyAlone) {
   EXPECT_NEAR(part_of(signal(0.2, 0.1)).amplitude, 0.2, 1e-12);
   EXPECT_NEAR(part_of(signal(0, 0)).amplitude, 0, 1e-12);
-}
-
-TEST(Sinusoid, WithoutValuesIsNan) {
   EXPECT_TRUE(std::isnan(sinusoid_in({}, {}, kHz).amplitude));
 }
 
 }  // namespace
-}  // namespace remote_touch::curve_fits_test
+}  // namespace remote_touch::interval_estimates_test

@@ -1,3 +1,5 @@
+// Measures of runs: their direction, the runs to which they apply, outcomes and counts, and properties that
+// all of them have.
 #include "analysis/trace/measures.h"
 
 #include <gtest/gtest.h>
@@ -6,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <random>
 #include <set>
 #include <string>
@@ -14,36 +17,31 @@
 
 #include "analysis/trace/contact_measures.h"
 #include "analysis/trace/interval_estimates.h"
-#include "analysis/trace/trace.h"
-#include "core/points/vector.h"
-#include "tests/analysis/trace/measure_named.h"
+#include "tests/analysis/trace/example_traces.h"
 
 namespace remote_touch::measures_test {
 namespace {
 
-// The direction in which each measure gets better.
+using namespace example_traces;
 
+// More force is no better and no worse: a proxy that popped through exerts none. A renderer that follows a
+// bad measurement exactly is not better.
 TEST(BetterOfMeasures, IsInTheirTable) {
-  for (const char* name : {"popped_through", "rms_contact_error", "rms_force_jump", "force_noise",
-                           "tool_popped_through", "max_tool_penetration", "guidance_error"})
-    EXPECT_EQ(measure_named(name).better, Better::smaller) << name;
-  for (const char* name : {"min_slave_distance", "min_clearance"})
-    EXPECT_EQ(measure_named(name).better, Better::not_negative) << name;
-  EXPECT_EQ(measure_named("contact_force_fraction").better, Better::larger);
-  EXPECT_EQ(measure_named("mean_height").better, Better::near_zero);
-  // More force is no better and no worse: a proxy that popped through exerts none.
-  for (const char* name :
-       {"max_force", "max_torque", "energy_injected", "force_fraction", "last_force_time", "end_distance"})
-    EXPECT_EQ(measure_named(name).better, Better::neither) << name;
-}
-
-double nothing(const Trace&) {
-  return 0;
-}
-
-TEST(BetterOfMeasures, IsNeitherIfAProgramGivesNone) {
-  EXPECT_EQ((Measure{"own", "1", "a measure of a program", MeasuredRuns::all, nothing}.better),
-            Better::neither);
+  const std::map<Better, std::vector<const char*>> table = {
+      {Better::smaller,
+       {"popped_through", "rms_contact_error", "rms_force_jump", "force_noise", "tool_popped_through",
+        "max_tool_penetration", "guidance_error", "mean_lateral_force"}},
+      {Better::not_negative, {"min_slave_distance", "min_clearance"}},
+      {Better::larger, {"contact_force_fraction"}},
+      {Better::near_zero, {"mean_height", "apparent_friction"}},
+      {Better::neither,
+       {"max_force", "max_torque", "energy_injected", "force_fraction", "last_force_time", "end_distance",
+        "rms_renderer_error", "rms_camera_error", "mean_camera_error", "popped_through_truth"}}};
+  for (const auto& [better, names] : table)
+    for (const char* name : names) EXPECT_EQ(measure_named(name).better, better) << name;
+  const Directions directions = {{"x", Better::larger}};
+  EXPECT_EQ(direction_of(directions, "x"), Better::larger);
+  EXPECT_EQ(direction_of(directions, "y"), Better::neither);
 }
 
 TEST(Badness, IsSmallerWhereItIsBetter) {
@@ -56,49 +54,80 @@ TEST(Badness, IsSmallerWhereItIsBetter) {
   EXPECT_EQ(badness(1, Better::not_negative), badness(2, Better::not_negative));
 }
 
-TEST(DirectionOf, AnUnlistedMeasureHasNoDirection) {
-  const Directions directions = {{"x", Better::larger}};
-  EXPECT_EQ(direction_of(directions, "x"), Better::larger);
-  EXPECT_EQ(direction_of(directions, "y"), Better::neither);
-  EXPECT_STREQ(text_of(direction_of(directions, "y")), "has no direction");
-}
-
-struct Tick {
-  double signed_distance = 0.005, force_y = 0;
-  int frame = 0, steps = 1;
-  ContactState state = ContactState::contact;
-  bool converged = true;
-  double nearest = 0.005;
-};
-
-Trace trace_of(const std::vector<Tick>& ticks) {
-  Trace trace;
-  for (const Tick& tick : ticks) {
-    RenderOutput out;
-    out.force_N = Vec3(0, tick.force_y, 0);
-    out.state = tick.state;
-    out.steps = tick.steps;
-    out.converged = tick.converged;
-    out.frame_index = tick.frame;
-    out.nearest_distance_m = tick.nearest;
-    trace.append(0.001 * static_cast<double>(trace.length()), {}, out,
-                 {tick.signed_distance, tick.signed_distance, 0});
+// A measure of a part that a run does not have is NaN. A true normal that is known in one tick is enough.
+TEST(Measures, ApplyToRunsWithWhatTheyMeasure) {
+  using enum MeasuredRuns;
+  const Trace::TrueContact point{0, -0.01};
+  const SlaveState state{};
+  Trace with_slave;
+  with_slave.append(0, {}, {}, {}, {}, state);
+  const std::map<MeasuredRuns, Trace> with = {
+      {proxy, run_of({{}})},
+      {contact, run_of({{.contact = point}})},
+      {measured_surface, run_of({{.contact = point, .measured_m = 0.004}})},
+      {true_normal, run_of({{.normal = kUnknownVector}, {.normal = Vec3::UnitY()}})},
+      {replay, run_of({{.expected_N = Vec3::UnitY()}})},
+      {guidance, run_of({{.guidance_N = Vec3::Zero()}})},
+      {tool, run_of({{.torque_Nm = Vec3::Zero()}})},
+      {MeasuredRuns::slave, with_slave}};
+  std::map<MeasuredRuns, int> found;
+  for (const Measure& measure : built_in_measures()) {
+    ++found[measure.runs];
+    for (const auto& [part, trace] : with) {
+      const bool expected = measure.runs == all || measure.runs == part ||
+                            (measure.runs == proxy && part != tool) ||
+                            (measure.runs == contact && part == measured_surface);
+      EXPECT_EQ(applies(measure, trace), expected) << measure.name;
+      if (expected) continue;
+      EXPECT_TRUE(std::isnan(value_of(measure, trace))) << measure.name;
+      if (measure.runs == proxy || measure.runs == MeasuredRuns::slave) continue;
+      EXPECT_TRUE(std::isnan(measure.compute(trace))) << measure.name;
+    }
+    EXPECT_EQ(needs_true_contact(measure),
+              measure.runs == contact || measure.runs == true_normal || measure.runs == measured_surface)
+        << measure.name;
+    EXPECT_FALSE(measure.runs == true_normal && applies(measure, run_of({{.normal = kUnknownVector}})));
   }
-  return trace;
+  for (const auto& [part, trace] : with) EXPECT_GE(found[part], 3) << name_of(part);
 }
 
-TEST(Measures, PopThroughIsJudgedAtTheEnd) {
-  EXPECT_EQ(popped_through(trace_of({{-0.01}, {0.005}})), 0);
-  EXPECT_EQ(popped_through(trace_of({{0.005}, {-1e-9}})), 1);
-  EXPECT_TRUE(std::isnan(popped_through(Trace())));
-  EXPECT_EQ(max_penetration_m(trace_of({{0.005}, {-0.003}, {-0.001}})), 0.003);
-  EXPECT_TRUE(std::isnan(popped_through(trace_of({{-0.01}, {kNoValue}}))));
-  EXPECT_EQ(max_penetration_m(trace_of({{kNoValue}, {0.005}, {kNoValue}})), 0);
-  EXPECT_TRUE(std::isnan(max_penetration_m(trace_of({{kNoValue}, {kNoValue}}))));
+// --- outcomes and counts ---
+
+Trace at_distances(const std::vector<double>& distance_m, const std::vector<int>& frames = {}) {
+  std::vector<Tick> ticks;
+  for (std::size_t i = 0; i < distance_m.size(); ++i)
+    ticks.push_back({.frame = i < frames.size() ? frames[i] : 0, .distance_m = distance_m[i]});
+  return run_of(ticks);
+}
+
+// Depth and side are those of the ticks with a known truth and a frame.
+TEST(Measures, PopThroughIsJudgedAtTheEndAndDepthAlways) {
+  const struct {
+    std::vector<double> distance_m;
+    double popped_through, max_penetration_m, wrong_side;
+    std::vector<int> frames = {};
+  } rows[] = {{{-0.01, 0.005}, 0, 0.01, 0.5},
+              {{0.005, -1e-9}, 1, 1e-9, 0.5},
+              {{0.005, -0.003, -0.001}, 1, 0.003, 2 / 3.0},
+              {{-0.01, kUnknown}, kUnknown, 0.01, 1},
+              {{kUnknown, 0.005, kUnknown}, kUnknown, 0, 0},
+              {{kUnknown, kUnknown}, kUnknown, kUnknown, kUnknown},
+              {{0.005, kUnknown, -0.003, 0.0, -1e-9}, 1, 0.003, 0.5},
+              {{0.005, -0.02, 0.005}, 0, 0, 0, {0, -1, 0}},
+              {{0.01, -0.02, -0.001}, 0, 0.001, 1, {-1, -1, 0}},  // it was behind when the frame came
+              {{0.01, -0.02}, kUnknown, kUnknown, kUnknown, {-1, -1}}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(testing::PrintToString(row.distance_m));
+    const Trace trace = at_distances(row.distance_m, row.frames);
+    expect_values(trace,
+                  {{"popped_through", row.popped_through}, {"max_penetration", row.max_penetration_m}});
+    const double wrong = wrong_side_fraction(trace);
+    EXPECT_TRUE(std::isnan(row.wrong_side) ? std::isnan(wrong) : std::abs(wrong - row.wrong_side) < 1e-15);
+  }
 }
 
 TEST(Measures, AProxyThatRestsOnTheSurfaceIsNotBehindIt) {
-  Trace resting = trace_of({{0.01}, {-2.37e-16}, {0.0001}, {-0.0004}});
+  Trace resting = at_distances({0.01, -2.37e-16, 0.0001, -0.0004});
   EXPECT_EQ(popped_through(resting), 1) << "a ball's centre";
   EXPECT_EQ(wrong_side_fraction(resting), 0.5);
   resting.held_depth_m = 0.0025;
@@ -107,78 +136,37 @@ TEST(Measures, AProxyThatRestsOnTheSurfaceIsNotBehindIt) {
   EXPECT_EQ(max_penetration_m(resting), 0.0004) << "a depth is a depth";
 }
 
-TEST(Measures, WrongSideIsAShareOfTheTicksWithKnownTruth) {
-  EXPECT_EQ(wrong_side_fraction(trace_of({{0.005}, {kNoValue}, {-0.003}, {0.0}, {-1e-9}})), 0.5);
-  EXPECT_TRUE(std::isnan(wrong_side_fraction(trace_of({{kNoValue}}))));
+TEST(Measures, ARunWithAMeasuredSurfaceIsJudgedByIt) {
+  Trace trace = at_distances({0.01, 0.004, -0.002});
+  trace.measured_distance_m = {0.012, 0.007, 0.001};
+  EXPECT_EQ(popped_through(trace), 0) << "the camera's error";
+  trace.contact.resize(3);
+  EXPECT_EQ(value("popped_through_truth", trace), 1);
+  trace.measured_distance_m.back() = -0.001;
+  EXPECT_EQ(popped_through(trace), 1);
 }
 
-// A change counts only in ticks with a force or a torque, now or in the tick before.
-TEST(Measures, TextsOfChangesNameTheTicksThatCount) {
-  for (const char* name : {"rms_force_jump", "force_noise", "jump_fraction_5", "jump_fraction_20"})
-    EXPECT_NE(measure_named(name).meaning.find("with a force"), std::string::npos) << name;
-  for (const char* name : {"rms_torque_jump", "torque_noise"})
-    EXPECT_NE(measure_named(name).meaning.find("with a torque"), std::string::npos) << name;
-  for (const char* name : {"mean_lateral_force", "lateral_force_95"})
-    EXPECT_NE(measure_named(name).meaning.find("pushes out"), std::string::npos) << name;
+TEST(Measures, CountForcesStepsAndTicksWithoutConvergence) {
+  const Tick quick{.force_N = {0, 5, 0}, .steps = 2},
+      slow{.force_N = {0, -7, 0}, .steps = 30, .converged = false};
+  expect_values(run_of({quick, quick, slow, quick}), {{"mean_steps", 9},
+                                                      {"max_steps", 30},
+                                                      {"unconverged_fraction", 0.25},
+                                                      {"non_finite_fraction", 0},
+                                                      {"max_force", 7}});
+  expect_values(Trace(), {{"mean_steps", 0},
+                          {"max_steps", 0},
+                          {"unconverged_fraction", 0},
+                          {"non_finite_fraction", 0},
+                          {"max_force", 0}});
 }
 
 // Results are compared bit by bit, and the NaN of 0 / 0 has another sign on some machines.
 TEST(Measures, NoValueHasTheSameBitsEverywhere) {
-  for (const Trace& trace : {Trace(), trace_of({{kNoValue}, {kNoValue}})})
+  for (const Trace& trace : {Trace(), at_distances({kUnknown, kUnknown})})
     for (const auto measure :
          {max_penetration_m, min_slave_distance_m, wrong_side_fraction, rms_surface_error_m})
       EXPECT_EQ(std::bit_cast<std::uint64_t>(measure(trace)), std::bit_cast<std::uint64_t>(kNoValue));
-}
-
-TEST(Measures, AreZeroForAnEmptyTrace) {
-  EXPECT_EQ(unconverged_fraction(Trace()), 0);
-  EXPECT_EQ(non_finite_fraction(Trace()), 0);
-  EXPECT_EQ(mean_steps(Trace()), 0);
-  EXPECT_EQ(max_steps(Trace()), 0);
-  EXPECT_EQ(max_force_N(Trace()), 0);
-}
-
-TEST(Measures, SurfaceErrorCountsContactWithKnownTruthOnly) {
-  Tick good{0.0053}, bad{0.0046}, free{0.02}, dark{kNoValue};
-  free.state = ContactState::free;
-  EXPECT_NEAR(rms_surface_error_m(trace_of({good, bad, free, dark})), std::sqrt((9e-8 + 16e-8) / 2), 1e-12);
-  EXPECT_TRUE(std::isnan(rms_surface_error_m(trace_of({free, dark}))));
-}
-
-TEST(Measures, MaxForceIsOfAllTicks) {
-  const auto tick = [](double force, int frame) { return Tick{0.005, force, frame}; };
-  EXPECT_EQ(max_force_N(trace_of({tick(1, 0), tick(5, 0), tick(-7, 1)})), 7);
-}
-
-TEST(Measures, CountStepsAndTicksWithoutConvergence) {
-  Tick quick, slow;
-  quick.steps = 2, slow.steps = 30, slow.converged = false;
-  const Trace trace = trace_of({quick, quick, slow, quick});
-  EXPECT_EQ(mean_steps(trace), 9);
-  EXPECT_EQ(max_steps(trace), 30);
-  EXPECT_EQ(unconverged_fraction(trace), 0.25);
-  EXPECT_EQ(non_finite_fraction(trace), 0);
-}
-
-TEST(Measures, ARunWithAMeasuredSurfaceIsJudgedByIt) {
-  Trace trace = trace_of({{0.01}, {0.004}, {-0.002}});
-  trace.measured_distance_m = {0.012, 0.007, 0.001};
-  EXPECT_EQ(popped_through(trace), 0) << "the camera's error";
-  trace.contact.resize(3);
-  EXPECT_EQ(value_of(measure_named("popped_through_truth"), trace), 1);
-  trace.measured_distance_m.back() = -0.001;
-  EXPECT_EQ(popped_through(trace), 1);
-  trace.measured_distance_m.clear();
-  EXPECT_TRUE(std::isnan(value_of(measure_named("popped_through_truth"), trace)));
-}
-
-TEST(Measures, TicksBeforeTheFirstFrameDoNotCount) {
-  const Tick early{-0.02, 0, -1}, front{0.005}, back{-0.001};
-  EXPECT_EQ(popped_through(trace_of({front, early, front})), 0);
-  EXPECT_EQ(popped_through(trace_of({{0.01, 0, -1}, early, back})), 0) << "it was behind when the frame came";
-  EXPECT_TRUE(std::isnan(popped_through(trace_of({{0.01, 0, -1}, early})))) << "no frame";
-  EXPECT_EQ(max_penetration_m(trace_of({early, front})), 0);
-  EXPECT_EQ(wrong_side_fraction(trace_of({early, front, back})), 0.5);
 }
 
 // --- unknown numbers ---
