@@ -1,12 +1,14 @@
+// Files are written whole or not at all, alone or together, and replace no file of another program. A lock
+// has one holder at a time.
 #include "analysis/storage/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <linux/capability.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -36,13 +38,6 @@ class ReplacementRuleTest : public testing::Test {
   std::string write(const fs::path& target, const std::string& text) const {
     return refusal([&] { write_file_atomically(target, text.data(), text.size()); });
   }
-  // Returns the name of the only file that is not one of `others`.
-  std::string kept_beside(const std::vector<std::string>& others) const {
-    std::string kept;
-    for (const std::string& name : files_in(folder_.path()))
-      if (std::find(others.begin(), others.end(), name) == others.end()) kept += name;
-    return kept;
-  }
   const TestFolder folder_{"replacement_rule_test"};
 };
 
@@ -55,7 +50,8 @@ TEST_F(ReplacementRuleTest, AFileThatAppearedAndTheResultAreKept) {
   const std::string problem = write(target, "ours, new");
   EXPECT_HAS(problem, "late.h5: was written by another program while this one computed, and is unchanged: ");
   EXPECT_EQ(bytes_of(target), "precious notes");
-  const std::string kept = kept_beside({"late.h5"});
+  ASSERT_EQ(files_in(folder_.path()).size(), 2u);
+  const std::string kept = files_in(folder_.path())[1];  // behind late.h5 in the order of names
   EXPECT_HAS(kept, "late.h5.kept-");
   EXPECT_HAS(problem, (folder_ / kept).string());
   EXPECT_EQ(bytes_of(folder_ / kept), "ours, new");
@@ -97,33 +93,12 @@ TEST_F(ReplacementRuleTest, FilesThatBelongTogetherAppearAllOrNone) {
   EXPECT_EQ(bytes_of(folder_ / "b"), "precious notes");
 }
 
-TEST_F(ReplacementRuleTest, ReplacesEveryFileIfThereIsNoRule) {
-  folder_.write("free", "anything");  // the rules of the other tests last as long as the process
-  EXPECT_EQ(write(folder_ / "free", "new"), kNone);
-  EXPECT_EQ(bytes_of(folder_ / "free"), "new");
-}
-
 // Files are written whole or not at all.
 
 void expect_unwritable(const fs::path& file) {
   const std::string message = refusal([&] { write_trace(file, awkward_trace(2000), kProvenance, {}); });
   EXPECT_HAS(message, file.string() + ": cannot be written (");
   EXPECT_HAS(message, ": expected a writable folder");
-}
-
-TEST(WriteTrace, RefusesPathsThatCannotBeWritten) {
-  const TestFolder folder("atomic_file_test");
-  folder.write("file", "as it was");
-  fs::create_directory(folder / "folder");
-  fs::create_symlink(folder / "loop", folder / "loop");
-  for (const char* name : {"missing/x.h5", "file/x.h5", "folder", "folder/", "loop/x.h5"})
-    expect_unwritable(folder / name);
-  expect_unwritable(folder / std::string(300, 'a'));
-  expect_unwritable("");
-  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"file", "folder", "loop"}));
-  EXPECT_TRUE(files_in(folder / "folder").empty());
-  EXPECT_EQ(bytes_of(folder / "file"), "as it was");
-  if (fs::exists("/dev/full")) expect_unwritable("/dev/full");
 }
 
 // File permissions apply to this thread even if root runs it, as long as this object exists.
@@ -142,13 +117,27 @@ class PermissionsOfAnyUser {
   std::array<__user_cap_data_struct, 2> before_{};
 };
 
-TEST(WriteTrace, RefusesAFolderWithoutPermission) {
+TEST(WriteTrace, RefusesPathsThatCannotBeWritten) {
   const TestFolder folder("atomic_file_test");
-  fs::create_directory(folder / "locked");
-  fs::permissions(folder / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-  const PermissionsOfAnyUser any_user;
-  expect_unwritable(folder / "locked/x.h5");
-  EXPECT_TRUE(files_in(folder / "locked").empty());
+  folder.write("file", "as it was");
+  fs::create_directory(folder / "folder");
+  fs::create_symlink(folder / "loop", folder / "loop");
+  fs::create_symlink("b", folder / "a"), fs::create_symlink("a", folder / "b");
+  EXPECT_HAS(refusal([&] { write_file_atomically(folder / "a", "x", 1); }), "a: cannot be written (");
+  for (const char* name : {"missing/x.h5", "file/x.h5", "folder", "folder/", "loop/x.h5"})
+    expect_unwritable(folder / name);
+  expect_unwritable(folder / std::string(300, 'a'));
+  expect_unwritable("");
+  fs::permissions(folder / "folder", fs::perms::owner_read | fs::perms::owner_exec);
+  {
+    const PermissionsOfAnyUser any_user;
+    expect_unwritable(folder / "folder/x.h5");
+  }
+  EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"a", "b", "file", "folder", "loop"}));
+  EXPECT_TRUE(fs::is_symlink(folder / "a"));
+  EXPECT_TRUE(files_in(folder / "folder").empty());
+  EXPECT_EQ(bytes_of(folder / "file"), "as it was");
+  if (fs::exists("/dev/full")) expect_unwritable("/dev/full");
 }
 
 // A limit on the size of files acts like a full disk: the write begins and then fails.
@@ -190,14 +179,6 @@ TEST(WriteWholeFile, LinksAreFollowedAlsoToWhatIsNotThereYet) {
   EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"new"});
 }
 
-TEST(WriteWholeFile, ALinkInARingIsRefused) {
-  const TestFolder folder("atomic_file_test");
-  fs::create_symlink("a", folder / "b");
-  fs::create_symlink("b", folder / "a");
-  EXPECT_HAS(refusal([&] { write_file_atomically(folder / "a", "x", 1); }), "a: cannot be written (");
-  EXPECT_TRUE(fs::is_symlink(folder / "a"));
-}
-
 fs::perms permissions_of(const fs::path& file) {
   return fs::status(file).permissions();
 }
@@ -232,12 +213,12 @@ TEST(MoveIntoPlace, RemovesAFileThatCannotBeMoved) {
 TEST(WriteWholeFile, RepeatsInterruptedCallsAndReportsAFullDisk) {
   const TestFolder folder("atomic_file_test");
   {
-    const AnswersOfWrite once{{-1, EINTR}, {-1, EINTR}};
+    const FaultySystem once({.writes = {{-1, EINTR}, {-1, EINTR}}});
     write_file_atomically(folder / "file", "text", 4);
   }
   EXPECT_EQ(bytes_of(folder / "file"), "text");
   for (const int earlier : {0, EINTR}) {
-    const AnswersOfWrite none{{0, earlier}};
+    const FaultySystem none({.writes = {{0, earlier}}});
     EXPECT_HAS(refusal([&] { write_file_atomically(folder / "file", "other", 5); }),
                "file: cannot be written (No space left on device)");
   }
@@ -254,15 +235,8 @@ TEST(RemoveLeftovers, RemovesThemBesideTheFileThatALinkLeadsTo) {
   EXPECT_EQ(files_in(folder / "there"), std::vector<std::string>{"y.h5.partial-123"});
 }
 
-TEST(WriteWholeFile, DevicesAreWrittenThrough) {
-  if (!fs::exists("/dev/null")) GTEST_SKIP() << "no /dev/null";
-  const std::string text = "anything";
-  EXPECT_NO_THROW(write_file_atomically("/dev/null", text.data(), text.size()));
-  EXPECT_TRUE(fs::is_character_file("/dev/null"));
-}
-
 // Writing to a pipe that nobody reads would block for ever, and so may writing to other devices.
-TEST(WriteWholeFile, PipesAndOtherDevicesAreRefusedAtOnce) {
+TEST(WriteWholeFile, PipesAndDevicesButTheNullOneAreRefusedAtOnce) {
   const TestFolder folder("atomic_file_test");
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   fs::create_symlink("pipe", folder / "link");
@@ -274,13 +248,21 @@ TEST(WriteWholeFile, PipesAndOtherDevicesAreRefusedAtOnce) {
     EXPECT_EQ(refusal([&] { const FileLock lock(target); }), problem);
   }
   EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"link", "pipe"}));
+  if (!fs::exists("/dev/null")) return;
+  EXPECT_NO_THROW(write_file_atomically("/dev/null", text.data(), text.size())) << "is written through";
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
 using Names = std::vector<std::string>;
 
-TEST(NewFiles, AppearTogether) {
+TEST(NewFiles, AppearTogetherOrNotAtAll) {
   const TestFolder folder("new_files");
-  folder.write("b", "old");
+  fs::permissions(folder.write("b", "old"), static_cast<fs::perms>(0600));
+  {
+    NewFiles unfinished;
+    for (const char* name : {"a", "b"}) unfinished.begin(folder / name), unfinished.append("new");
+  }
+  EXPECT_EQ(files_in(folder.path()), Names{"b"});
   NewFiles files;
   files.begin(folder / "a");
   files.append("one");
@@ -294,32 +276,11 @@ TEST(NewFiles, AppearTogether) {
   files.finish();
   EXPECT_EQ(bytes_of(folder / "a"), "one two");
   EXPECT_EQ(bytes_of(folder / "b"), "new");
+  EXPECT_EQ(permissions_of(folder / "b"), static_cast<fs::perms>(0600));
   EXPECT_EQ(files_in(folder.path()), (Names{"a", "b"}));
-}
-
-TEST(NewFiles, KeepThePermissionsOfTheFilesThatTheyReplace) {
-  const TestFolder folder("new_files");
-  fs::permissions(folder.write("a", "old"), static_cast<fs::perms>(0600));
-  NewFiles files;
-  files.begin(folder / "a");
-  files.append("new");
-  files.finish();
-  EXPECT_EQ(bytes_of(folder / "a"), "new");
-  EXPECT_EQ(fs::status(folder / "a").permissions(), static_cast<fs::perms>(0600));
-}
-
-TEST(NewFiles, LeaveNothingIfTheyAreNotFinished) {
-  const TestFolder folder("new_files");
-  folder.write("b", "old");
-  {
-    NewFiles files;
-    for (const char* name : {"a", "b"}) {
-      files.begin(folder / name);
-      files.append("new");
-    }
-  }
-  EXPECT_EQ(files_in(folder.path()), Names{"b"});
-  EXPECT_EQ(bytes_of(folder / "b"), "old");
+  EXPECT_HAS(refusal([&] { files.begin(folder / "nowhere/a"); }), "nowhere/a: cannot be written");
+  EXPECT_HAS(refusal([&] { files.begin("/dev/null"); }), "/dev/null: cannot be written");
+  EXPECT_HAS(refusal([&] { files.begin(folder.path()); }), "cannot be written (Is a directory)");
 }
 
 using Contents = std::vector<std::pair<fs::path, std::string>>;  // by target
@@ -340,7 +301,7 @@ TEST(NewFiles, ReplaceAllOrNone) {
   const Names before = {"a", "b", "there"};
 
   for (const int done : {0, 1, 2}) {
-    const FailedRename failed(done, EDQUOT);
+    const FaultySystem failed({.renames_before = done, .failed_renames = 1, .error_of_rename = EDQUOT});
     EXPECT_HAS(refusal([&] { write_together(files); }), files[static_cast<std::size_t>(done)].first.string() +
                                                             ": cannot be written (Disk quota exceeded)");
     EXPECT_EQ(all(), "old a, old b");
@@ -355,7 +316,7 @@ TEST(NewFiles, ReplaceAllOrNone) {
     EXPECT_EQ(files_in(folder.path()), before);
   }
   {
-    const AnswersOfWrite full{{5, 0}, {-1, ENOSPC}};
+    const FaultySystem full({.writes = {{5, 0}, {-1, ENOSPC}}});
     EXPECT_HAS(refusal([&] { write_together(files); }), "b: cannot be written (No space left on device)");
     EXPECT_EQ(files_in(folder.path()), before);
   }
@@ -372,7 +333,7 @@ TEST(NewFiles, KeepAnOldFileThatCannotBePutBack) {
   const TestFolder folder("new_files");
   folder.write("a", "old a"), folder.write("b", "old b");
   const std::string kept = (folder / "a").string() + ".old-" + std::to_string(::getpid());
-  const FailedRename failed(1, EDQUOT, 2);
+  const FaultySystem failed({.renames_before = 1, .failed_renames = 2, .error_of_rename = EDQUOT});
   const std::string why = refusal([&] {
     write_together({{folder / "a", "new a"}, {folder / "b", "new b"}});
   });
@@ -384,12 +345,42 @@ TEST(NewFiles, KeepAnOldFileThatCannotBePutBack) {
   EXPECT_EQ(files_in(folder.path()).size(), 3u);
 }
 
-TEST(NewFiles, AreNamedIfTheyCannotBeBegun) {
-  const TestFolder folder("new_files");
-  NewFiles files;
-  EXPECT_HAS(refusal([&] { files.begin(folder / "nowhere/a"); }), "nowhere/a: cannot be written");
-  EXPECT_HAS(refusal([&] { files.begin("/dev/null"); }), "/dev/null: cannot be written");
-  EXPECT_HAS(refusal([&] { files.begin(folder.path()); }), "cannot be written (Is a directory)");
+// --- a lock has one holder at a time ---
+
+TEST(FileLock, OneHolderAtATime) {
+  const TestFolder folder("file_lock_test");
+  const auto file = folder / "x.h5";
+  folder.write("x.h5.partial-123", "left by a killed program");
+  {
+    const FileLock first(file);
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.partial-123"));
+    EXPECT_HAS(refusal([&] { FileLock second(file); }), "x.h5: another process is writing this file");
+    EXPECT_NO_THROW(FileLock(folder / "y.h5"));
+    write_file_atomically(file, "text", 4);  // the file may be replaced under the lock
+    EXPECT_HAS(refusal([&] { FileLock second(file); }), "another process is writing this file");
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.h5.lock"));
+  folder.write("x.h5.lock", "");  // of a killed process
+  EXPECT_NO_THROW(FileLock{file});
+  EXPECT_HAS(refusal([&] { FileLock lock(folder / "nowhere" / "x.h5"); }), "x.h5: cannot be written");
+
+  std::filesystem::create_directory(folder / "other");
+  {
+    const FolderLock first(folder.path());
+    EXPECT_HAS(refusal([&] { FolderLock second(folder.path()); }),
+               folder.path().string() + ": another process is writing there");
+    EXPECT_NO_THROW(FolderLock{folder / "other"});
+    EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"other", "x.h5"}));
+  }
+  EXPECT_NO_THROW(FolderLock{folder.path()});
+  EXPECT_NO_THROW(FolderLock{folder / "nowhere"});
+}
+
+// A file system without locks is no fault; other errors of flock() are reported.
+TEST(LockError, DistinguishesFaultsFromAbsentLocks) {
+  EXPECT_EQ(lock_error(-1, LOCK_EX | LOCK_NB), EBADF);
+  for (const int error : {ENOLCK, ENOSYS, EOPNOTSUPP}) EXPECT_TRUE(has_no_locks(error)) << error;
+  for (const int error : {EBADF, EWOULDBLOCK, EIO, EINTR}) EXPECT_FALSE(has_no_locks(error)) << error;
 }
 
 }  // namespace

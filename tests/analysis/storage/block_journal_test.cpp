@@ -119,6 +119,11 @@ TEST_F(BlockJournal, GrowsWhileItsWriterLives) {
   EXPECT_FALSE(reader.next());
   writer.remove();
   EXPECT_TRUE(files_in(folder.path()).empty());
+  // It is beside the file to which a link leads.
+  fs::create_directory(folder / "deep");
+  fs::create_symlink("deep/x", folder / "link");
+  EXPECT_TRUE(
+      fs::equivalent(JournalWriter(folder / "link", {0, "first"}).file(), folder / "deep/x.unfinished"));
 }
 
 TEST_F(BlockJournal, RefusesToOverwriteAnExistingFile) {
@@ -161,17 +166,15 @@ TEST_F(BlockJournal, ReplacesOneThatHoldsNothing) {
   EXPECT_HAS(refusal([&] { JournalWriter(folder / "x", {0, "first"}); }), "x.unfinished: exists");
 }
 
-TEST_F(BlockJournal, IsBesideTheFileThatALinkLeadsTo) {
-  fs::create_directory(folder / "deep");
-  fs::create_symlink("deep/x", folder / "link");
-  const JournalWriter writer(folder / "link", {0, "first"});
-  EXPECT_TRUE(fs::equivalent(writer.file(), folder / "deep/x.unfinished"));
-}
-
 TEST_F(BlockJournal, RefusesWhatCannotBeWritten) {
   EXPECT_HAS(refusal([&] { JournalWriter(folder / "nowhere/x", {0, "first"}); }), "cannot be written");
   EXPECT_HAS(refusal([&] { JournalWriter(folder.path(), {0, "first"}); }), "cannot be written");
   EXPECT_HAS(refusal([&] { JournalWriter("/dev/null", {0, "first"}); }), "/dev/null: is a device");
+  {
+    const NoRoom limit(50);
+    EXPECT_HAS(refusal([&] { JournalWriter(folder / "x", {0, std::string(100, 'x')}); }), "File too large");
+  }
+  EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
 TEST_F(BlockJournal, ABlockWithoutRoomLeavesTheBlocksBeforeWhole) {
@@ -197,19 +200,13 @@ TEST_F(BlockJournal, RefusesBlocksBehindAPartThatCannotBeRemoved) {
   const auto append = [&] { return refusal([&] { writer.append({1, std::string(100, 'x')}); }); };
   {
     const NoRoom limit(fs::file_size(writer.file()) + 50);
-    const FailedTruncation failed;
+    const FaultySystem failed({.truncations_fail = true});
     EXPECT_HAS(append(), "x: cannot be written (File too large)");
   }
   EXPECT_HAS(append(), "x: cannot be written (File too large)");
   JournalReader reader(writer.file());
   EXPECT_EQ(reader.next()->content, "first");
   EXPECT_FALSE(reader.next());
-}
-
-TEST_F(BlockJournal, LeavesNoFileIfTheFirstBlockHasNoRoom) {
-  const NoRoom limit(50);
-  EXPECT_HAS(refusal([&] { JournalWriter(folder / "x", {0, std::string(100, 'x')}); }), "File too large");
-  EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
 TEST_F(BlockJournal, RefusesToReadOtherFiles) {
@@ -220,16 +217,13 @@ TEST_F(BlockJournal, RefusesToReadOtherFiles) {
   EXPECT_HAS(why(folder.path()), "is not an unfinished recording");
   write(folder);
   EXPECT_HAS(why(folder.write("x", "a result")), "expected " + (folder / "x.unfinished").string());
-}
-
-TEST_F(BlockJournal, IsNamedInTheErrorIfItsFileIsMissing) {
-  write(folder);
-  EXPECT_HAS(refusal([&] { require_no_journal(folder / "x"); }),
-             "x: no such file, but its unfinished recording");
-  EXPECT_HAS(refusal([&] { require_no_journal(folder / "x.unfinished"); }), "is an unfinished recording");
-  EXPECT_EQ(refusal([&] { require_no_journal(folder / "other"); }), "no InputError");
-  folder.write("x", "a result");
-  EXPECT_EQ(refusal([&] { require_no_journal(folder / "x"); }), "no InputError");
+  // Where a result is expected, its journal is named if the result is missing.
+  const auto required = [&](const char* name) { return refusal([&] { require_no_journal(folder / name); }); };
+  EXPECT_EQ(required("x"), "no InputError");
+  EXPECT_EQ(required("other"), "no InputError");
+  EXPECT_HAS(required("x.unfinished"), "is an unfinished recording");
+  fs::remove(folder / "x");
+  EXPECT_HAS(required("x"), "x: no such file, but its unfinished recording");
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
+// Comparison of two columns, and of two running hashes: what counts as the same, and what never does; and the
+// figure of the deviation over time.
 #include "analysis/storage/trace_comparison.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -17,8 +20,6 @@
 namespace remote_touch::compared_columns_test {
 namespace {
 
-// Comparison of two columns: what counts as the same, and what never does.
-
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -26,15 +27,10 @@ Column numbers(std::vector<double> values, int width = 1, std::string units = "m
   return {"x", std::move(units), "", std::move(values), width, {}};
 }
 
-TEST(Within, ZeroToleranceAcceptsOnlyEqualNumbers) {
-  const Tolerance exact;
-  EXPECT_TRUE(within(exact, 0.1, 0.1));
-  EXPECT_FALSE(within(exact, 1e-20, 2e-20));
-  EXPECT_FALSE(within(exact, 0.1, std::nextafter(0.1, 1)));
-  EXPECT_TRUE(within(exact, 0.0, -0.0));
-}
-
-TEST(Within, the) {
+// The relative part is that of the baseline. Without a tolerance only equal numbers pass.
+TEST(Within, AddsTheAbsoluteAndTheRelativePart) {
+  EXPECT_TRUE(within({}, 0.1, 0.1) && within({}, 0.0, -0.0));
+  EXPECT_FALSE(within({}, 1e-20, 2e-20) || within({}, 0.1, std::nextafter(0.1, 1)));
   const Tolerance both = {0.5, 0.25};
   EXPECT_TRUE(within(both, 2, 3));
   EXPECT_FALSE(within(both, 2, 3.0001));
@@ -69,13 +65,6 @@ TEST(CompareColumns, CountsAndMeasuresWhatIsOutside) {
   EXPECT_DOUBLE_EQ(c.max, 0.5);
   EXPECT_DOUBLE_EQ(c.rms, std::sqrt((0.25 + 0.01) / 4));
   EXPECT_TRUE(compare_columns(numbers({1, 2}), numbers({1, 2}), {}).is_same());
-}
-
-// h5diff accepts such differences.
-TEST(CompareColumns, TinyDifferencesAreDifferences) {
-  const auto c = compare_columns(numbers({1e-20}), numbers({2e-20}), {});
-  EXPECT_FALSE(c.is_same());
-  EXPECT_DOUBLE_EQ(c.max, 1e-20);
 }
 
 TEST(CompareColumns, AVectorsDeviationIsALength) {
@@ -139,10 +128,7 @@ TEST(CompareColumns, ShapesUnitsAndKindsAreProblems) {
   EXPECT_EQ(problem(numbers({})), "3 rows of 1 against 0 rows of 1");
   // The rows that both have are compared nevertheless.
   EXPECT_EQ(compare_columns(whole, numbers({1, 9}), {}).first_outside, 1u);
-}
-
-// A table of a figure may be empty, for example if it lists events that did not happen.
-TEST(CompareColumns, TwoEmptyColumnsAreTheSame) {
+  // A table of a figure may be empty, for example if it lists events that did not happen.
   EXPECT_TRUE(compare_columns(numbers({}), numbers({}), {}).is_same());
   EXPECT_FALSE(compare_columns(numbers({}, 3), numbers({}), {}).is_same());
 }
@@ -168,16 +154,6 @@ TEST(CompareColumns, NamesTextsAndFingerprintsAreEqualOrNot) {
   more.values = std::vector<std::int32_t>{10, 22};
   EXPECT_EQ(compare_columns(counts, more, {}).max, 2);
   EXPECT_TRUE(compare_columns(counts, more, {2, 0}).is_same());
-}
-
-TEST(StoredColumns, OfAnEarlierSchemaAreRefused) {
-  const TestFolder folder("stored_columns_test");
-  Hdf5Writer hdf5;
-  hdf5.attribute("/", "schema", "remote-touch-figure/2");
-  hdf5.save(folder / "old.h5");
-  EXPECT_HAS(
-      refusal([&] { StoredFigure{Hdf5Reader(folder / "old.h5")}; }),
-      "old.h5: is of schema remote-touch-figure/2: expected remote-touch-figure/3; make the result again");
 }
 
 // The running hash without its trace: 8 bytes per tick, or less, show where two runs begin to differ.
@@ -279,72 +255,53 @@ TEST_F(TickHashFile, ReadsBackWhatWasWritten) {
   EXPECT_LT(fs::file_size(folder / "h.h5"), static_cast<std::size_t>(kTicks) * 8 + 20000);
 }
 
+// Files with a valid seal whose columns are not a list of ticks and hashes, and files of other kinds.
 TEST_F(TickHashFile, OtherFilesAreRefused) {
-  const fs::path trace = stored(folder, "trace.h5", walk(100));
-  EXPECT_HAS(refusal([&] { read_hashes(trace); }), "trace.h5: is of schema remote-touch-trace/3");
-  write_hashes(folder / "h.h5", hashes_of_trace(StoredTrace(trace), 1), {});
-  EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(folder / "h.h5"), 1); }),
-             "is of schema remote-touch-hashes/3");
-}
-
-fs::path with_columns(const TestFolder& folder, const std::vector<Column>& columns) {
-  Hdf5Writer hdf5;
-  hdf5.attribute("/", "schema", schema_name("hashes"));
-  hdf5.group("/hashes");
-  hdf5.columns("/hashes", columns, "");
-  hdf5.save(folder / "h.h5");
-  return folder / "h.h5";
-}
-
-// The file has a valid seal, but its columns are not a list of ticks and hashes.
-TEST_F(TickHashFile, ColumnsThatAreNotHashesAreRefused) {
   using Ticks = std::vector<std::int32_t>;
   using Hashes = std::vector<std::uint64_t>;
-  const auto refused = [&](const Values& tick, const Values& hash) {
-    const fs::path file = with_columns(folder, {{"tick", "1", "", tick}, {"tick_hash", "1", "", hash}});
-    return refusal([&] { read_hashes(file); });
+  const auto refused = [&](const std::vector<Column>& columns) {
+    Hdf5Writer hdf5;
+    hdf5.attribute("/", "schema", schema_name("hashes"));
+    hdf5.group("/hashes");
+    hdf5.columns("/hashes", columns, "");
+    hdf5.save(folder / "h.h5");
+    return refusal([&] { read_hashes(folder / "h.h5"); });
   };
-  EXPECT_EQ(refused(Ticks{0, 3, 4}, Hashes{1, 2, 3}), "no InputError");
-  EXPECT_HAS(refused(Ticks{0, 1, 2}, Hashes{1}), "h.h5: damaged (its ticks and hashes differ in number)");
-  EXPECT_HAS(refused(Ticks{0}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks and hashes differ in number)");
-  EXPECT_HAS(refused(Ticks{0, 2, 2}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks are out of order)");
-  EXPECT_HAS(refused(Ticks{-1, 2, 3}, Hashes{1, 2, 3}), "h.h5: damaged (its ticks are out of order)");
-  EXPECT_HAS(refused(Ticks{0}, Ticks{1}),
-             "h.h5: damaged (/hashes/tick_hash has values of another type or width)");
-  EXPECT_HAS(refused(std::vector<double>{0}, Hashes{1}),
-             "h.h5: damaged (/hashes/tick has values of another type or width)");
-  const fs::path one = with_columns(folder, {{"tick", "1", "", Ticks{0}}});
-  EXPECT_HAS(refusal([&] { read_hashes(one); }), "h.h5: damaged (/hashes/tick_hash is missing)");
-}
+  const struct {
+    const char* problem;
+    Values tick, hash;
+  } rows[] = {{"no InputError", Ticks{0, 3, 4}, Hashes{1, 2, 3}},
+              {"(its ticks and hashes differ in number)", Ticks{0, 1, 2}, Hashes{1}},
+              {"(its ticks and hashes differ in number)", Ticks{0}, Hashes{1, 2, 3}},
+              {"(its ticks are out of order)", Ticks{0, 2, 2}, Hashes{1, 2, 3}},
+              {"(its ticks are out of order)", Ticks{-1, 2, 3}, Hashes{1, 2, 3}},
+              {"(/hashes/tick_hash has values of another type or width)", Ticks{0}, Ticks{1}},
+              {"(/hashes/tick has values of another type or width)", std::vector<double>{0}, Hashes{1}}};
+  for (const auto& row : rows)
+    EXPECT_HAS(refused({{"tick", "1", "", row.tick}, {"tick_hash", "1", "", row.hash}}), row.problem);
+  EXPECT_HAS(refused({{"tick", "1", "", Ticks{0}}}), "h.h5: damaged (/hashes/tick_hash is missing)");
 
-TEST_F(TickHashFile, ATraceWithoutARunningHashIsRefused) {
+  const auto refused_trace = [](const fs::path& file) {
+    return refusal([&] { hashes_of_trace(StoredTrace(file), 1); });
+  };
   std::vector<Column> columns = walk(10);
+  write_hashes(folder / "h.h5", hashes_of_trace(StoredTrace(stored(folder, "trace.h5", columns)), 1), {});
+  EXPECT_HAS(refusal([&] { read_hashes(folder / "trace.h5"); }),
+             "trace.h5: is of schema remote-touch-trace/3");
+  EXPECT_HAS(refused_trace(folder / "h.h5"), "is of schema remote-touch-hashes/3");
   columns.back().values = std::vector<double>(10);
-  const fs::path numbers = stored(folder, "numbers.h5", columns);
-  EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(numbers), 1); }),
-             "tick_hash has values of another type or width");
+  EXPECT_HAS(refused_trace(stored(folder, "x.h5", columns)), "tick_hash has values of another type or width");
   columns.pop_back();
-  const fs::path none = stored(folder, "none.h5", columns);
-  EXPECT_HAS(refusal([&] { hashes_of_trace(StoredTrace(none), 1); }),
-             "none.h5: damaged (/trace/tick_hash is missing)");
+  EXPECT_HAS(refused_trace(stored(folder, "x.h5", columns)), "x.h5: damaged (/trace/tick_hash is missing)");
+  Hdf5Writer hdf5;
+  hdf5.attribute("/", "schema", "remote-touch-figure/2");
+  hdf5.save(folder / "old.h5");
+  EXPECT_HAS(
+      refusal([&] { StoredFigure{Hdf5Reader(folder / "old.h5")}; }),
+      "old.h5: is of schema remote-touch-figure/2: expected remote-touch-figure/3; make the result again");
 }
 
 // --- comparison ---
-
-TEST(CompareHashes, TheSameAreTheSame) {
-  const TestFolder folder("tick_hashes_test");
-  const TickHashes all = hashes_of_trace(StoredTrace(stored(folder, "x.h5", walk())), 1);
-  for (const int every : {1, 3, 2000})
-    for (const int other : {1, 5, 7000}) {
-      const HashComparison same = compare_hashes(every_nth(all, every), every_nth(all, other));
-      EXPECT_TRUE(same.is_same()) << every << ", " << other;
-      EXPECT_EQ(same.same, kTicks - 1);
-      EXPECT_FALSE(same.different);
-    }
-  EXPECT_EQ(compare_hashes(all, all).compared, static_cast<std::size_t>(kTicks));
-  // Both lists have every 15th tick, and the last.
-  EXPECT_EQ(compare_hashes(every_nth(all, 3), every_nth(all, 5)).compared, 335u);
-}
 
 TEST(CompareHashes, APlantedTickIsBetweenTheTwoReportedOnes) {
   std::mt19937_64 random(5);
@@ -374,6 +331,8 @@ TEST(CompareHashes, APlantedTickIsBetweenTheTwoReportedOnes) {
     EXPECT_FALSE(coarse.is_same());
     EXPECT_EQ(coarse.same, before) << tick << ", every " << ours << " and " << theirs;
     EXPECT_EQ(coarse.different, from);
+    const HashComparison same = compare_hashes(every_nth(baseline, ours), every_nth(baseline, theirs));
+    EXPECT_TRUE(same.is_same() && same.same == 499 && !same.different);
   }
 }
 
@@ -387,16 +346,13 @@ TEST(CompareHashes, OneRunIsLonger) {
     EXPECT_EQ(comparison.same, 2);
     EXPECT_EQ(comparison.compared, 3u);
   }
-}
-
-TEST(CompareHashes, HashesWithoutACommonTickAreNotTheSame) {
+  // Hashes without a common tick are not the same.
   const TickHashes even = {{0, 2, 4}, {10, 12, 14}}, odd = {{1, 3}, {11, 13}}, none;
   for (const auto& [baseline, candidate] :
        {std::pair(even, odd), std::pair(odd, even), std::pair(none, odd), std::pair(none, none)}) {
     const HashComparison comparison = compare_hashes(baseline, candidate);
-    EXPECT_FALSE(comparison.is_same());
+    EXPECT_FALSE(comparison.is_same() || comparison.same || comparison.different);
     EXPECT_EQ(comparison.compared, 0u);
-    EXPECT_FALSE(comparison.same || comparison.different);
   }
 }
 
@@ -416,36 +372,85 @@ TEST(CompareHashes, EqualRowsHaveEqualHashes) {
   EXPECT_EQ(columns.back().values, other.back().values);
 }
 
-// --- bisection, as by hand between two machines ---
+// --- the figure of the deviation between two traces over time ---
 
-TEST(Bisection, FindsTheTickWithALogarithmicNumberOfQueries) {
-  const TestFolder folder("tick_hashes_test");
-  std::mt19937_64 random(7);
-  const std::vector<Column> columns = walk();
-  const StoredTrace baseline(stored(folder, "a.h5", columns));
-  for (const std::size_t tick : {std::size_t{0}, std::size_t{4095}, std::size_t{4096}, std::size_t{4999},
-                                 random() % kTicks, random() % kTicks, random() % kTicks}) {
-    const StoredTrace candidate(stored(folder, "b.h5", changed_at(columns, tick, random)));
-    const auto is_same = [&](std::size_t at) {
-      return baseline.rows("tick_hash", at, 1).values == candidate.rows("tick_hash", at, 1).values;
-    };
-    std::size_t from = 0, to = kTicks - 1;  // the first different tick is from .. to
-    int looks = 0;
-    for (; from < to; ++looks) {
-      const std::size_t middle = (from + to) / 2;
-      (is_same(middle) ? from : to) = is_same(middle) ? middle + 1 : middle;
-    }
-    EXPECT_LE(looks, 13);
-    EXPECT_EQ(from, tick);
-    const TraceComparison whole = compare_traces(baseline, candidate, {}, {});
-    ASSERT_TRUE(whole.divergence);
-    EXPECT_EQ(whole.divergence->tick, from);
-    EXPECT_EQ(whole.divergence->first_difference, from);
-    EXPECT_EQ(compare_hashes(hashes_of_trace(StoredTrace(folder / "a.h5"), 1),
-                             hashes_of_trace(StoredTrace(folder / "b.h5"), 1))
-                  .different,
-              static_cast<int>(from));
+using Numbers = std::vector<double>;
+
+// Time in seconds and columns of zeros.
+std::vector<Column> zeros(std::size_t rows, const std::vector<std::string>& names) {
+  Numbers time(rows);
+  std::iota(time.begin(), time.end(), 0.0);
+  std::vector<Column> columns = {{"time", "s", "", time}};
+  for (const std::string& name : names) columns.push_back({name, "m", "", Numbers(rows)});
+  return columns;
+}
+double& value(std::vector<Column>& columns, std::size_t column, std::size_t row) {
+  return std::get<Numbers>(columns[column].values)[row];
+}
+
+Figure figure_of(const std::vector<Column>& a, const std::vector<Column>& b,
+                 const Tolerances& tolerances = {}) {
+  const ColumnsInMemory baseline(a), candidate(b);
+  return deviation_figure(baseline, candidate, compare_by_name(baseline, candidate, tolerances, {}));
+}
+
+// 2001 rows are more than the maximum of 2000 pieces, so each piece has two rows, and the last has one.
+TEST(DeviationFigure, EachPieceShowsItsLargestDeviation) {
+  const std::vector<Column> a = zeros(2001, {"x"});
+  std::vector<Column> b = a;
+  value(b, 1, 4) = 0.001, value(b, 1, 5) = -0.01;
+  value(b, 1, 7) = std::numeric_limits<double>::quiet_NaN();
+  value(b, 1, 1000) = 0.1, value(b, 1, 2000) = 100;
+  const Figure figure = figure_of(a, b, {{"x", {0.05, 0}}});
+  ASSERT_EQ(figure.tables.size(), 1u);  // the first row outside, 7, has no deviation to show
+  const Numbers &when = numbers(figure.tables[0], "time"), &size = numbers(figure.tables[0], "deviation");
+  ASSERT_EQ(size.size(), 1001u);
+  for (std::size_t i = 0; i < size.size(); ++i) {
+    EXPECT_EQ(when[i], 2.0 * static_cast<double>(i));
+    if (i == 2 || i == 500 || i == 1000)
+      EXPECT_NEAR(size[i], i == 2 ? -2 : i == 500 ? -1 : 2, 1e-12);
+    else
+      EXPECT_TRUE(std::isnan(size[i])) << i;
   }
+  // Up to 2000 rows are drawn one by one, and the first row outside is marked.
+  std::vector<Column> few = zeros(2000, {"x"});
+  value(few, 1, 1999) = 1;
+  const Figure each = figure_of(zeros(2000, {"x"}), few);
+  ASSERT_EQ(each.tables.size(), 2u);
+  EXPECT_EQ(numbers(each.tables[0], "deviation").size(), 2000u);
+  EXPECT_EQ(numbers(each.tables[1], "time"), Numbers{1999});
+  EXPECT_EQ(numbers(each.tables[1], "deviation"), Numbers{0});
+}
+
+TEST(DeviationFigure, CaptionTellsWhetherColumnsDiffer) {
+  const std::vector<Column> a = zeros(5, {"x", "y"});
+  std::vector<Column> b = a;
+  EXPECT_EQ(figure_of(a, b).caption, "No column differs.");
+  value(b, 1, 3) = 0.5;
+  EXPECT_EQ(figure_of(a, b, {{"x", {1, 0}}}).caption, "1 column(s) differ, within the tolerances.");
+  value(b, 2, 3) = 0.5;
+  EXPECT_EQ(figure_of(a, b, {{"x", {1, 0}}}).caption, "2 column(s) differ.");
+  const auto without_time = [](std::vector<Column> columns) {
+    columns.erase(columns.begin());
+    return columns;
+  };
+  EXPECT_EQ(figure_of(without_time(a), without_time(b)).caption,
+            "2 column(s) differ. Nothing is drawn, because the baseline has no column time.");
+  EXPECT_EQ(figure_of(without_time(a), without_time(a)).caption, "No column differs.");
+}
+
+TEST(DeviationFigure, HasAtMostEightPanelsInTheTracesOrder) {
+  const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
+  const std::vector<Column> a = zeros(5, names);
+  std::vector<Column> b = a;
+  for (std::size_t column = 2; column < b.size(); ++column) value(b, column, 3) = 1;
+  const Figure figure = figure_of(a, b);
+  ASSERT_EQ(figure.panels.size(), 8u);  // nine columns differ; "a" does not
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(figure.panels[i].title, names[i + 1]);
+    EXPECT_EQ(figure.panels[i].y_label, "log10 of the deviation in m");
+  }
+  EXPECT_TRUE(figure_of(a, a).panels.empty());
 }
 
 }  // namespace

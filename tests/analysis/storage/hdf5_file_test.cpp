@@ -1,3 +1,5 @@
+// HDF5 files of other programs: attributes and datasets of shapes that this program does not write are read
+// as they are, or refused with a message of one line before memory is allocated for them. Files that grow.
 #include "analysis/storage/hdf5_file.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +17,6 @@
 #include "tests/analysis/storage/system_answers.h"
 #include "tests/support/test_files.h"
 
-// HDF5 files of other programs: attributes and datasets of shapes that this program does not write are read
-// as they are, or refused with a message of one line before memory is allocated for them.
 namespace remote_touch::hdf5_foreign_test {
 namespace {
 
@@ -96,12 +96,14 @@ TEST_F(ForeignAttributes, EndWhereTheirTypeSays) {
     write_texts(file, "by zeros", std::string("ab\0\0\0", 5), 5, H5T_STR_NULLPAD);
     write_texts(file, "by blanks", "a b  ", 5, H5T_STR_SPACEPAD);
     write_texts(file, "full", "abcde", 5, H5T_STR_NULLPAD);
+    write_texts(file, std::string(1000, 'n').c_str(), "text", 4, H5T_STR_NULLPAD);
   }
   const TextAttributes found = Hdf5Reader(folder / "x.h5").attributes();
   EXPECT_EQ(attribute(found, "by a zero"), "ab");
   EXPECT_EQ(attribute(found, "by zeros"), "ab");
   EXPECT_EQ(attribute(found, "by blanks"), "a b");
   EXPECT_EQ(attribute(found, "full"), "abcde");
+  EXPECT_EQ(attribute(found, std::string(1000, 'n')), "text");
 }
 
 TEST_F(ForeignAttributes, AreEmptyTextsIfTheyAreOfOtherKinds) {
@@ -122,12 +124,6 @@ TEST_F(ForeignAttributes, AreEmptyTextsIfTheyAreOfOtherKinds) {
   const TextAttributes found = Hdf5Reader(folder / "x.h5").attributes();
   EXPECT_EQ(found.size(), 3u);
   for (const auto& [name, text] : found) EXPECT_EQ(text, "") << name;
-}
-
-TEST_F(ForeignAttributes, KeepLongNames) {
-  const std::string name(1000, 'n');
-  write_texts(new_file(folder / "x.h5"), name.c_str(), "text", 4, H5T_STR_NULLPAD);
-  EXPECT_EQ(attribute(Hdf5Reader(folder / "x.h5").attributes(), name), "text");
 }
 
 // Adds a dataset of 16-bit integers with these names.
@@ -151,41 +147,50 @@ TEST_F(ForeignDatasets, NamesBelongToTheirValues) {
   }
 }
 
-TEST_F(ForeignDatasets, NoRowsOfManyNumbersAreRefused) {
-  for (const hsize_t width : {hsize_t{1} << 31, hsize_t{1} << 32, (hsize_t{1} << 32) + 3}) {
-    add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, {{0, width}});
-    EXPECT_HAS(refusal_of(folder / "x.h5"), "data has rows of " + std::to_string(width) + " values");
+// They are refused before memory is allocated for them.
+TEST_F(ForeignDatasets, OfOtherKindsOrMoreThanTheFileCanHoldAreRefused) {
+  const hsize_t many = hsize_t{1} << 29;
+  const Handle text = text_of(100'000'000, H5T_STR_NULLPAD);
+  const struct {
+    std::string problem;
+    Shape shape;
+    hid_t type = H5T_NATIVE_DOUBLE;
+  } rows[] = {{"has rows of 2147483648 values", {{0, hsize_t{1} << 31}}},
+              {"has rows of 4294967296 values", {{0, hsize_t{1} << 32}}},
+              {"has rows of 4294967299 values", {{0, (hsize_t{1} << 32) + 3}}},
+              {"claims more values than the file can hold", {{many}}},
+              {"claims more values than the file can hold", {{many}, {4096}}},
+              {"claims more values than the file can hold", {{many}, {many / 2}}},
+              {"claims more values than the file can hold", {{many, many}, {1, 4096}}},
+              {"claims more values than the file can hold", {{many, many, many}, {1, 1, 4096}}},
+              {"claims more values than the file can hold", {{1}, {many / 2}}},
+              {"claims more values than the file can hold", {{40}}, text},
+              {"is neither numbers nor texts of one length", {{3}}, H5T_STD_REF_OBJ},
+              {"has no dimension", {}}};
+  for (const auto& row : rows) {
+    add_dataset(new_file(folder / "x.h5"), "data", row.type, row.shape);
+    EXPECT_HAS(refusal_of(folder / "x.h5"), "data " + row.problem);
   }
   add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, {{0, 3}});
   EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.length(), 0u);
 }
 
-TEST_F(ForeignDatasets, MoreThanTheFileCanHoldIsRefusedAtOnce) {
-  const hsize_t many = hsize_t{1} << 29;
-  const Shape shapes[] = {{{many}},
-                          {{many}, {4096}},
-                          {{many}, {many / 2}},
-                          {{many, many}, {1, 4096}},
-                          {{many, many, many}, {1, 1, 4096}},
-                          {{1}, {many / 2}}};
-  for (const Shape& shape : shapes) {
-    add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, shape);
-    EXPECT_HAS(refusal_of(folder / "x.h5"), "data claims more values than the file can hold");
-  }
-  add_dataset(new_file(folder / "x.h5"), "data", text_of(100'000'000, H5T_STR_NULLPAD), {{40}});
-  EXPECT_HAS(refusal_of(folder / "x.h5"), "data claims more values than the file can hold");
-}
-
-// Data that compress well are read: deflate's best ratio is 1032 to 1.
-TEST_F(ForeignDatasets, ZerosThatAreCompressedAreRead) {
-  const std::vector<double> zeros(1'000'000);
-  {
+// 32 bits would clip long integers, so they are read as doubles, which are exact up to 2^53. Data that
+// compress well are read: deflate's best ratio is 1032 to 1.
+TEST_F(ForeignDatasets, LongIntegersAndCompressedZerosKeepTheirValues) {
+  const auto written = [&](hid_t type, const auto& values, std::vector<hsize_t> chunk) {
     const Handle file = new_file(folder / "x.h5");
-    const Handle data = add_dataset(file, "data", H5T_NATIVE_DOUBLE, {{zeros.size()}, {zeros.size()}});
-    check(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, zeros.data()));
-  }
+    check(H5Dwrite(add_dataset(file, "data", type, {{values.size()}, std::move(chunk)}), type, H5S_ALL,
+                   H5S_ALL, H5P_DEFAULT, values.data()));
+  };
+  const auto read = [&] { return read_hdf5(folder / "x.h5").datasets.at(0).second.values; };
+  const std::vector<std::int64_t> values{0, -1, 1'000'000'000'000, -9'007'199'254'740'991};
+  written(H5T_NATIVE_INT64, values, {});
+  EXPECT_EQ(read(), Values(std::vector<double>(values.begin(), values.end())));
+  const std::vector<double> zeros(1'000'000);
+  written(H5T_NATIVE_DOUBLE, zeros, {zeros.size()});
   EXPECT_LT(fs::file_size(folder / "x.h5"), 20'000u);
-  EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.values, Values(zeros));
+  EXPECT_EQ(read(), Values(zeros));
 }
 
 // A file may state that its values are in another file, which may belong to anybody.
@@ -201,25 +206,6 @@ TEST_F(ForeignDatasets, ValuesOfAnotherFileAreRefused) {
                       H5Dclose);
   }
   EXPECT_HAS(refusal_of(folder / "x.h5"), "data has its values in another file");
-}
-
-TEST_F(ForeignDatasets, AreRefusedByNameIfTheyAreOfOtherKinds) {
-  add_dataset(new_file(folder / "x.h5"), "data", H5T_STD_REF_OBJ, {{3}});
-  EXPECT_HAS(refusal_of(folder / "x.h5"), "data is neither numbers nor texts of one length");
-  add_dataset(new_file(folder / "x.h5"), "data", H5T_NATIVE_DOUBLE, {});
-  EXPECT_HAS(refusal_of(folder / "x.h5"), "data has no dimension");
-}
-
-// 32 bits would clip them, so they are read as doubles, which are exact up to 2^53.
-TEST_F(ForeignDatasets, LongIntegersKeepTheirValues) {
-  const std::vector<std::int64_t> values{0, -1, 1'000'000'000'000, -9'007'199'254'740'991};
-  {
-    const Handle file = new_file(folder / "x.h5");
-    const Handle data = add_dataset(file, "data", H5T_NATIVE_INT64, {{values.size()}});
-    check(H5Dwrite(data, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
-  }
-  EXPECT_EQ(read_hdf5(folder / "x.h5").datasets.at(0).second.values,
-            Values(std::vector<double>(values.begin(), values.end())));
 }
 
 // Each of these files made the library crash or hang. How the library fails depends on its version.
@@ -318,19 +304,11 @@ TEST_F(AppendedFile, TakesDeflatedRows) {
   EXPECT_EQ(numbers_of<double>(in, "/colour"), std::vector<double>(colour.begin(), colour.end()));
 }
 
-TEST_F(AppendedFile, RefusesADeviceThatItWouldReplace) {
-  EXPECT_HAS(refusal([] { Hdf5Appender("/dev/null"); }), "/dev/null: is a device: expected a file");
-}
-
-TEST_F(AppendedFile, LeavesNoFileIfItIsNotFinished) {
-  { Hdf5Appender out(folder / "left.h5"); }
-  EXPECT_TRUE(files_in(folder.path()).empty());
-}
-
 TEST_F(AppendedFile, AnExistingFileIsKeptUntilTheNewOneIsWhole) {
   const auto file = folder.write("old.h5", "old");
   { Hdf5Appender out(file); }
   EXPECT_EQ(std::filesystem::file_size(file), 3u);
+  EXPECT_EQ(files_in(folder.path()).size(), 1u);
   Hdf5Appender out(file);
   out.finish();
   EXPECT_EQ(seal_state_of(file), SealState::valid);
@@ -339,6 +317,7 @@ TEST_F(AppendedFile, AnExistingFileIsKeptUntilTheNewOneIsWhole) {
 TEST_F(AppendedFile, NamesTheFileThatCannotBeWritten) {
   EXPECT_HAS(refusal([&] { Hdf5Appender(folder / "nowhere/x.h5"); }), "nowhere/x.h5: cannot be written");
   EXPECT_HAS(refusal([&] { Hdf5Appender out(folder.path()); }), "cannot be written");
+  EXPECT_HAS(refusal([] { Hdf5Appender("/dev/null"); }), "/dev/null: is a device: expected a file");
   // The limit of 0 bytes acts like a full disk: the file is created, and its first bytes find no room.
   {
     const NoRoom limit(0);

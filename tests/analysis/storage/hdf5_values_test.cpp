@@ -1,3 +1,5 @@
+// Values in HDF5 files: what the library refuses, dimensions and texts, answers of a child process, and files
+// that cannot be read.
 #include "analysis/storage/hdf5_values.h"
 
 #include <gtest/gtest.h>
@@ -6,9 +8,12 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -17,6 +22,7 @@
 
 #include "analysis/storage/hdf5_file.h"
 #include "analysis/storage/hdf5_reader.h"
+#include "analysis/storage/other_processes.h"
 #include "analysis/storage/result_file.h"
 #include "tests/support/result_files.h"
 #include "tests/support/test_files.h"
@@ -84,19 +90,7 @@ TEST(OpenHdf5, PrintsNothingWhenTheFirstCallFails) {
   EXPECT_EQ(fail(), "No such file or directory");
 }
 
-TEST(OpenHdf5, PrintsNothingInAnotherThread) {
-  const TestFolder folder("hdf5_handle_test");
-  Hdf5Writer hdf5;
-  hdf5.columns("/", {{"x", "m", "", std::vector<double>{1, 2}}}, "");
-  hdf5.save(folder / "x.h5");
-  const auto source = open_hdf5(folder / "x.h5");
-  testing::internal::CaptureStderr();
-  std::string told;
-  std::thread([&] { told = failure([&] { source->column("/absent"); }); }).join();
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(told, "/absent is missing");
-}
-
+// The library prints nothing in another thread either.
 TEST(OpenHdf5, NamesADatasetThatIsMissing) {
   const TestFolder folder("hdf5_handle_test");
   Hdf5Writer hdf5;
@@ -114,6 +108,11 @@ TEST(OpenHdf5, NamesADatasetThatIsMissing) {
   // A dataset that is not found for lack of memory may exist.
   const auto source = open_hdf5(folder / "x.h5");
   EXPECT_EQ(failure([&] { errno = ENOMEM, source->column("/absent"); }), "no memory");
+  testing::internal::CaptureStderr();
+  std::string told;
+  std::thread([&] { told = failure([&] { source->column("/absent"); }); }).join();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(told, "/absent is missing");
 }
 
 }  // namespace
@@ -155,11 +154,6 @@ std::vector<std::string> columns() {
           "/trace/q",        "/trace/state",  "/trace/time",     "/trace/v",    "/trace/word"};
 }
 
-TEST_F(Hdf5Dimensions, AreNoColumns) {
-  write_file(folder / "a.h5");
-  EXPECT_EQ(Hdf5Reader(folder / "a.h5").datasets(), columns());
-}
-
 TEST_F(Hdf5Dimensions, AllDimensionsAndEnumerationsHaveNames) {
   write_file(folder / "a.h5");
   const Handle file(H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
@@ -183,6 +177,7 @@ TEST_F(Hdf5Dimensions, AllDimensionsAndEnumerationsHaveNames) {
 TEST_F(Hdf5Dimensions, TextsComeBack) {
   write_file(folder / "a.h5");
   const Hdf5Reader file(folder / "a.h5");
+  EXPECT_EQ(file.datasets(), columns()) << "dimensions are no columns";
   EXPECT_EQ(file.values<std::string>("/tables/t/word"), kWords);
   EXPECT_EQ(file.values<std::string>("/trace/word"), kWords);
   const Column some = file.rows("/trace/word", 1, 2);
@@ -214,9 +209,50 @@ TEST_F(Hdf5Dimensions, TextsOfFormerFilesComeBack) {
 }  // namespace
 }  // namespace remote_touch::hdf5_values_test
 
-// The answer of a child process about an HDF5 file arrives unchanged, or is refused.
-namespace remote_touch::hdf5_source_test {
+// Work in a separate process: its answer, its failure, and its end if it needs too much. The answer about an
+// HDF5 file arrives unchanged, or is refused.
+namespace remote_touch::child_process_test {
 namespace {
+
+constexpr ChildLimits kLimits{256u << 20, 1};
+
+std::string failure_of(const std::function<std::string()>& work) {
+  try {
+    return "answered " + in_child(kLimits, work);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+TEST(ChildProcess, AnswersWithItsBytes) {
+  EXPECT_EQ(in_child(kLimits, [] { return std::string(); }), "");
+  const std::string bytes("a\0b\n", 4);
+  EXPECT_EQ(in_child(kLimits, [&] { return bytes; }), bytes);
+  const std::string more(10'000'000, 'x');  // more bytes than a pipe takes at once
+  EXPECT_EQ(in_child(kLimits, [&] { return more; }), more);
+  int changed = 0;
+  in_child(kLimits, [&] { return changed = 1, std::string(); });
+  EXPECT_EQ(changed, 0) << "it changes nothing here";
+}
+
+TEST(ChildProcess, FailsWithAReason) {
+  using Work = std::string (*)();
+  const std::pair<const char*, Work> failures[] = {
+      {"no such thing", []() -> std::string { throw std::runtime_error("no such thing"); }},
+      {"it needs more than 256 MiB of memory",
+       [] { return std::string(std::size_t{1} << 30, 'x').substr(0, 1); }},
+      {"it takes more than 1 s",
+       []() -> std::string {
+         for (std::atomic<unsigned> i = 0;;) ++i;
+       }},
+      {"the process that reads it ended with exit code 3, before its answer",
+       []() -> std::string { ::_exit(3); }},
+      {"its reader ended with signal 11, perhaps out of memory", [] {
+         std::raise(SIGSEGV);
+         return std::string();
+       }}};
+  for (const auto& [reason, work] : failures) EXPECT_EQ(failure_of(work), reason);
+}
 
 const Hdf5Summary kSummary{{{"schema", "x"}, {"empty", ""}}, {"/a", "/b/c"}, {-1, 2048}};
 
@@ -244,29 +280,23 @@ TEST(ChildAnswer, ComesBackAsItWas) {
   }
 }
 
-TEST(ChildAnswer, IsRefusedIfItIsCutOrTooLong) {
-  const std::string summary = packed(kSummary);
-  for (std::size_t length = 0; length < summary.size(); ++length)
-    EXPECT_THROW(unpacked_summary(summary.substr(0, length)), std::runtime_error) << length;
-  EXPECT_THROW(unpacked_summary(summary + '\0'), std::runtime_error);
-  for (const Column& column : columns()) {
-    const std::string bytes = packed(column);
+TEST(ChildAnswer, IsRefusedIfItIsCutOrTooLongOrHasRowsInPart) {
+  const auto expect_only_whole = [](const std::string& bytes, const auto& unpacked) {
     for (std::size_t length = 0; length < bytes.size(); ++length)
-      EXPECT_THROW(unpacked_column(bytes.substr(0, length)), std::runtime_error) << column.name << length;
-    EXPECT_THROW(unpacked_column(bytes + '\0'), std::runtime_error) << column.name;
-  }
-}
-
-TEST(ChildAnswer, IsRefusedIfItsRowsAreNotWhole) {
+      EXPECT_THROW(unpacked(bytes.substr(0, length)), std::runtime_error) << length;
+    EXPECT_THROW(unpacked(bytes + '\0'), std::runtime_error);
+  };
+  expect_only_whole(packed(kSummary), unpacked_summary);
+  for (const Column& column : columns()) expect_only_whole(packed(column), unpacked_column);
   Column column = columns()[0];
-  for (const int width : {0, -1, 4, 7}) {
+  for (const int width : {0, -1, 4, 7}) {  // its rows are not whole
     column.width = width;
     EXPECT_THROW(unpacked_column(packed(column)), std::runtime_error) << width;
   }
 }
 
 }  // namespace
-}  // namespace remote_touch::hdf5_source_test
+}  // namespace remote_touch::child_process_test
 
 // Files that cannot be read as results are refused with a message of one line.
 namespace remote_touch::hdf5_reading_test {
@@ -293,15 +323,6 @@ TEST(ReadHdf5, RefusesAMissingFileAndOtherKindsOfFiles) {
   expect_unreadable(folder / "pipe");
   fs::create_symlink(folder / "loop", folder / "loop");
   expect_unreadable(folder / "loop");
-}
-
-TEST(ReadHdf5, RefusesATruncatedFile) {
-  const TestFolder folder("hdf5_reading_test");
-  write_trace(folder / "whole.h5", awkward_trace(50), kProvenance, {});
-  const std::string bytes = bytes_of(folder / "whole.h5");
-  for (std::size_t i = 0; i < 200; ++i)
-    expect_unreadable(folder.write("cut.h5", bytes.substr(0, i * bytes.size() / 200)));
-  EXPECT_NO_THROW(read_hdf5(folder.write("cut.h5", bytes)));
 }
 
 }  // namespace

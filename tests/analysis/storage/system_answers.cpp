@@ -5,65 +5,44 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <iterator>
 
 namespace remote_touch {
 
 namespace {
-using Answers = std::vector<AnswersOfWrite::Answer>;
-Answers* next_answers = nullptr;  // the last is the next one
-int renames_before = 0, failed_renames = 0, error_of_rename = 0;
-bool truncations_fail = false;
+Faults faults;
 }  // namespace
 
-AnswersOfWrite::AnswersOfWrite(std::initializer_list<Answer> answers)
-    : answers_(std::rbegin(answers), std::rend(answers)) {
-  next_answers = &answers_;
+FaultySystem::FaultySystem(const Faults& given) {
+  faults = given;
 }
 
-AnswersOfWrite::~AnswersOfWrite() {
-  next_answers = nullptr;
-}
-
-FailedRename::FailedRename(int calls_before, int error, int failures) {
-  renames_before = calls_before, failed_renames = failures, error_of_rename = error;
-}
-
-FailedRename::~FailedRename() {
-  failed_renames = 0;
-}
-
-FailedTruncation::FailedTruncation() {
-  truncations_fail = true;
-}
-
-FailedTruncation::~FailedTruncation() {
-  truncations_fail = false;
+FaultySystem::~FaultySystem() {
+  faults = {};
 }
 
 }  // namespace remote_touch
 
 // The functions below replace those of the C library, for all of this program.
 extern "C" ssize_t write(int file, const void* data, std::size_t size) {
-  using remote_touch::next_answers;
-  if (next_answers == nullptr || next_answers->empty()) return ::syscall(SYS_write, file, data, size);
-  const auto [written, error] = next_answers->back();
-  next_answers->pop_back();
+  auto& answers = remote_touch::faults.writes;
+  if (answers.empty()) return ::syscall(SYS_write, file, data, size);
+  const auto [written, error] = answers.front();
+  answers.erase(answers.begin());
   errno = error;
   return written;
 }
 
 extern "C" int rename(const char* from, const char* to) noexcept {
-  using namespace remote_touch;
-  if (failed_renames == 0 || renames_before-- > 0)
+  remote_touch::Faults& faults = remote_touch::faults;
+  if (faults.failed_renames == 0 || faults.renames_before-- > 0)
     return static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
-  --failed_renames;
-  errno = error_of_rename;
+  --faults.failed_renames;
+  errno = faults.error_of_rename;
   return -1;
 }
 
 extern "C" int ftruncate(int file, off_t size) noexcept {
-  if (!remote_touch::truncations_fail) return static_cast<int>(::syscall(SYS_ftruncate, file, size));
+  if (!remote_touch::faults.truncations_fail) return static_cast<int>(::syscall(SYS_ftruncate, file, size));
   errno = EIO;
   return -1;
 }

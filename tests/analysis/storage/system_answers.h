@@ -4,44 +4,28 @@
 #include <sys/resource.h>
 
 #include <csignal>
-#include <initializer_list>
 #include <vector>
 
 namespace remote_touch {
 
-// The first calls of write() return these answers and write nothing, until this object is destroyed. There
-// may be only one object at a time, and only in a test with one thread.
-class AnswersOfWrite {
- public:
+struct Faults {
   struct Answer {
     int written, error;  // error: errno after the call
   };
-  AnswersOfWrite(std::initializer_list<Answer> answers);
-  ~AnswersOfWrite();
-  AnswersOfWrite(const AnswersOfWrite&) = delete;
-  AnswersOfWrite& operator=(const AnswersOfWrite&) = delete;
-
- private:
-  std::vector<Answer> answers_;
+  std::vector<Answer> writes = {};  // of the first calls of write(), which write nothing
+  // This number of calls of rename() fail with this errno, after renames_before calls that are executed.
+  int renames_before = 0, failed_renames = 0, error_of_rename = 0;
+  bool truncations_fail = false;  // with EIO
 };
 
-// This number of calls of rename() fail with this errno, after calls_before calls that are executed. The
-// effect ends with the object.
-class FailedRename {
+// The system has these faults until this object is destroyed. There may be only one object at a time, and
+// only in a test with one thread.
+class FaultySystem {
  public:
-  FailedRename(int calls_before, int error, int failures = 1);
-  ~FailedRename();
-  FailedRename(const FailedRename&) = delete;
-  FailedRename& operator=(const FailedRename&) = delete;
-};
-
-// Every call of ftruncate() fails with EIO as long as the object exists.
-class FailedTruncation {
- public:
-  FailedTruncation();
-  ~FailedTruncation();
-  FailedTruncation(const FailedTruncation&) = delete;
-  FailedTruncation& operator=(const FailedTruncation&) = delete;
+  explicit FaultySystem(const Faults& faults);
+  ~FaultySystem();
+  FaultySystem(const FaultySystem&) = delete;
+  FaultySystem& operator=(const FaultySystem&) = delete;
 };
 
 // No file of this process can grow beyond this size as long as this object exists, as on a full disk.
