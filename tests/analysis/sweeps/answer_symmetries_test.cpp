@@ -3,30 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
 
 #include "analysis/sweeps/sweep_means.h"
+#include "tests/analysis/sweeps/example_sweeps.h"
 
 namespace remote_touch::answer_symmetries_test {
 namespace {
 
+using namespace made_sweeps;
+
 // Two methods and these values of x; an event that becomes more probable with x, and a depth.
 SweepResult sweep_over(const std::vector<double>& x, int replicates) {
-  SweepResult result;
-  result.axes = {{"method", "1", "", std::vector<std::int32_t>{0, 1}, 1, {"old", "new"}}, {"x", "m", "", x}};
-  result.replicates = replicates;
-  result.measures = {{"event", "1", "1 when it happened", {}}, {"depth", "m", "depth of it", {}}};
-  result.start(false);
-  result.state.assign(result.run_count(), RunState::done);
-  for (Column& measure : result.measures) measure.values = std::vector<double>(result.run_count(), 0.0);
-  return result;
-}
-std::vector<double>& values_of(SweepResult& result, std::size_t measure) {
-  return std::get<std::vector<double>>(result.measures[measure].values);
+  return sweep({names("method", {"old", "new"}), {"x", "m", "", x}}, replicates);
 }
 
 // Some runs failed, and some have no value.
@@ -36,12 +28,11 @@ SweepResult random_sweep(std::mt19937& random) {
   constexpr unsigned kChances[] = {0, 30, 70, 100};
   for (std::size_t run = 0; run < result.run_count(); ++run) {
     const std::vector<std::size_t> at = result.axis_indices(result.cell_of(run));
-    values_of(result, 0)[run] = random() % 100 + 10 * at[0] < kChances[at[1]] + 10 * at[0] * at[1] ? 1 : 0;
-    values_of(result, 1)[run] = normal(random) + 0.3 * static_cast<double>(at[0]);
+    event(result)[run] = random() % 100 + 10 * at[0] < kChances[at[1]] + 10 * at[0] * at[1] ? 1 : 0;
+    depth(result)[run] = normal(random) + 0.3 * static_cast<double>(at[0]);
     if (random() % 30 == 0) result.state[run] = RunState::failed;
-    for (std::size_t measure : {0u, 1u})
-      if (result.state[run] == RunState::failed || random() % 30 == 0)
-        values_of(result, measure)[run] = std::numeric_limits<double>::quiet_NaN();
+    for (std::vector<double>* values : {&event(result), &depth(result)})
+      if (result.state[run] == RunState::failed || random() % 30 == 0) (*values)[run] = kNaN;
   }
   return result;
 }
@@ -92,17 +83,14 @@ void expect_changed(const Table& before, const Table& after, Change change) {
 }
 
 void exchange_methods(SweepResult& result, std::mt19937&) {
-  const std::size_t half = result.run_count() / 2;
-  for (std::size_t measure : {0u, 1u})
-    std::swap_ranges(values_of(result, measure).begin(),
-                     values_of(result, measure).begin() + static_cast<std::ptrdiff_t>(half),
-                     values_of(result, measure).begin() + static_cast<std::ptrdiff_t>(half));
-  std::swap_ranges(result.state.begin(), result.state.begin() + static_cast<std::ptrdiff_t>(half),
-                   result.state.begin() + static_cast<std::ptrdiff_t>(half));
+  const auto half = static_cast<std::ptrdiff_t>(result.run_count() / 2);
+  for (std::vector<double>* values : {&event(result), &depth(result)})
+    std::swap_ranges(values->begin(), values->begin() + half, values->begin() + half);
+  std::swap_ranges(result.state.begin(), result.state.begin() + half, result.state.begin() + half);
 }
 
 void exchange_event_and_absence(SweepResult& result, std::mt19937&) {
-  for (double& value : values_of(result, 0)) value = 1 - value;
+  for (double& value : event(result)) value = 1 - value;
 }
 
 // The values of the axis then fall.
@@ -119,14 +107,14 @@ void shuffle_replicates(SweepResult& result, std::mt19937& random) {
     const auto replicate = static_cast<std::size_t>(result.replicate_of(run));
     const std::size_t from = result.run(result.cell_of(run), order[replicate]);
     result.state[run] = before.state[from];
-    values_of(result, 0)[run] = before.measure("event")[from];
-    values_of(result, 1)[run] = before.measure("depth")[from];
+    event(result)[run] = before.measure("event")[from];
+    depth(result)[run] = before.measure("depth")[from];
   }
 }
 
 void change_units(SweepResult& result, std::mt19937&) {
   for (double& x : std::get<std::vector<double>>(result.axes[1].values)) x = kScaled(x);
-  for (double& value : values_of(result, 1)) value = kScaled(value);
+  for (double& value : depth(result)) value = kScaled(value);
 }
 
 // The bootstrap of a comparison draws replicates by their numbers.
@@ -168,8 +156,8 @@ TEST(Answers, GainNothingByEqualRuns) {
     SweepResult result = sweep_over({1, 2, 4, 7}, replicates);
     for (std::size_t run = 0; run < result.run_count(); ++run) {
       const std::size_t cell = result.cell_of(run);
-      values_of(result, 0)[run] = cell % 4 > 1 + cell / 4 ? 1 : 0;
-      values_of(result, 1)[run] = 0.1 * static_cast<double>(cell * cell);
+      event(result)[run] = cell % 4 > 1 + cell / 4 ? 1 : 0;
+      depth(result)[run] = 0.1 * static_cast<double>(cell * cell);
     }
     return result;
   };
@@ -186,7 +174,7 @@ TEST(Answers, GainNothingByCellsThatShareAllDraws) {
     SweepResult result = sweep_over(x, 12);
     for (std::size_t run = 0; run < result.run_count(); ++run) {
       const double i = result.replicate_of(run), method = static_cast<double>(run / (12 * x.size()));
-      values_of(result, 1)[run] = std::sin(i) + method * std::cos(3 * i);
+      depth(result)[run] = std::sin(i) + method * std::cos(3 * i);
     }
     CellStreams streams = independent_streams(result.cell_count());
     for (RandomStreams& draws : streams.draws) draws.of_replicate = true;

@@ -29,7 +29,7 @@ inline SweepResult sweep(std::vector<Column> axes, int replicates) {
   SweepResult result;
   result.axes = std::move(axes);
   result.replicates = replicates;
-  result.measures = {{"event", "1", "", {}}, {"depth", "m", "", {}}};
+  result.measures = {{"event", "1", "1 when it happened", {}}, {"depth", "m", "", {}}};
   result.start(false);
   result.state.assign(result.run_count(), RunState::done);
   for (Column& measure : result.measures) measure.values = std::vector<double>(result.run_count(), 0.0);

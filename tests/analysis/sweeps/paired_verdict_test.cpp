@@ -12,19 +12,8 @@ namespace {
 
 using namespace made_sweeps;
 
-// --- the rule ---
-
-TEST(PairedVerdictOf, FewRunsDecideNothing) {
-  SweepResult a = sweep({numbers("x", 1, 1)}, 4), b = a;
-  flip(a, b, 2, true);
-  EXPECT_EQ(compare(a, b).paired, PairedVerdict::undecided);
-  // They decide nothing either if the event is equal and another measure differs, however little.
-  b = a, depth(b)[0] = 1e-12;
-  const SweepComparison c = compare(a, b);
-  EXPECT_EQ(whole(c, 0), Judgement::equal);
-  EXPECT_EQ(whole(c, 1), Judgement::undecided);
-  EXPECT_EQ(c.paired, PairedVerdict::undecided);
-}
+const Directions kSmaller = {{"event", Better::smaller}, {"depth", Better::smaller}};
+const Directions kLarger = {{"event", Better::larger}, {"depth", Better::larger}};
 
 TEST(PairedVerdictOf, PassesFromTheDocumentedNumberOfRuns) {
   const auto with_one_flip = [](std::size_t runs) {
@@ -48,52 +37,38 @@ TEST(PairedVerdictOf, PassesFromTheDocumentedNumberOfRuns) {
   EXPECT_EQ(with_jitter(384), PairedVerdict::within_margin);
 }
 
-TEST(PairedVerdictOf, ChaoticFlipsBothWaysPass) {
-  SweepResult a = map(), b = a;
-  std::mt19937_64 random(3);
-  for (int i = 0; i < 30; ++i) {
-    const std::size_t run = random() % 5396;
-    flip(a, b, run, i % 2 == 0);
-    depth(a)[run] = i % 2 == 0 ? 0.02 : 0.005, depth(b)[run] = i % 2 == 0 ? 0.005 : 0.02;
-  }
-  const SweepComparison c = compare(a, b);
-  EXPECT_FALSE(c.is_equal());
-  EXPECT_EQ(c.paired, PairedVerdict::within_margin);
-  EXPECT_LT(c.at(0, 0).difference.high, 0.0022);
-  for (const RegionComparison& r : c.by_region) EXPECT_NE(r.judgement, Judgement::changed);
-}
-
 TEST(PairedVerdictOf, FlipsOneWayAreAChange) {
   for (const bool in_candidate : {true, false}) {
     SweepResult a = map(), b = a;
     for (std::size_t i = 0; i < 30; ++i) flip(a, b, i * 179, in_candidate);
-    const SweepComparison c = compare(a, b);
+    const SweepComparison c = compare(a, b, {}, {}, kSmaller);
     EXPECT_EQ(c.paired, PairedVerdict::changed);
-    EXPECT_EQ(whole(c, 0), Judgement::changed);
+    EXPECT_EQ(judgement_of(c, 0, true), in_candidate ? Judgement::worse : Judgement::better);
     EXPECT_GT(c.at(0, 0).adjusted_p, c.at(0, 0).difference.p);
     EXPECT_EQ(compare(a, b, {}, {0.02, 0.1, 1e-12}).paired, PairedVerdict::within_margin);
   }
 }
 
-// 3 % of a part's runs get worse, while more than 300 flips elsewhere hide that in the whole.
-TEST(PairedVerdictOf, FindsAChangeOfOnePart) {
-  SweepResult a = map(), b = a;
-  const std::vector<Region> regions = compare(a, a).regions;
-  int changed = 0, flipped = 0;
-  for (std::size_t run = 0; run < 5396; ++run)
-    if (regions[5].contains(a.axis_indices(run))) {
-      if (run % 33 == 0) flip(a, b, run, true), ++changed;
-    } else if (run % 15 == 0) {
-      flip(a, b, run, flipped++ % 2 == 0);
-    }
-  EXPECT_NEAR(changed, 18, 2);
-  EXPECT_GT(flipped, 300);
-  const SweepComparison c = compare(a, b);
-  EXPECT_EQ(whole(c, 0), Judgement::within_margin);
-  EXPECT_GT(c.at(0, 0).difference.p, 0.1);
-  EXPECT_EQ(c.at(5, 0).judgement, Judgement::changed);
-  EXPECT_EQ(c.regions[5].label, "sigma 0.005 to 0.0098, acceleration 2.3 to 4.6");
-  EXPECT_EQ(c.paired, PairedVerdict::changed);
+// 3 % of the runs of a part get worse. More than 300 flips elsewhere hide that in the whole; if they are
+// flips to the better, the whole gets better.
+TEST(PairedVerdictOf, OnePartThatGotWorseIsWorse) {
+  for (const bool elsewhere_better : {false, true}) {
+    SweepResult a = map(), b = a;
+    const Region part = compare(a, a).regions[5];
+    int flipped = 0;
+    for (std::size_t run = 0; run < 5396; ++run)
+      if (part.contains(a.axis_indices(run))) {
+        if (run % 33 == 0) flip(a, b, run, true);
+      } else if (run % 15 == 0) {
+        flip(a, b, run, !elsewhere_better && flipped++ % 2 == 0);
+      }
+    const SweepComparison c = compare(a, b, {}, {}, kSmaller);
+    EXPECT_EQ(whole(c, 0), elsewhere_better ? Judgement::better : Judgement::within_margin);
+    EXPECT_EQ(c.at(5, 0).judgement, Judgement::worse);
+    EXPECT_EQ(c.regions[5].label, "sigma 0.005 to 0.0098, acceleration 2.3 to 4.6");
+    EXPECT_EQ(judgement_of(c, 0, true), Judgement::worse);
+    EXPECT_EQ(c.paired, PairedVerdict::changed);
+  }
 }
 
 // Depths differ in the last bits everywhere, both ways; in 60 runs they get a lot worse.
@@ -108,14 +83,6 @@ TEST(PairedVerdictOf, FindsLargeDifferencesAmongSmallOnes) {
   const SweepComparison c = compare(a, b);
   EXPECT_GT(c.at(0, 1).difference.p, 0.5);
   EXPECT_EQ(whole(c, 1), Judgement::changed);
-}
-
-// All differences are far below the margin, but all have the same sign.
-TEST(PairedVerdictOf, ASystematicChangeIsAChangeHoweverSmall) {
-  SweepResult a = row(40), b = a;
-  for (double& value : depth(b)) value = 1e-15;
-  EXPECT_EQ(compare(a, b).paired, PairedVerdict::changed);
-  EXPECT_EQ(compare(a, b, {{"*", {1e-12, 0}}}).paired, PairedVerdict::equal);
 }
 
 // One run of 20 flips by chance in these maps. False alarms are as rare as alpha requires, and all other maps
@@ -142,24 +109,33 @@ TEST(PairedVerdictOf, IsRarelyAFalseAlarm) {
 
 // Judgements (better, worse, changed) of one number, and of the measures of sweeps.
 
-const Directions kSmaller = {{"event", Better::smaller}, {"depth", Better::smaller}};
-const Directions kLarger = {{"event", Better::larger}, {"depth", Better::larger}};
-
 TEST(Judged, JudgementFollowsTheDirectionOfTheMeasure) {
-  EXPECT_EQ(judge_value(1, 2, Better::smaller, {}), Judgement::worse);
-  EXPECT_EQ(judge_value(2, 1, Better::smaller, {}), Judgement::better);
-  EXPECT_EQ(judge_value(1, 2, Better::larger, {}), Judgement::better);
-  EXPECT_EQ(judge_value(-3, 2, Better::near_zero, {}), Judgement::better);
-  EXPECT_EQ(judge_value(1, 2, Better::neither, {}), Judgement::changed);
-  EXPECT_EQ(judge_value(-1, 1, Better::near_zero, {}), Judgement::changed);
-  // A renderer that follows the surface more closely has a smaller gap, which is no fault.
-  EXPECT_EQ(judge_value(0.005, 0.0047, Better::not_negative, {}), Judgement::changed);
-  EXPECT_EQ(judge_value(0.005, -0.001, Better::not_negative, {}), Judgement::worse);
-  EXPECT_EQ(judge_value(1, 2, Better::smaller, {1, 0}), Judgement::equal);
-  EXPECT_EQ(judge_value(1, kInfinity, Better::smaller, {}), Judgement::worse);
-  EXPECT_EQ(judge_value(1, 1 + 1e-12, Better::smaller, {}), Judgement::changed) << "may be rounding";
-  EXPECT_EQ(judge_value(1, 1 + 1e-8, Better::smaller, {}), Judgement::worse);
-  EXPECT_EQ(judge_value(0, 1e-12, Better::smaller, {}), Judgement::worse);
+  constexpr Better kSmall = Better::smaller, kGap = Better::not_negative;
+  const struct {
+    double before, now;
+    Better better;
+    Judgement judgement;
+  } rows[] = {{1, 2, kSmall, Judgement::worse},
+              {2, 1, kSmall, Judgement::better},
+              {1, 2, Better::larger, Judgement::better},
+              {-3, 2, Better::near_zero, Judgement::better},
+              {-1, 1, Better::near_zero, Judgement::changed},
+              {1, 2, Better::neither, Judgement::changed},
+              // A renderer that follows the surface more closely has a smaller gap, which is no fault.
+              {0.005, 0.0047, kGap, Judgement::changed},
+              {0.005, -0.001, kGap, Judgement::worse},
+              {1, kInfinity, kSmall, Judgement::worse},
+              {1, 1 + 1e-12, kSmall, Judgement::changed},  // may be rounding
+              {1, 1 + 1e-8, kSmall, Judgement::worse},
+              {0, 1e-12, kSmall, Judgement::worse},
+              {kNaN, kNaN, kSmall, Judgement::equal},
+              {1, kNaN, kSmall, Judgement::changed},
+              {kNaN, 1, kSmall, Judgement::changed},
+              {-1, kNaN, kGap, Judgement::changed}};
+  for (const auto& row : rows)
+    EXPECT_EQ(judge_value(row.before, row.now, row.better, {}), row.judgement)
+        << row.before << " " << row.now;
+  EXPECT_EQ(judge_value(1, 2, kSmall, {1, 0}), Judgement::equal);
 }
 
 Judgement exchanged(Judgement judgement) {
@@ -174,13 +150,6 @@ TEST(Judged, ExchangedValuesAreJudgedTheOtherWayRound) {
     for (const double a : {-3.0, -1e-12, 0.0, 1.0, 1 + 1e-12, 2.0, kInfinity, -kInfinity, kNaN})
       for (const double b : {-3.0, -1e-12, 0.0, 1.0, 1 + 1e-12, 2.0, kInfinity, -kInfinity, kNaN})
         EXPECT_EQ(judge_value(b, a, better, {}), exchanged(judge_value(a, b, better, {}))) << a << " " << b;
-}
-
-TEST(Judged, NanIsNeitherBetterNorWorse) {
-  EXPECT_EQ(judge_value(kNaN, kNaN, Better::smaller, {}), Judgement::equal);
-  EXPECT_EQ(judge_value(1, kNaN, Better::smaller, {}), Judgement::changed);
-  EXPECT_EQ(judge_value(kNaN, 1, Better::smaller, {}), Judgement::changed);
-  EXPECT_EQ(judge_value(-1, kNaN, Better::not_negative, {}), Judgement::changed);
 }
 
 TEST(JudgedRunByRun, DirectionOfAllChangedRunsDecides) {
@@ -228,27 +197,6 @@ TEST(JudgedRunByRun, TheTestsDecideIfRunsWentBothWays) {
   EXPECT_EQ(judgement_of(compare(x, y, {}, {}, kSmaller), 0, false), Judgement::undecided);
 }
 
-TEST(JudgedInPairs, AClearImprovementIsBetter) {
-  SweepResult a = map(), b = a;
-  for (std::size_t i = 0; i < 30; ++i) flip(a, b, i * 179, false);
-  const SweepComparison c = compare(a, b, {}, {}, kSmaller);
-  EXPECT_EQ(c.paired, PairedVerdict::changed);
-  EXPECT_EQ(judgement_of(c, 0, true), Judgement::better);
-  EXPECT_EQ(judgement_of(compare(a, b, {}, {}, kLarger), 0, true), Judgement::worse);
-}
-
-// Better over the whole, but one of its nine parts got worse.
-TEST(JudgedInPairs, OnePartThatGotWorseIsWorse) {
-  SweepResult a = map(), b = a;
-  const Region part = compare(a, a).regions[5];
-  for (std::size_t run = 0; run < 5396; ++run)
-    if (part.contains(a.axis_indices(run)) ? run % 33 == 0 : run % 20 == 0)
-      flip(a, b, run, part.contains(a.axis_indices(run)));
-  const SweepComparison c = compare(a, b, {}, {}, kSmaller);
-  EXPECT_EQ(whole(c, 0), Judgement::better);
-  EXPECT_EQ(judgement_of(c, 0, true), Judgement::worse);
-}
-
 // Nearly all depths get smaller by a little, a few much larger: better in most runs, worse on average.
 TEST(JudgedInPairs, AFewThatGotMuchWorseAreWorse) {
   SweepResult a = sweep({numbers("x", 100, 1)}, 20), b = a;
@@ -274,17 +222,6 @@ TEST(JudgedInPairs, RunsWithAnotherOutcomeAreJudgedByThatAlone) {
   for (std::size_t i = 0; i < 60; ++i) depth(b)[i * 83 + 1] = 1;  // the outcome is the same
   for (const bool paired : {false, true})
     EXPECT_EQ(judgement_of(compare(a, b, {}, {}, directions), 1, paired), Judgement::worse);
-}
-
-// Heights of both signs that all come nearer to the surface.
-TEST(JudgedInPairs, NearerToZeroIsBetter) {
-  SweepResult a = map(), b = a;
-  for (std::size_t run = 0; run < 5396; ++run) {
-    depth(a)[run] = run % 3 == 0 ? -3e-3 : 2e-3;
-    depth(b)[run] = depth(a)[run] / 2;
-  }
-  const Directions directions = {{"depth", Better::near_zero}};
-  EXPECT_EQ(judgement_of(compare(a, b, {}, {}, directions), 1, true), Judgement::better);
 }
 
 // The reverse does not hold: a run without a partner can make a measure worse, but never better.

@@ -1,18 +1,18 @@
+// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. Wilson's interval
+// of a few runs excludes 0.5 from 0 of 4, or 4 of 4, on.
 #include "analysis/sweeps/sweep_means.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <string>
 #include <vector>
 
 namespace remote_touch::refinement_test {
 namespace {
-
-// Rules by which adaptive refinement adds runs, tested one by one on results made by hand. Wilson's
-// interval of a few runs excludes 0.5 from 0 of 4, or 4 of 4, on.
 
 // Returns a grid without sampled runs, with these numbers of cells along the axes and room for this number of
 // replicates.
@@ -34,9 +34,14 @@ void set(SweepResult& result, std::size_t run, RunState state, double value = 0)
   std::get<std::vector<double>>(result.measures[1].values)[run] = value;
 }
 
-// Marks the first `runs` runs of the cell as done; the first `events` of them have the event.
-void sample(SweepResult& result, std::size_t cell, int events, int runs) {
-  for (int i = 0; i < runs; ++i) set(result, result.run(cell, i), RunState::done, i < events ? 1 : 0);
+// Sets the first runs of the cell, one for each letter: '+' has the event, '-' has not, of '?' it is not
+// known, and 'x' failed.
+void sample(SweepResult& result, std::size_t cell, const std::string& runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    set(result, result.run(cell, static_cast<int>(i)), runs[i] == 'x' ? RunState::failed : RunState::done,
+        runs[i] == '-'   ? 0
+        : runs[i] == '?' ? std::numeric_limits<double>::quiet_NaN()
+                         : 1);
 }
 
 RefinementRule rule(std::vector<std::size_t> strides, int first_replicates = 1, std::uint64_t budget = 1000) {
@@ -46,121 +51,78 @@ RefinementRule rule(std::vector<std::size_t> strides, int first_replicates = 1, 
 }
 
 using Runs = std::vector<std::size_t>;
-Runs all_of(const SweepResult& result, std::initializer_list<std::size_t> cells, int from, int to) {
-  Runs runs;
-  for (const std::size_t cell : cells)
-    for (int i = from; i < to; ++i) runs.push_back(result.run(cell, i));
-  return runs;
+using Samples = std::map<std::size_t, std::string>;  // by cell
+
+std::string of_200(std::size_t events) {
+  return std::string(events, '+') + std::string(200 - events, '-');
 }
 
-TEST(NextRound, RequestsNothingIfAllCellsAreCertainAndAgree) {
-  for (const int events : {0, 4}) {
-    SweepResult result = empty_grid({5, 3}, 8);
-    for (const std::size_t cell : {0, 2, 12, 14}) sample(result, cell, events, 4);
-    EXPECT_EQ(next_round(result, rule({4, 2})), Runs{});
+TEST(NextRound, AsksForTheNextRunsOfTheseCells) {
+  const Samples corners = {{0, "----"}, {2, "----"}, {6, "----"}, {8, "++++"}};
+  const Samples unsure = {{0, "+-"}, {4, "++--"}};  // 6 runs; cell 2 has none
+  const Samples failed = {{0, "x-"}, {2, "++++"}};
+  const struct {
+    const char* why;
+    std::vector<int> lengths;
+    int replicates;
+    Samples samples;
+    RefinementRule rule;
+    std::vector<std::size_t> cells;  // one for each requested run
+  } rows[] = {
+      {"half way between cells that disagree",
+       {5},
+       8,
+       {{0, "----"}, {4, "++++"}},
+       rule({4}, 4),
+       {2, 2, 2, 2}},
+      {"and again", {5}, 8, {{0, "----"}, {2, "----"}, {4, "++++"}}, rule({4}, 4), {3, 3, 3, 3}},
+      {"there is no cell in between at the finest spacing",
+       {5},
+       8,
+       {{0, "----"}, {2, "----"}, {3, "++++"}, {4, "++++"}},
+       rule({4}, 4),
+       {}},
+      // The event is unlikely with 1 of 4, as with 0 of 4, but 1 of 4 is uncertain.
+      {"an uncertain cell again, and half way", {5}, 6, {{0, "----"}, {4, "+---"}}, rule({4}), {2, 4}},
+      // 80 of 200 runs are certainly less than half, and 120 certainly more: their intervals are +-0.07 wide.
+      {"both below one half", {3}, 200, {{0, of_200(80)}, {2, of_200(0)}}, rule({2}), {}},
+      {"both above one half", {3}, 200, {{0, of_200(120)}, {2, of_200(200)}}, rule({2}), {}},
+      {"on both sides of one half", {3}, 200, {{0, of_200(80)}, {2, of_200(120)}}, rule({2}), {1}},
+      {"the other way round", {3}, 200, {{0, of_200(120)}, {2, of_200(80)}}, rule({2}), {1}},
+      {"replicates of an uncertain cell", {1}, 6, {{0, "+-"}}, rule({1}, 3), {0, 0, 0}},
+      {"up to the maximum", {1}, 6, {{0, "++---"}}, rule({1}, 3), {0}},
+      {"no more", {1}, 6, {{0, "+++---"}}, rule({1}, 3), {}},
+      {"cell 3 is no node of spacing 4 or 2", {9}, 4, {{3, "----"}, {7, "++++"}}, rule({4}), {}},
+      {"4 is between 0 and 8 at spacing 4", {9}, 4, {{0, "----"}, {8, "++++"}}, rule({4}), {}},
+      {"neighbours at spacing 8", {9}, 4, {{0, "----"}, {8, "++++"}}, rule({8}), {4}},
+      {"a cell without runs disagrees with none", {9}, 4, {{4, "----"}}, rule({4}), {}},
+      {"diagonals are no neighbours", {3, 3}, 4, corners, rule({2, 2}), {5, 7}},
+      {"an axis of names has no cells in between", {3, 3}, 4, corners, rule({2, 1}), {5}},
+      {"nor have two of them", {3, 3}, 4, corners, rule({1, 1}), {}},
+      {"the budget is spent", {5}, 9, unsure, rule({4}, 2, 5), {}},
+      {"just spent", {5}, 9, unsure, rule({4}, 2, 6), {}},
+      {"the fewest runs first", {5}, 9, unsure, rule({4}, 2, 7), {2}},
+      {"two for it", {5}, 9, unsure, rule({4}, 2, 8), {2, 2}},
+      {"then another", {5}, 9, unsure, rule({4}, 2, 9), {0, 2, 2}},
+      {"all of them", {5}, 9, unsure, rule({4}, 2, 12), {0, 0, 2, 2, 4, 4}},
+      {"no more than that", {5}, 9, unsure, rule({4}, 2, 100), {0, 0, 2, 2, 4, 4}},
+      // A failed run is not requested again by another round. It counts for the budget, but not for the
+      // probability.
+      {"a failed run says nothing", {3}, 4, {{0, "x"}, {2, "++++"}}, rule({2}), {}},
+      {"a failed run is not repeated", {3}, 4, failed, rule({2}), {0, 1}},
+      {"a failed run counts", {3}, 4, failed, rule({2}, 1, 7), {1}},
+      {"it spends the budget", {3}, 4, failed, rule({2}, 1, 6), {}},
+      {"certainly without the event", {3}, 6, {{0, "----"}, {2, "----"}}, rule({2}), {}},
+      {"unknown outcomes are not certain", {3}, 6, {{0, "---?"}, {2, "----"}}, rule({2}), {0, 1}}};
+  for (const auto& row : rows) {
+    SweepResult result = empty_grid(row.lengths, row.replicates);
+    for (const auto& [cell, runs] : row.samples) sample(result, cell, runs);
+    std::map<std::size_t, int> next;
+    for (const auto& [cell, runs] : row.samples) next[cell] = static_cast<int>(runs.size());
+    Runs expected;
+    for (const std::size_t cell : row.cells) expected.push_back(result.run(cell, next[cell]++));
+    EXPECT_EQ(next_round(result, row.rule), expected) << row.why;
   }
-}
-
-// No run is requested at the finest spacing, because there is no cell in between.
-TEST(NextRound, AsksHalfWayBetweenCellsThatDisagree) {
-  SweepResult result = empty_grid({5}, 8);
-  const RefinementRule r = rule({4}, 4);
-  sample(result, 0, 0, 4), sample(result, 4, 4, 4);
-  EXPECT_EQ(next_round(result, r), all_of(result, {2}, 0, 4));
-  sample(result, 2, 0, 4);
-  EXPECT_EQ(next_round(result, r), all_of(result, {3}, 0, 4));
-  sample(result, 3, 4, 4);
-  EXPECT_EQ(next_round(result, r), Runs{});
-}
-
-// The event is unlikely with 1 of 4, as with 0 of 4, but 1 of 4 is uncertain.
-TEST(NextRound, AsksHalfWayAndAgainWhereACellIsUncertain) {
-  SweepResult result = empty_grid({5}, 6);
-  sample(result, 0, 0, 4), sample(result, 4, 1, 4);
-  const Runs expected = {result.run(2, 0), result.run(4, 4)};
-  EXPECT_EQ(next_round(result, rule({4})), expected);
-}
-
-// 80 of 200 runs are certainly less than half, and 120 certainly more: their intervals are +-0.07 wide.
-TEST(NextRound, CellsDisagreeAboutOneHalf) {
-  const auto half_way = [](int events, int others) {
-    SweepResult result = empty_grid({3}, 200);
-    sample(result, 0, events, 200), sample(result, 2, others, 200);
-    const Runs runs = next_round(result, rule({2}));
-    EXPECT_TRUE(runs.empty() || runs == Runs{result.run(1, 0)});
-    return !runs.empty();
-  };
-  EXPECT_FALSE(half_way(80, 0));
-  EXPECT_FALSE(half_way(120, 200));
-  EXPECT_TRUE(half_way(80, 120));
-  EXPECT_TRUE(half_way(120, 80));
-}
-
-TEST(NextRound, AnUncertainCellGetsReplicatesUpToTheMaximum) {
-  SweepResult result = empty_grid({1}, 6);
-  sample(result, 0, 1, 2);
-  EXPECT_EQ(next_round(result, rule({1}, 3)), all_of(result, {0}, 2, 5));
-  sample(result, 0, 2, 5);
-  EXPECT_EQ(next_round(result, rule({1}, 3)), all_of(result, {0}, 5, 6));
-  sample(result, 0, 3, 6);
-  EXPECT_EQ(next_round(result, rule({1}, 3)), Runs{});
-}
-
-TEST(NextRound, SpacingsAreThoseOfTheFirstRoundAndItsHalves) {
-  // Cell 3 is no node of spacing 4 or 2, and there is no cell between it and its neighbour at spacing 1.
-  SweepResult result = empty_grid({9}, 4);
-  sample(result, 3, 0, 4), sample(result, 7, 4, 4);
-  EXPECT_EQ(next_round(result, rule({4})), Runs{});
-  // Cells 0 and 8 are neighbours at spacing 8, but not at spacing 4, because 4 is between them.
-  result = empty_grid({9}, 4);
-  sample(result, 0, 0, 4), sample(result, 8, 4, 4);
-  EXPECT_EQ(next_round(result, rule({4})), Runs{});
-  EXPECT_EQ(next_round(result, rule({8})), Runs{result.run(4, 0)});
-  // A cell that was not sampled disagrees with no neighbour.
-  result = empty_grid({9}, 4);
-  sample(result, 4, 0, 4);
-  EXPECT_EQ(next_round(result, rule({4})), Runs{});
-}
-
-TEST(NextRound, EveryAxisHasItsOwnSpacing) {
-  // The corners of 3 x 3 cells are sampled, and the last one differs. The middle is not requested, because
-  // diagonals are no neighbours.
-  SweepResult result = empty_grid({3, 3}, 4);
-  for (const std::size_t cell : {0, 2, 6}) sample(result, cell, 0, 4);
-  sample(result, 8, 4, 4);
-  const Runs expected = {result.run(5, 0), result.run(7, 0)};
-  EXPECT_EQ(next_round(result, rule({2, 2})), expected);
-  // An axis of stride 1, such as a list of names, has no cells in between.
-  EXPECT_EQ(next_round(result, rule({2, 1})), Runs{result.run(5, 0)});
-  EXPECT_EQ(next_round(result, rule({1, 1})), Runs{});
-}
-
-TEST(NextRound, KeepsTheBudgetAndServesTheFewestRunsFirst) {
-  SweepResult result = empty_grid({5}, 9);
-  sample(result, 0, 1, 2), sample(result, 4, 2, 4);  // both uncertain: 6 runs, cell 2 has none
-  const auto with = [&](std::uint64_t budget) { return next_round(result, rule({4}, 2, budget)); };
-  EXPECT_EQ(with(5), Runs{});
-  EXPECT_EQ(with(6), Runs{});
-  EXPECT_EQ(with(7), all_of(result, {2}, 0, 1));
-  EXPECT_EQ(with(8), all_of(result, {2}, 0, 2));
-  const Runs nine = {result.run(0, 2), result.run(2, 0), result.run(2, 1)};
-  EXPECT_EQ(with(9), nine);
-  EXPECT_EQ(with(12).size(), 6u);
-  EXPECT_EQ(with(100).size(), 6u);
-}
-
-// A failed run is not requested again by another round. It counts for the budget, but not for the
-// probability.
-TEST(NextRound, FailedRunsTakeRoomAndBudget) {
-  SweepResult result = empty_grid({3}, 4);
-  set(result, result.run(0, 0), RunState::failed, 1);
-  sample(result, 2, 4, 4);
-  EXPECT_EQ(next_round(result, rule({2})), Runs{});
-  set(result, result.run(0, 1), RunState::done);
-  const Runs expected = {result.run(0, 2), result.run(1, 0)};
-  EXPECT_EQ(next_round(result, rule({2})), expected);
-  EXPECT_EQ(next_round(result, rule({2}, 1, 7)), Runs{result.run(1, 0)});
-  EXPECT_EQ(next_round(result, rule({2}, 1, 6)), Runs{});
 }
 
 TEST(NextRound, TheEventIsTheMeasureAboveItsThreshold) {
@@ -179,16 +141,6 @@ TEST(NextRound, TheEventIsTheMeasureAboveItsThreshold) {
   EXPECT_EQ(next_round(result, r), Runs{});  // all NaN, which is never above
 }
 
-// A cell whose outcomes are unknown is not certain to be without the event.
-TEST(NextRound, UnknownOutcomesAreNotCertain) {
-  SweepResult result = empty_grid({3}, 6);
-  sample(result, 0, 0, 4), sample(result, 2, 0, 4);
-  EXPECT_EQ(next_round(result, rule({2})), Runs{});
-  set(result, result.run(0, 3), RunState::done, std::numeric_limits<double>::quiet_NaN());
-  const Runs expected = {result.run(0, 4), result.run(1, 0)};
-  EXPECT_EQ(next_round(result, rule({2})), expected);
-}
-
 // A world whose truth is known: the event happens above a slanted line.
 constexpr int kSide = 17;
 bool above_line(std::size_t cell, bool mirrored) {
@@ -199,7 +151,7 @@ bool above_line(std::size_t cell, bool mirrored) {
 std::vector<Runs> refine(SweepResult& result, const RefinementRule& r, bool mirrored, bool turned) {
   std::vector<Runs> rounds;
   for (const std::size_t cell : {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1})
-    sample(result, cell, above_line(cell, mirrored) != turned ? 4 : 0, 4);
+    sample(result, cell, above_line(cell, mirrored) != turned ? "++++" : "----");
   for (Runs runs; !(runs = next_round(result, r)).empty(); rounds.push_back(runs))
     for (const std::size_t run : runs) {
       EXPECT_EQ(result.state[run], RunState::not_sampled);
@@ -242,26 +194,6 @@ TEST(Refinement, IsTheSameWhenTheWorldIsMirroredOrTurned) {
     const std::size_t twin = (kSide - 1 - cell / kSide) * kSide + cell % kSide;
     EXPECT_EQ(plain.state[plain.run(cell, 0)], mirrored.state[plain.run(twin, 0)]) << cell;
   }
-}
-
-// Every continuation of a result requests the same runs, however often it is continued and whatever else the
-// result holds.
-TEST(Refinement, DependsOnTheFinishedRunsOnly) {
-  SweepResult result = empty_grid({kSide, kSide}, 6);
-  const RefinementRule r = rule({16, 16}, 3, 150);
-  for (const std::size_t cell : {0, kSide - 1, kSide * (kSide - 1), kSide * kSide - 1})
-    sample(result, cell, cell % 3 == 0 ? 1 : 2, 3);
-  std::size_t rounds = 0;
-  for (Runs runs; !(runs = next_round(result, r)).empty(); ++rounds) {
-    SweepResult other = result;
-    std::fill(other.round.begin(), other.round.end(), 7);
-    std::get<std::vector<double>>(other.measures[0].values).assign(other.run_count(), 1.0);
-    EXPECT_EQ(next_round(result, r), runs);
-    EXPECT_EQ(next_round(other, r), runs);
-    for (const std::size_t run : runs) set(result, run, RunState::done, run % 5 < 2 ? 1 : 0);
-  }
-  EXPECT_GT(rounds, 2u);
-  EXPECT_EQ(result.runs_in(RunState::done).size(), 150u);
 }
 
 }  // namespace

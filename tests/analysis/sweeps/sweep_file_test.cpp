@@ -1,11 +1,11 @@
-// The files of sweeps: what is written is read back, finished or not, and damage is noticed.
+// The files of sweeps: what is written is read back, finished or not, and damage is noticed. The spool of
+// runs: many parts, larger than its windows, come back in the order of their numbers.
 #include "analysis/sweeps/sweep_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <numeric>
@@ -94,41 +94,23 @@ TEST_F(SweepFile, ReadsBackWhatWasWritten) {
     }
 }
 
-TEST_F(SweepFile, NotesAreNotPartOfTheDigest) {
-  SweepResult other = awkward();
-  other.notes[0] ^= 7;
+// Up to 64 kinds are kept. Results of earlier versions have none.
+TEST_F(SweepFile, NotesAreKeptAndNotPartOfTheDigest) {
   const std::string sum = write_sweep(folder / "x.h5", awkward(), kAttributes);
-  EXPECT_EQ(write_sweep(folder / "y.h5", other, kAttributes), sum);
-  EXPECT_EQ(write_sweep(folder / "z.h5", without_notes(awkward()), kAttributes), sum);
-}
-
-TEST_F(SweepFile, AResultWithoutNotesIsRead) {
-  SweepResult result = without_notes(awkward());
-  write_sweep(folder / "x.h5", result, kAttributes);
+  SweepResult many = awkward();
+  while (many.note_kinds.size() < 64)
+    many.note_kinds.push_back("kind " + std::to_string(many.note_kinds.size()));
+  many.notes[0] = ~std::uint64_t{0}, many.notes[1] = std::uint64_t{1} << 63;
+  EXPECT_EQ(write_sweep(folder / "x.h5", many, kAttributes), sum);
+  expect_same(read_sweep(folder / "x.h5").result, many);
+  EXPECT_EQ(note_counts(many).back().first, 0u);
+  SweepResult none = without_notes(awkward());
+  EXPECT_EQ(write_sweep(folder / "x.h5", none, kAttributes), sum);
   EXPECT_EQ(attribute(Hdf5Reader(folder / "x.h5").attributes(), "note_kinds"), "");
-  expect_same(read_sweep(folder / "x.h5").result, result);
-  write_sweep_in_progress(folder / "y.h5", result, kAttributes);
-  result.error.assign(result.run_count(), "");
-  expect_same(read_sweep(folder / "y.h5").result, result);
-}
-
-TEST_F(SweepFile, NotesWithoutANameAreRefused) {
-  for (const std::uint64_t unnamed : {std::uint64_t{8}, std::uint64_t{1} << 63}) {
-    SweepResult result = awkward();
-    result.notes[2] = unnamed;
-    write_sweep(folder / "x.h5", result, kAttributes);
-    EXPECT_HAS(refusal([&] { read_sweep(folder / "x.h5"); }), "x.h5: damaged (a note is unknown)");
-  }
-}
-
-TEST_F(SweepFile, SixtyFourKindsOfNotesAreKept) {
-  SweepResult result = awkward();
-  while (result.note_kinds.size() < 64)
-    result.note_kinds.push_back("kind " + std::to_string(result.note_kinds.size()));
-  result.notes[0] = ~std::uint64_t{0}, result.notes[1] = std::uint64_t{1} << 63;
-  write_sweep(folder / "x.h5", result, kAttributes);
-  expect_same(read_sweep(folder / "x.h5").result, result);
-  EXPECT_EQ(note_counts(result).back().first, 0u);
+  expect_same(read_sweep(folder / "x.h5").result, none);
+  write_sweep_in_progress(folder / "y.h5", none, kAttributes);
+  none.error.assign(none.run_count(), "");
+  expect_same(read_sweep(folder / "y.h5").result, none);
 }
 
 // Runs 5 and 11 of the 12 have failed, and 3 and 7 are pending; the others have the bits of run % 8.
@@ -196,12 +178,14 @@ TEST_F(SweepFileInProgress, ARunWrittenInPartIsPending) {
   expected.state[8] = RunState::pending;
   for (Column& measure : expected.measures) std::get<std::vector<double>>(measure.values)[8] = kNan;
   expected.notes[8] = 0;
+  std::string swapped = whole;
   const std::pair<const char*, std::size_t> parts[] = {
       {"first", 8}, {"second", 8}, {"state", 4}, {"notes", 8}, {"checksum", 4}};
   for (const auto& [name, size] : parts) {
-    const auto begin =
-        static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name)) +
-        8 * size;
+    const auto array =
+        static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name));
+    const std::size_t begin = array + 8 * size;
+    swapped.replace(array + 2 * size, size, whole, begin, size);  // run 8 over run 2
     for (std::size_t byte = 0; byte < size; ++byte) {
       if (std::string(name) == "state" && byte > 0) continue;  // no valid state: the file is refused below
       std::string torn = whole;
@@ -212,17 +196,7 @@ TEST_F(SweepFileInProgress, ARunWrittenInPartIsPending) {
   std::string mad = whole;
   mad[static_cast<std::size_t>(Hdf5Reader(folder / "x.h5").offset("/sweep/state")) + 33] ^= 1;
   EXPECT_HAS(refusal([&] { read_sweep(folder.write("mad.h5", mad)); }), "damaged (a state is unknown)");
-}
-
-TEST_F(SweepFileInProgress, ValuesOfAnotherRunDoNotPass) {
-  const SweepResult result = awkward();
-  write_sweep_in_progress(folder / "x.h5", result, kAttributes);
-  std::string swapped = bytes_of(folder / "x.h5");
-  for (const auto& [name, size] :
-       {std::pair{"first", 8}, {"second", 8}, {"state", 4}, {"notes", 8}, {"checksum", 4}}) {
-    char* begin = swapped.data() + Hdf5Reader(folder / "x.h5").offset(std::string("/sweep/") + name);
-    std::memcpy(begin + 2 * size, begin + 8 * size, static_cast<std::size_t>(size));  // run 8 over run 2
-  }
+  // The values of another run do not pass.
   EXPECT_EQ(read_sweep(folder.write("swapped.h5", swapped)).result.state[2], RunState::pending);
 }
 
@@ -258,39 +232,28 @@ RunInChild replacing(const std::filesystem::path& file, int at, int& asked) {
   };
 }
 
-TEST_F(SweepFileInProgress, IsNotCalledDamagedWhenItIsReplacedDuringReading) {
-  const auto file = folder / "x.h5";
-  for (int at = 0; at < kQuestions; ++at) {
-    write_sweep_in_progress(file, awkward(), kAttributes);
-    int asked = 0;
-    EXPECT_EQ(
-        refusal([&] { read_sweep(Hdf5Reader(file, replacing(file, at, asked))); }),
-        file.string() +
-            ": was replaced by another program while it was read: expected a file that no program writes");
-    EXPECT_EQ(asked, at + 1);  // and it is noticed at once
-  }
-}
-
+// One reader calls the file neither damaged nor reads on, and the next one reads it again, unless it is
+// replaced as if by a program that never stops.
 TEST_F(SweepFileInProgress, IsReadAgainWhenItIsReplacedDuringReading) {
   const auto file = folder / "x.h5";
+  const std::string replaced = ": was replaced by another program while it was read";
   for (int at = 0; at < kQuestions; ++at) {
     write_sweep_in_progress(file, awkward(), kAttributes);
     int asked = 0;
-    const StoredSweep stored = read_sweep(file, replacing(file, at, asked));
+    EXPECT_EQ(refusal([&] { read_sweep(Hdf5Reader(file, replacing(file, at, asked))); }),
+              file.string() + replaced + ": expected a file that no program writes");
+    EXPECT_EQ(asked, at + 1);  // and it is noticed at once
+    write_sweep_in_progress(file, awkward(), kAttributes);
+    const StoredSweep stored = read_sweep(file, replacing(file, at, asked = 0));
     EXPECT_FALSE(stored.in_progress) << at;
     expect_same(stored.result, awkward());
   }
-}
-
-// The file is replaced as if by a program that never stops.
-TEST_F(SweepFileInProgress, IsRefusedIfItIsReplacedAllTheTime) {
-  const auto file = folder / "x.h5";
-  write_sweep_in_progress(file, awkward(), kAttributes);
-  const RunInChild run = [&](const ChildLimits& limits, ChildReader reader, const std::string& question) {
+  const RunInChild always = [&](const ChildLimits& limits, ChildReader reader, const std::string& question) {
     write_sweep_in_progress(file, awkward(), kAttributes);
     return in_own_child(limits, reader, question);
   };
-  EXPECT_HAS(refusal([&] { read_sweep(file, run); }), "was replaced by another program while it was read");
+  write_sweep_in_progress(file, awkward(), kAttributes);
+  EXPECT_HAS(refusal([&] { read_sweep(file, always); }), replaced);
 }
 
 TEST_F(SweepFile, DamageIsRefused) {
@@ -321,6 +284,12 @@ TEST_F(SweepFile, DamageIsRefused) {
   why(sound.substr(0, sound.size() / 2)), why(sound.substr(0, 100)), why(""), why("text");
   write_trace(folder / "trace.h5", awkward_trace(20), kProvenance, {});
   EXPECT_HAS(why(bytes_of(folder / "trace.h5")), "expected remote-touch-sweep/3");
+  for (const std::uint64_t unnamed : {std::uint64_t{8}, std::uint64_t{1} << 63}) {
+    SweepResult result = awkward();
+    result.notes[2] = unnamed;
+    write_sweep(folder / "x.h5", result, kAttributes);
+    EXPECT_HAS(why(bytes_of(folder / "x.h5")), "damaged (a note is unknown)");
+  }
 }
 
 // A program changes a value and seals the file again.
@@ -339,7 +308,7 @@ TEST_F(SweepFile, ASealedFileWithOtherValuesThanItsDigestIsRefused) {
 
 // Returns the reason why a sweep with these axes and columns is refused.
 std::string refusal_of(const TestFolder& folder, const std::string& axes, const std::vector<Column>& columns,
-                       Hdf5Writer::Finished finished = Hdf5Writer::Finished::yes) {
+                       Hdf5Writer::Finished finished) {
   Hdf5Writer hdf5(finished);
   hdf5.attributes("/", {{"schema", "remote-touch-sweep/3"}, {"axes", axes}, {"measures", "m"}});
   hdf5.group("/sweep");
@@ -348,27 +317,141 @@ std::string refusal_of(const TestFolder& folder, const std::string& axes, const 
   return refusal([&] { read_sweep(folder / "x.h5"); });
 }
 
-// 2^64 runs are 0 in 64-bit arithmetic.
-TEST_F(SweepFile, AxesThatAreNamedRepeatedlyAreRefused) {
-  const Column none{"m", "1", "", std::vector<double>{}}, two{"a", "1", "", std::vector<double>{0, 1}};
-  const std::string axes = joined(std::vector<std::string>(64, "a"), ",");
-  EXPECT_HAS(refusal_of(folder, axes, {two, none}), "damaged (its axes have too many values)");
-  EXPECT_HAS(refusal_of(folder, "a", {{"a", "1", "", std::vector<double>{}}, none}),
-             "damaged (it has no runs)");
+// 64 axes of two values have 2^64 runs, which are 0 in 64-bit arithmetic.
+TEST_F(SweepFile, AxesThatAreNoneAreRefused) {
+  const auto axis = [](const std::string& name, const Values& values, std::vector<std::string> names = {}) {
+    return Column{name, "1", "", values, 1, std::move(names)};
+  };
+  const std::vector<double> none, two{1, 2};
+  const auto named = [&](std::int32_t value) {
+    return axis("a", std::vector<std::int32_t>{0, value}, {"fixed", "variable"});
+  };
+  using enum Hdf5Writer::Finished;
+  const struct {
+    const char* problem;
+    std::string axes;
+    std::vector<Column> columns;
+    Hdf5Writer::Finished finished = yes;
+  } rows[] = {{"its axes have too many values",
+               joined(std::vector<std::string>(64, "a"), ","),
+               {axis("a", two), axis("m", none)}},
+              {"it has no runs", "a", {axis("a", none), axis("m", none)}},
+              {"/sweep/a has a value without a name", "a", {named(-1)}},
+              {"/sweep/a has a value without a name", "a", {named(2)}},
+              {"/sweep/b is missing", "a,b", {axis("a", two), axis("checksum", two)}},
+              {"/sweep/b is missing", "a,b", {axis("a", two), axis("checksum", two)}, no}};
+  for (const auto& row : rows)
+    EXPECT_HAS(refusal_of(folder, row.axes, row.columns, row.finished),
+               "x.h5: damaged (" + std::string(row.problem) + ")");
 }
 
-TEST_F(SweepFile, AnAxisWithAValueThatHasNoNameIsRefused) {
-  for (const std::int32_t unnamed : {-1, 2}) {
-    const Column axis{"a", "1", "", std::vector<std::int32_t>{0, unnamed}, 1, {"fixed", "variable"}};
-    EXPECT_HAS(refusal_of(folder, "a", {axis}), "damaged (/sweep/a has a value without a name)");
+constexpr std::size_t kCells = 1'100'000;  // several windows
+constexpr std::size_t kParts = 3;
+
+SweepResult outline() {
+  SweepResult result;
+  result.axes = {{"x", "1", "an axis", std::vector<double>(kCells / 11)},
+                 {"y", "1", "another", std::vector<double>(11)}};
+  result.measures = {{"force", "N", "a measure", {}}};
+  result.note_kinds = {"other"};
+  return result;
+}
+
+// The values of part p: its runs are p, p + kParts, ..., and each value is a function of the run.
+RunSpool::PartValues part_values(std::size_t p) {
+  return [p](const std::string& array, std::size_t first, std::size_t count) -> Values {
+    std::vector<std::uint64_t> runs(count);
+    for (std::size_t i = 0; i < count; ++i) runs[i] = p + (first + i) * kParts;
+    if (array == "run") return runs;
+    if (array == "force") {
+      std::vector<double> values;
+      for (const std::uint64_t run : runs) values.push_back(0.5 * static_cast<double>(run));
+      return values;
+    }
+    if (array == "error") {
+      std::vector<std::string> texts;
+      for (const std::uint64_t run : runs)
+        texts.push_back(run % 100'000 == 0 ? "run " + std::to_string(run) : "");
+      return texts;
+    }
+    if (array == "notes") {
+      for (std::uint64_t& run : runs) run %= 2;
+      return runs;
+    }
+    std::vector<std::int32_t> numbers;  // the states
+    for (const std::uint64_t run : runs) numbers.push_back(run % 100'000 == 0 ? 3 : 2);
+    return numbers;
+  };
+}
+
+std::size_t held(std::size_t p) {
+  return (kCells - p + kParts - 1) / kParts;
+}
+
+TEST(RunSpool, ReturnsTheRunsOfAllPartsInOrder) {
+  const TestFolder folder("run_spool_test");
+  RunSpool spool(outline(), false, folder / "out.h5");
+  for (const std::size_t p : {2, 0, 1}) spool.add("part", held(p), part_values(p));
+  spool.complete(true);
+  ASSERT_EQ(spool.outline().held_count(), kCells);
+  EXPECT_EQ(spool.longest_error(), 11u) << "run 1000000";
+  // Blocks over a boundary of two windows, and in any order.
+  for (const std::size_t first : {1'048'570u, 0u, 1'099'990u}) {
+    const auto forces = std::get<std::vector<double>>(spool.values("force", first, 10));
+    const auto states = std::get<std::vector<std::int32_t>>(spool.values("state", first, 10));
+    const auto notes = std::get<std::vector<std::uint64_t>>(spool.values("notes", first, 10));
+    const auto errors = std::get<std::vector<std::string>>(spool.values("error", first, 10));
+    for (std::size_t i = 0; i < 10; ++i) {
+      const std::size_t run = first + i;
+      EXPECT_EQ(forces[i], 0.5 * static_cast<double>(run));
+      EXPECT_EQ(states[i], run % 100'000 == 0 ? 3 : 2);
+      EXPECT_EQ(notes[i], run % 2);
+      EXPECT_EQ(errors[i], run % 100'000 == 0 ? "run " + std::to_string(run) : "");
+    }
   }
 }
 
-TEST_F(SweepFile, AnAxisThatIsNotThereIsNamed) {
-  const std::vector<double> two{1, 2};
-  for (const auto finished : {Hdf5Writer::Finished::yes, Hdf5Writer::Finished::no})
-    EXPECT_HAS(refusal_of(folder, "a,b", {{"a", "1", "", two}, {"checksum", "1", "", two}}, finished),
-               "x.h5: damaged (/sweep/b is missing)");
+TEST(RunSpool, OfSomePartsHoldsTheirRunsOnly) {
+  const TestFolder folder("run_spool_test");
+  RunSpool spool(outline(), false, folder / "out.h5");
+  spool.add("c", held(2), part_values(2)), spool.add("a", held(0), part_values(0));
+  spool.complete(false);
+  ASSERT_EQ(spool.outline().held_count(), held(0) + held(2));
+  EXPECT_EQ((*spool.outline().part)[0], 0u);
+  EXPECT_EQ((*spool.outline().part)[1], 2u);
+  EXPECT_EQ((*spool.outline().part)[2], 3u);
+  const auto forces =
+      std::get<std::vector<double>>(spool.values("force", spool.outline().held_count() - 3, 3));
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(forces[i],
+              0.5 * static_cast<double>((*spool.outline().part)[spool.outline().held_count() - 3 + i]));
+  EXPECT_EQ(std::get<std::vector<std::string>>(spool.values("error", 0, 2)),
+            (std::vector<std::string>{"run 0", ""}));
+}
+
+TEST(RunSpool, WithoutAPartOrWithOneTwiceOrWithoutAFolderIsRefused) {
+  const TestFolder folder("run_spool_test");
+  RunSpool missing(outline(), false, folder / "out.h5");
+  missing.add("a", held(0), part_values(0)), missing.add("b", held(1), part_values(1));
+  EXPECT_HAS(refusal([&] { missing.complete(true); }), "no part holds run 2");
+  RunSpool doubled(outline(), false, folder / "out.h5");
+  doubled.add("a", held(0), part_values(0)), doubled.add("b", held(0), part_values(0));
+  EXPECT_HAS(refusal([&] { doubled.complete(false); }), "b: holds run 0, as another part does");
+  EXPECT_HAS(refusal([&] { RunSpool(outline(), false, folder / "absent" / "out.h5"); }),
+             "out.h5: cannot be written");
+}
+
+// Runs that no part holds are not sampled, if the sweep has refinement.
+TEST(RunSpool, WithRefinementMayLackRuns) {
+  const TestFolder folder("run_spool_test");
+  RunSpool spool(outline(), true, folder / "out.h5");
+  spool.add("a", held(0), part_values(0));
+  spool.complete(true);
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(spool.values("state", 3, 3)),
+            (std::vector<std::int32_t>{2, 0, 0}));
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(spool.values("round", 4, 2)),
+            (std::vector<std::int32_t>{-1, -1}));
+  EXPECT_TRUE(std::isnan(std::get<std::vector<double>>(spool.values("force", 4, 1)).front()));
 }
 
 }  // namespace

@@ -1,24 +1,95 @@
+// Exact sums against a long integer, in every order, and the tally of a measure that is made of them.
 #include "analysis/sweeps/sweep_tally.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
-
-#include "tests/analysis/sweeps/example_tally.h"
-#include "tests/analysis/sweeps/fixed_point_sum.h"
-#include "tests/support/test_files.h"
 
 namespace remote_touch::unrounded_sum_test {
 namespace {
 
-// Exact sums against a long integer, in every order.
-
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLargestDouble = std::numeric_limits<double>::max();
 constexpr double kLeastDouble = std::numeric_limits<double>::denorm_min();
+
+// Exact sums in fixed point, by other means than UnroundedSum: one long integer in units of 2^-2148, which
+// holds every double and the square of every double.
+class FixedPointSum {
+ public:
+  void add(double value) {
+    int power = 0;
+    const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &power), 53));
+    add_shifted(mantissa, power - 53 + kUnit);
+  }
+  void add_square(double value) { add_product(value, value); }
+  void add_product(double a, double b) {
+    int power_of_a = 0, power_of_b = 0;
+    const auto x = static_cast<std::int64_t>(std::ldexp(std::frexp(a, &power_of_a), 53));
+    const auto y = static_cast<std::int64_t>(std::ldexp(std::frexp(b, &power_of_b), 53));
+    add_shifted(static_cast<__int128>(x) * y, power_of_a + power_of_b - 106 + kUnit);
+  }
+  void add(const FixedPointSum& other, std::int64_t times) {
+    for (std::size_t i = 0; i < digits_.size(); ++i) digits_[i] += times * other.digits_[i];
+    carry();
+  }
+
+  bool operator==(const FixedPointSum&) const = default;
+
+  // The nearest double, even if two are as near.
+  double rounded() const {
+    FixedPointSum magnitude = *this;
+    const bool is_negative = digits_.back() < 0;
+    if (is_negative) magnitude = FixedPointSum(), magnitude.add(*this, -1);
+    int top = static_cast<int>(32 * kDigits) - 1;
+    while (top >= 0 && !magnitude.bit(top)) --top;
+    // The last bit that the double has: 53 bits from the top, or 2^-1074.
+    const int last = std::max(top - 52, kUnit - 1074);
+    std::uint64_t mantissa = 0;
+    for (int i = top; i >= last; --i) mantissa = 2 * mantissa + (magnitude.bit(i) ? 1 : 0);
+    bool is_above_half = false;
+    for (int i = last - 2; i >= 0 && !is_above_half; --i) is_above_half = magnitude.bit(i);
+    if (magnitude.bit(last - 1) && (is_above_half || mantissa % 2 == 1)) ++mantissa;
+    const double size = std::ldexp(static_cast<double>(mantissa), last - kUnit);
+    return is_negative ? -size : size;
+  }
+
+ private:
+  static constexpr int kUnit = 2148;
+  static constexpr std::size_t kDigits =
+      140;  // digits of 32 bits: 2^-2148 to 2^2331; the last one has the sign
+
+  // Adds number 2^shift. A number below the unit is a multiple of it after all.
+  void add_shifted(__int128 number, int shift) {
+    while (shift < 0) number /= 2, ++shift;
+    const bool is_negative = number < 0;
+    auto left = static_cast<unsigned __int128>(is_negative ? -number : number);
+    const auto first = static_cast<std::size_t>(shift / 32);
+    auto low = static_cast<std::uint64_t>(left & 0xffffffffu) << (shift % 32);
+    for (std::size_t i = first; left != 0 || low != 0; ++i) {
+      const auto digit = static_cast<std::int64_t>(low & 0xffffffffu);
+      digits_.at(i) += is_negative ? -digit : digit;
+      left >>= 32;
+      low = (low >> 32) + (static_cast<std::uint64_t>(left & 0xffffffffu) << (shift % 32));
+    }
+    carry();
+  }
+  // All digits but the last become 0 .. 2^32 - 1.
+  void carry() {
+    for (std::size_t i = 0; i + 1 < digits_.size(); ++i) {
+      const std::int64_t over = digits_[i] >> 32;
+      digits_[i] -= over * (std::int64_t{1} << 32);
+      digits_[i + 1] += over;
+    }
+  }
+  bool bit(int i) const { return i >= 0 && (digits_[static_cast<std::size_t>(i / 32)] >> (i % 32) & 1) != 0; }
+  std::array<std::int64_t, kDigits> digits_{};
+};
 
 UnroundedSum sum_of(const std::vector<double>& values) {
   UnroundedSum sum;
@@ -49,36 +120,6 @@ double any_double(std::mt19937_64& random, int least_power, int greatest_power) 
   const int powers = greatest_power - least_power - 53;
   const int power = least_power + static_cast<int>(random() % static_cast<std::uint64_t>(powers));
   return std::ldexp(random() % 2 == 0 ? mantissa : -mantissa, power);
-}
-
-TEST(UnroundedSum, OfNothingIsZero) {
-  EXPECT_EQ(UnroundedSum().value(), 0);
-  EXPECT_FALSE(std::signbit(UnroundedSum().value()));
-  EXPECT_TRUE(UnroundedSum().parts().empty());
-  EXPECT_FALSE(std::signbit(sum_of({-0.0, 1, -1, -0.0}).value()));
-}
-
-TEST(UnroundedSum, HasThePartsOfALongIntegerInEveryOrder) {
-  const std::vector<std::vector<double>> sets = {
-      {1e300, 1e-300, -1e300, 1, 1e16, -1},
-      {0.1, 0.2, 0.3, -0.6, 0x1p-54, 0x1p-55},
-      {1, 0x1p-53, 0x1p-106, -0x1p-159, 0x1p-1074, -0x1p-1074},
-      {1, 0x1p-53, 0x1p-1074},
-      {1, 0x1p-53, -0x1p-1074},
-      {1 + 0x1p-52, 0x1p-53, 0x1p-300, -0x1p-301},
-      {kLeastDouble, -0x1p-1022, 3 * kLeastDouble, 0x1.fffffffffffffp-1023, 1e-310, -1e-310},
-      {kLargestDouble, -kLargestDouble, kLargestDouble, 1, kLeastDouble},
-      {1e22, 1, -1e22, 1e-22, 1e5, -1e5},
-      {0x1p1022, 0x1p1021, -0x1p969, -0x1p1022, 0x1p-1074}};
-  for (std::vector<double> values : sets) {
-    const std::vector<double> expected = expected_parts(values);
-    std::sort(values.begin(), values.end());
-    do {
-      const UnroundedSum sum = sum_of(values);
-      ASSERT_EQ(sum.parts(), expected) << testing::PrintToString(values);
-      ASSERT_EQ(sum.value(), expected.empty() ? 0 : expected[0]) << testing::PrintToString(values);
-    } while (std::next_permutation(values.begin(), values.end()));
-  }
 }
 
 TEST(UnroundedSum, HasThePartsOfALongIntegerForRandomValues) {
@@ -115,8 +156,12 @@ TEST(UnroundedSum, RoundsAsALongIntegerAroundTheMiddleOfTwoDoubles) {
     std::vector<double> values = {first, half, random() % 2 == 0 ? tiny : -tiny};
     if (random() % 3 == 0) values.pop_back();
     if (random() % 2 == 0) values[1] = -half;
-    ASSERT_EQ(sum_of(values).parts(), expected_parts(values)) << testing::PrintToString(values);
+    const std::vector<double> expected = expected_parts(values);
+    ASSERT_EQ(sum_of(values).parts(), expected) << testing::PrintToString(values);
+    ASSERT_EQ(sum_of(values).value(), expected.empty() ? 0 : expected[0]);
   }
+  EXPECT_FALSE(std::signbit(UnroundedSum().value()));
+  EXPECT_FALSE(std::signbit(sum_of({-0.0, 1, -1, -0.0}).value()));
 }
 
 TEST(UnroundedSum, IsExactBeyondTheLargestDouble) {
@@ -227,22 +272,22 @@ TEST(UnroundedSum, ReadsItsPartsAndRefusesOthers) {
     ASSERT_TRUE(read.has_value());
     EXPECT_EQ(read->parts(), sum.parts());
   }
-  const double nan = std::nan("");
-  for (const std::vector<double>& wrong : {std::vector<double>{0},
-                                           {1, 1},
-                                           {1e-20, 1},
-                                           {1, nan},
-                                           {nan},
-                                           {1, kInfinity},
-                                           {-kInfinity},
-                                           {kInfinity, 1, 1},
-                                           {kInfinity, 2.5},
-                                           {kInfinity, nan},
-                                           {kInfinity, 1e300},
-                                           {kInfinity, -3},
-                                           {kInfinity, 3, -0x1p1022},
-                                           {1, 0x1p-53, 0x1p-54},
-                                           {1, -0.0}})
+  const std::vector<std::vector<double>> others = {{0},
+                                                   {1, 1},
+                                                   {1e-20, 1},
+                                                   {1, kNan},
+                                                   {kNan},
+                                                   {1, kInfinity},
+                                                   {-kInfinity},
+                                                   {kInfinity, 1, 1},
+                                                   {kInfinity, 2.5},
+                                                   {kInfinity, kNan},
+                                                   {kInfinity, 1e300},
+                                                   {kInfinity, -3},
+                                                   {kInfinity, 3, -0x1p1022},
+                                                   {1, 0x1p-53, 0x1p-54},
+                                                   {1, -0.0}};
+  for (const std::vector<double>& wrong : others)
     EXPECT_FALSE(UnroundedSum::from_parts(wrong).has_value()) << testing::PrintToString(wrong);
 }
 
@@ -259,11 +304,115 @@ TEST(UnroundedSum, StaysShort) {
   EXPECT_LE(sum.parts().size(), 40u);
 }
 
-TEST(UnroundedSum, AddedToItselfIsTwiceAsLarge) {
-  UnroundedSum sum = sum_of({0.1, 1e20, -3e-7});
-  const UnroundedSum twice = sum_of({0.2, 2e20, -6e-7});
-  sum.add(sum);
-  EXPECT_TRUE(sum == twice);
+MeasureTally tally_of(const std::vector<double>& values) {
+  MeasureTally tally;
+  for (const double value : values) tally.add(value);
+  return tally;
+}
+
+// n sum of squares - (sum)^2 in fixed point, divided by n (n - 1). The values are multiples of 2^-60 below
+// 2^40.
+double expected_variance(const std::vector<double>& values) {
+  FixedPointSum numerator, squares;
+  std::vector<double> shifted;
+  for (const double value : values) squares.add_square(value);
+  numerator.add(squares, static_cast<std::int64_t>(values.size()));
+  FixedPointSum products;
+  for (const double a : values)
+    for (const double b : values) products.add_product(a, b);
+  numerator.add(products, -1);
+  const auto n = static_cast<double>(values.size());
+  return numerator.rounded() / (n * (n - 1));
+}
+
+// Minus zero counts as zero, because the order would decide which of both is the least value.
+TEST(MeasureTally, CountsWhatIsNotFiniteApart) {
+  const MeasureTally tally = tally_of({1, kNan, kInfinity, -2, -kInfinity, kNan, kNan});
+  EXPECT_EQ(tally.values, 2);
+  EXPECT_EQ(tally.unknown, 3);
+  EXPECT_EQ(tally.infinite, 2);
+  EXPECT_EQ(tally.least, -2);
+  EXPECT_EQ(tally.greatest, 1);
+  EXPECT_EQ(tally.mean(), -0.5);
+  EXPECT_EQ(tally.sketch.count(), 2);
+  EXPECT_EQ(tally.contradiction(), "");
+  EXPECT_FALSE(std::signbit(tally_of({-0.0}).least));
+  EXPECT_TRUE(tally_of({-0.0, 0.0}) == tally_of({0.0, -0.0}));
+}
+
+TEST(MeasureTally, HasNoMeanWithoutValues) {
+  const MeasureTally tally = tally_of({kNan});
+  EXPECT_TRUE(std::isnan(tally.mean()));
+  EXPECT_TRUE(std::isnan(tally.variance()));
+  EXPECT_TRUE(std::isnan(tally.quantile(0.5)));
+  EXPECT_TRUE(std::isnan(tally_of({3}).variance()));
+  EXPECT_EQ(tally_of({3, 3}).variance(), 0);
+  EXPECT_EQ(tally.contradiction(), "");
+}
+
+// In every third round the values are 1e8 and some thousandths: a sum of rounded squares would have no digit
+// left.
+TEST(MeasureTally, HasTheVarianceOfALongInteger) {
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 30; ++round) {
+    std::vector<double> values(2 + random() % 30);
+    for (double& value : values) value = std::exp(3 * normal(random)) * (round % 2 == 0 ? 1 : normal(random));
+    if (round % 3 == 2)
+      for (double& value : values) value = 1e8 + 1e-3 * normal(random);
+    EXPECT_DOUBLE_EQ(tally_of(values).variance(), expected_variance(values));
+  }
+}
+
+TEST(MeasureTally, HasAVarianceForLargeAndTinyValues) {
+  for (const double scale : {0x1p500, 0x1p-480, 0x1p-100}) {
+    const MeasureTally tally = tally_of({scale, 2 * scale, 4 * scale});
+    EXPECT_DOUBLE_EQ(tally.standard_deviation() / scale, std::sqrt(7.0 / 3));
+  }
+  EXPECT_TRUE(std::isnan(tally_of({1e154, -2e154, 3}).variance())) << "a square is above the largest double";
+  EXPECT_TRUE(std::isnan(tally_of({1e308, 1e308}).variance()));
+  EXPECT_EQ(tally_of({1e308, 1e308}).mean(), kInfinity);
+  EXPECT_EQ(tally_of({1e308, 1e308, -1e308}).mean(), 1e308 / 3);
+  EXPECT_EQ(tally_of({1e-200, 2e-200}).variance(), 0) << "squares below the least double are lost";
+  EXPECT_GE(tally_of({5e-324, 1e-160, 1.0001e-160}).variance(), 0);
+}
+
+TEST(MeasureTally, HasQuantilesBetweenItsExtremes) {
+  const MeasureTally one = tally_of({1.001});
+  for (const double p : {0.0, 0.5, 1.0}) EXPECT_EQ(one.quantile(p), 1.001);
+  const MeasureTally tally = tally_of({1.001, 1.002, 1.003, 1.004, 5});
+  EXPECT_EQ(tally.quantile(0), 1.001);
+  EXPECT_EQ(tally.quantile(0.2), 1.001);
+  EXPECT_EQ(tally.quantile(1), 5);
+  EXPECT_NEAR(tally.quantile(0.5), 1.003, 1.003 / 64);
+  const MeasureTally close = tally_of({1.001, 1.002, 1.003});
+  EXPECT_LE(close.quantile(0.5), 1.003) << "the middle of the bucket is 1.0156";
+}
+
+TEST(MeasureTally, DoesNotDependOnOrderOrParts) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> values = {kNan, kInfinity, 1e140, -3e140, 1e-300, 0, -0.0};
+  for (int i = 0; i < 300; ++i) values.push_back(std::exp(10 * normal(random)));
+  const MeasureTally whole = tally_of(values);
+  for (int round = 0; round < 20; ++round) {
+    std::shuffle(values.begin(), values.end(), random);
+    MeasureTally merged;
+    for (std::size_t at = 0; at < values.size();) {
+      const std::size_t count = std::min<std::size_t>(1 + random() % 40, values.size() - at);
+      const auto first = values.begin() + static_cast<std::ptrdiff_t>(at);
+      merged.add(tally_of({first, first + static_cast<std::ptrdiff_t>(count)}));
+      at += count;
+    }
+    ASSERT_TRUE(merged == whole);
+    ASSERT_EQ(merged.variance(), whole.variance());
+    merged.add(merged);
+    ASSERT_EQ(merged.values, 2 * whole.values);
+    ASSERT_EQ(merged.mean(), whole.mean());
+    ASSERT_EQ(merged.quantile(0.3), whole.quantile(0.3));
+  }
+  values.back() = std::nextafter(values.back(), 0);
+  EXPECT_FALSE(tally_of(values) == whole);
 }
 
 }  // namespace
