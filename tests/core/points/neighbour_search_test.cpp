@@ -1,3 +1,4 @@
+// Searches for points near a position against a plain loop, and the lists that are kept around a proxy.
 #include "core/points/neighbour_search.h"
 
 #include <gtest/gtest.h>
@@ -88,23 +89,6 @@ PointCloud with_regions(PointCloud cloud) {
   return cloud;
 }
 
-// A mesh of neighbours needs the width of the rows, and the numbers of the points in their original order.
-TEST(NeighbourSearch, ReportsHowWideTheRowsOfAnOrganisedFrameAre) {
-  EXPECT_EQ(ImageWindowSearch(image_cloud()).organised_columns(), 160);
-  const PointCloud grid = scenes::flat_grid(30);
-  const UniformGridSearch search(grid, 0.004);
-  EXPECT_EQ(search.organised_columns(), 30);
-  EXPECT_EQ(search.stored_cloud()->columns(), 0) << "its own points stand in another order";
-  EXPECT_EQ(BruteForceSearch(scenes::random_cloud(30, 1, 1)).organised_columns(), 0);
-  const GatheredPoints out = scenes::gathered(search);
-  ASSERT_EQ(out.size(), grid.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::uint32_t row = out.index()[i] / 30, column = out.index()[i] % 30;
-    EXPECT_EQ(out.view().x[i], grid.x[30 * row + column]);
-    EXPECT_EQ(out.view().z[i], grid.z[30 * row + column]);
-  }
-}
-
 void expect_same_sets(const PointCloud& cloud, const NeighbourSearch& search, double reach) {
   const PointCloud centres = scenes::random_cloud(300, reach, 5);
   std::size_t total = 0;
@@ -123,28 +107,26 @@ void expect_same_sets(const PointCloud& cloud, const NeighbourSearch& search, do
   EXPECT_GT(total, 1000u);
 }
 
-TEST(NeighbourSearch, BruteForceFindsTheSet) {
-  const PointCloud cloud = scenes::random_cloud(3000, 0.1, 1);
-  expect_same_sets(cloud, BruteForceSearch(cloud), 0.15);
+// Once without regions, and once with a region of its own for each point.
+TEST(NeighbourSearch, EverySearchFindsTheSameSet) {
+  for (const bool has_regions : {false, true}) {
+    const auto made = [&](const PointCloud& cloud) { return has_regions ? with_regions(cloud) : cloud; };
+    const PointCloud cloud = made(scenes::random_cloud(3000, 0.1, 1)), image = made(image_cloud());
+    expect_same_sets(cloud, BruteForceSearch(cloud), 0.15);
+    for (const double cell : {0.001, 0.01, 0.3})
+      expect_same_sets(cloud, UniformGridSearch(cloud, cell), 0.15);
+    expect_same_sets(image, ImageWindowSearch(image), 0.6);
+    expect_same_sets(image, UniformGridSearch(image, 0.01), 0.6);
+  }
 }
 
-TEST(NeighbourSearch, GridFindsTheSameSet) {
-  const PointCloud cloud = scenes::random_cloud(3000, 0.1, 1);
-  for (const double cell : {0.001, 0.01, 0.3}) expect_same_sets(cloud, UniformGridSearch(cloud, cell), 0.15);
-}
-
-TEST(NeighbourSearch, ImageWindowFindsTheSameSet) {
-  const PointCloud cloud = image_cloud();
-  expect_same_sets(cloud, ImageWindowSearch(cloud), 0.6);
-}
-
-TEST(NeighbourSearch, EachPointIsFoundByTheRadiusOfItsOwnRegion) {
-  const PointCloud cloud = with_regions(scenes::random_cloud(3000, 0.1, 1));
-  expect_same_sets(cloud, BruteForceSearch(cloud), 0.15);
-  for (const double cell : {0.001, 0.01, 0.3}) expect_same_sets(cloud, UniformGridSearch(cloud, cell), 0.15);
-  const PointCloud image = with_regions(image_cloud());
-  expect_same_sets(image, ImageWindowSearch(image), 0.6);
-  expect_same_sets(image, UniformGridSearch(image, 0.01), 0.6);
+// A mesh of neighbours needs the width of the rows of the original order.
+TEST(NeighbourSearch, ReportsHowWideTheRowsOfAnOrganisedFrameAre) {
+  EXPECT_EQ(ImageWindowSearch(image_cloud()).organised_columns(), 160);
+  const UniformGridSearch search(scenes::flat_grid(30), 0.004);
+  EXPECT_EQ(search.organised_columns(), 30);
+  EXPECT_EQ(search.stored_cloud()->columns(), 0) << "its own points stand in another order";
+  EXPECT_EQ(BruteForceSearch(scenes::random_cloud(30, 1, 1)).organised_columns(), 0);
 }
 
 // The search stores the points in another order. The columns must follow it.
@@ -158,17 +140,6 @@ TEST(NeighbourSearch, KeepsARegionWithItsPoint) {
     ASSERT_EQ(Vec3(out.view().x[k], out.view().y[k], out.view().z[k]), cloud.point(i));
     ASSERT_EQ(out.view().radius[k], cloud.fixture_radius_m[i]);
     ASSERT_EQ(out.view().stiffness[k], static_cast<double>(i));
-  }
-}
-
-TEST(NeighbourSearch, WindowAndGridAgreeOnOneCloud) {
-  const PointCloud cloud = image_cloud();
-  const ImageWindowSearch window(cloud);
-  const UniformGridSearch grid(cloud, 0.01);
-  for (std::size_t i = 0; i < cloud.size(); i += 37) {
-    if (std::isnan(cloud.x[i])) continue;
-    const Ball ball{cloud.point(i) + Vec3(0.002, 0, 0), 0.012};
-    EXPECT_EQ(found(window, ball), found(grid, ball));
   }
 }
 
@@ -186,24 +157,19 @@ TEST(NeighbourSearch, OutliersDoNotBlowUpTheGrid) {
   EXPECT_EQ(found(search, ball), (std::vector<std::uint32_t>{500}));
 }
 
-TEST(NeighbourSearch, HandlesEmptyCloudsAndMissingPoints) {
-  PointCloud missing;
-  missing.append({std::nan(""), std::nan(""), std::nan("")});
-  const Ball ball{Vec3::Zero(), 10};
-  EXPECT_TRUE(found(BruteForceSearch(PointCloud{}), ball).empty());
-  EXPECT_TRUE(found(UniformGridSearch(PointCloud{}, 0.01), ball).empty());
-  EXPECT_TRUE(found(BruteForceSearch(missing), ball).empty());
-  EXPECT_TRUE(found(UniformGridSearch(missing, 0.01), ball).empty());
-}
-
-TEST(NeighbourSearch, ABallAtANanPositionHoldsNoPoint) {
-  const PointCloud cloud = image_cloud(), unordered = scenes::random_cloud(500, 0.05, 2);
+TEST(NeighbourSearch, FindsNothingWithoutPointsAndAtANanPosition) {
+  const PointCloud cloud = scenes::random_cloud(500, 0.05, 2),
+                   missing = scenes::cloud_of({Vec3::Constant(std::nan(""))});
+  for (const PointCloud& none : {PointCloud(), missing}) {
+    EXPECT_TRUE(found(BruteForceSearch(none), {Vec3::Zero(), 10}).empty());
+    EXPECT_TRUE(found(UniformGridSearch(none, 0.01), {Vec3::Zero(), 10}).empty());
+  }
   for (int axis = 0; axis < 3; ++axis) {
     Ball ball{Vec3::Zero(), 10};
     ball.centre[axis] = std::nan("");
-    EXPECT_TRUE(found(BruteForceSearch(unordered), ball).empty());
-    EXPECT_TRUE(found(UniformGridSearch(unordered, 0.01), ball).empty());
-    EXPECT_TRUE(found(ImageWindowSearch(cloud), ball).empty());
+    EXPECT_TRUE(found(BruteForceSearch(cloud), ball).empty());
+    EXPECT_TRUE(found(UniformGridSearch(cloud, 0.01), ball).empty());
+    EXPECT_TRUE(found(ImageWindowSearch(image_cloud()), ball).empty());
   }
 }
 
@@ -213,12 +179,6 @@ TEST(NeighbourSearch, IsChosenByTheKindOfCloud) {
   EXPECT_NE(dynamic_cast<UniformGridSearch*>(make_search(scenes::random_cloud(1000, 1, 1)).get()), nullptr);
 }
 
-}  // namespace
-}  // namespace remote_touch::neighbour_search_test
-
-namespace remote_touch::neighbourhood_test {
-namespace {
-
 constexpr double kReach = 0.01, kContactRadius = 0.005;
 
 std::shared_ptr<const NeighbourSearch> cloud_with_fixtures() {
@@ -227,30 +187,30 @@ std::shared_ptr<const NeighbourSearch> cloud_with_fixtures() {
   return std::make_shared<BruteForceSearch>(cloud);
 }
 
+// Returns true if the list has every point of the cloud whose region is within the reach of p.
+bool holds_all_within_reach(const GatheredPoints& list, const PointCloud& cloud, const Vec3& p) {
+  std::vector<bool> listed(cloud.size(), false);
+  for (std::size_t i = 0; i < list.size(); ++i) listed[list.index()[i]] = true;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    if ((p - cloud.point(i)).norm() - cloud.fixture_radius_m[i] <= kReach && !listed[i]) return false;
+  return true;
+}
+
 // Wherever in its cube the position lies, no point within reach may be missing from the list.
 TEST(Neighbourhood, ListHoldsEveryRegionWithinReach) {
   const auto points = cloud_with_fixtures();
-  const PointCloud& cloud = *points->stored_cloud();
   Neighbourhood near = scenes::neighbourhood(points, kReach);
   const PointCloud places = scenes::random_cloud(2000, 0.04, 22);
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const Vec3 p = places.point(k);
-    const GatheredPoints& list = near.around(p);
-    std::vector<bool> listed(cloud.size(), false);
-    for (std::size_t i = 0; i < list.size(); ++i) listed[list.index()[i]] = true;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if ((p - cloud.point(i)).norm() - cloud.fixture_radius_m[i] <= kReach) {
-        ASSERT_TRUE(listed[i]) << k;
-      }
-    }
-  }
+  for (std::size_t k = 0; k < places.size(); ++k)
+    ASSERT_TRUE(
+        holds_all_within_reach(near.around(places.point(k)), *points->stored_cloud(), places.point(k)))
+        << k;
 }
 
 // The path has short and long steps, so that the list is narrow at some positions and not at others. A narrow
 // list has every point within the reach, and fewer points beyond it than the list of around().
 TEST(Neighbourhood, NarrowedListHoldsEveryRegionWithinReach) {
   const auto points = cloud_with_fixtures();
-  const PointCloud& cloud = *points->stored_cloud();
   Neighbourhood near = scenes::neighbourhood(points, kReach), wide = scenes::neighbourhood(points, kReach);
   const PointCloud places = scenes::random_cloud(300, 0.04, 22);
   std::size_t narrow_count = 0, narrowed_size = 0, wide_size = 0;
@@ -258,12 +218,7 @@ TEST(Neighbourhood, NarrowedListHoldsEveryRegionWithinReach) {
     for (int step = 0; step < 12; ++step) {
       const Vec3 p = places.point(k) + 0.00002 * std::pow(step, 1.5) * Vec3(1, -1, 0.5);
       const GatheredPoints& list = near.narrowed(p);
-      std::vector<bool> listed(cloud.size(), false);
-      for (std::size_t i = 0; i < list.size(); ++i) listed[list.index()[i]] = true;
-      for (std::size_t i = 0; i < cloud.size(); ++i)
-        if ((p - cloud.point(i)).norm() - cloud.fixture_radius_m[i] <= kReach) {
-          ASSERT_TRUE(listed[i]) << k << ", step " << step;
-        }
+      ASSERT_TRUE(holds_all_within_reach(list, *points->stored_cloud(), p)) << k << ", step " << step;
       ASSERT_EQ(near.sum_grid(), (wide.around(p), wide.sum_grid())) << k << ", step " << step;
       if (&list == &near.around(p)) continue;
       ++narrow_count, narrowed_size += list.size(), wide_size += near.around(p).size();
@@ -344,4 +299,4 @@ TEST(Neighbourhood, FirstHitDoesNotUseTheListOfAnotherPosition) {
 }
 
 }  // namespace
-}  // namespace remote_touch::neighbourhood_test
+}  // namespace remote_touch::neighbour_search_test

@@ -1,3 +1,4 @@
+// Colours, clouds of depth images, columns of numbers, and vectors, angles and rotations against the library.
 #include "core/points/point_cloud.h"
 
 #include <gtest/gtest.h>
@@ -14,29 +15,8 @@
 #include "core/points/number_columns.h"
 #include "core/points/vector.h"
 
-// Hue, saturation and lightness: known colours, and back to red, green and blue.
-namespace remote_touch::colour_test {
+namespace remote_touch::point_cloud_test {
 namespace {
-
-// Checks hue, saturation and lightness, the last two in [0, 1]. An undefined hue is expected as 0.
-void expect_colour(std::uint32_t rgb, double hue_deg, double saturation, double lightness) {
-  const HueSaturationLightness colour = hue_saturation_lightness(rgb);
-  EXPECT_NEAR(colour.hue_deg, hue_deg, 1e-12) << std::hex << rgb;
-  EXPECT_NEAR(colour.saturation, saturation, 1e-15) << std::hex << rgb;
-  EXPECT_NEAR(colour.lightness, lightness, 1e-15) << std::hex << rgb;
-}
-
-TEST(Colour, TheCornersOfTheCubeAreKnown) {
-  expect_colour(0xFF0000, 0, 1, 0.5);
-  expect_colour(0xFFFF00, 60, 1, 0.5);
-  expect_colour(0x00FF00, 120, 1, 0.5);
-  expect_colour(0x00FFFF, 180, 1, 0.5);
-  expect_colour(0x0000FF, 240, 1, 0.5);
-  expect_colour(0xFF00FF, 300, 1, 0.5);
-  expect_colour(0x000000, 0, 0, 0);
-  expect_colour(0xFFFFFF, 0, 0, 1);
-  expect_colour(0xAB00FF00, 120, 1, 0.5);  // bits above the three bytes are not part of the colour
-}
 
 // PCL writes 0x00RRGGBB, or opaque colours as 0xFFRRGGBB. The values from 0xFF800001 on are NaN as floats.
 TEST(Colour, AFloatHoldsAColourOrNone) {
@@ -53,17 +33,6 @@ TEST(Colour, UnknownIsShownAsGreyAndNotAsBlack) {
   for (const std::uint32_t rgb : {0x000000u, 0xC00000u, 0xFFFFFFu}) EXPECT_EQ(shown_colour(rgb), rgb);
 }
 
-// Worked out by hand.
-TEST(Colour, MixedColoursAreKnown) {
-  expect_colour(0x7F7F7F, 0, 0, 127 / 255.0);
-  expect_colour(0xFF8000, 60 * 128 / 255.0, 1, 0.5);
-  expect_colour(0xFF0080, 360 - 60 * 128 / 255.0, 1, 0.5);
-  expect_colour(0xFFCCCC, 0, 1, 459 / 510.0);      // pale, but as pure as that lightness allows
-  expect_colour(0x330000, 0, 1, 51 / 510.0);       // dark, the same
-  expect_colour(0x996666, 0, 51 / 255.0, 0.5);     // a mix of red and grey
-  expect_colour(0x663399, 270, 0.5, 204 / 510.0);  // rebeccapurple of CSS: hsl(270, 50 %, 40 %)
-}
-
 // The inverse conversion of CSS Color 4, which has no cases by the largest channel.
 double channel(const HueSaturationLightness& colour, double n) {
   const double k = std::fmod(n + colour.hue_deg / 30, 12);
@@ -71,48 +40,32 @@ double channel(const HueSaturationLightness& colour, double n) {
   return 255 * (colour.lightness - a * std::max(-1.0, std::min({k - 3, 9 - k, 1.0})));
 }
 
-TEST(Colour, TheInverseGivesTheSameColourBack) {
-  for (std::uint32_t colour = 0; colour <= 0xFFFFFF; colour += 997)
-    ASSERT_EQ(rgb(hue_saturation_lightness(colour)), colour) << std::hex << colour;
-  EXPECT_EQ(rgb({360, 1, 0.5}), 0xFF0000u);
-}
-
 TEST(Colour, ComesBackFromHueSaturationAndLightness) {
   for (int red = 0; red < 256; red += 5)
     for (int green = 0; green < 256; green += 3)
       for (int blue = 0; blue < 256; blue += 5) {
-        const auto rgb = static_cast<std::uint32_t>(red << 16 | green << 8 | blue);
-        const HueSaturationLightness colour = hue_saturation_lightness(rgb);
-        ASSERT_NEAR(channel(colour, 0), red, 1e-9) << std::hex << rgb;
-        ASSERT_NEAR(channel(colour, 8), green, 1e-9) << std::hex << rgb;
-        ASSERT_NEAR(channel(colour, 4), blue, 1e-9) << std::hex << rgb;
-        ASSERT_TRUE(colour.hue_deg >= 0 && colour.hue_deg < 360) << std::hex << rgb;
-        ASSERT_TRUE(colour.saturation >= 0 && colour.saturation <= 1) << std::hex << rgb;
-        ASSERT_TRUE(colour.lightness >= 0 && colour.lightness <= 1) << std::hex << rgb;
+        const auto colour = static_cast<std::uint32_t>(red << 16 | green << 8 | blue);
+        const HueSaturationLightness hsl = hue_saturation_lightness(colour);
+        ASSERT_NEAR(channel(hsl, 0), red, 1e-9) << std::hex << colour;
+        ASSERT_NEAR(channel(hsl, 8), green, 1e-9) << std::hex << colour;
+        ASSERT_NEAR(channel(hsl, 4), blue, 1e-9) << std::hex << colour;
+        ASSERT_TRUE(hsl.hue_deg >= 0 && hsl.hue_deg < 360) << std::hex << colour;
+        ASSERT_TRUE(hsl.saturation >= 0 && hsl.saturation <= 1) << std::hex << colour;
+        ASSERT_TRUE(red != green || green != blue || (hsl.hue_deg == 0 && hsl.saturation == 0));
+        ASSERT_EQ(rgb(hsl), colour) << std::hex;
       }
+  EXPECT_EQ(rgb({360, 1, 0.5}), 0xFF0000u);
 }
 
-// A colour's angle around the grey axis is another measure of hue. Both are equal at every sixth of the
-// circle and differ by at most 1.2 degrees in between.
-TEST(Colour, HueIsNearlyTheAngleAroundTheGreyAxis) {
-  for (int red = 0; red < 256; red += 15)
-    for (int green = 0; green < 256; green += 15)
-      for (int blue = 0; blue < 256; blue += 15) {
-        if (red == green && green == blue) continue;
-        const double angle =
-            std::atan2(std::sqrt(3.0) * (green - blue), 2.0 * red - green - blue) * 180 / std::numbers::pi;
-        const auto rgb = static_cast<std::uint32_t>(red << 16 | green << 8 | blue);
-        EXPECT_LT(std::abs(std::remainder(hue_saturation_lightness(rgb).hue_deg - angle, 360)), 1.2)
-            << std::hex << rgb;
-      }
+// rebeccapurple of CSS: hsl(270, 50 %, 40 %). Bits above the three bytes are not part of the colour.
+TEST(Colour, AColourOfCssHasItsHueSaturationAndLightness) {
+  const HueSaturationLightness purple = hue_saturation_lightness(0xAB663399);
+  EXPECT_NEAR(purple.hue_deg, 270, 1e-12);
+  EXPECT_NEAR(purple.saturation, 0.5, 1e-15);
+  EXPECT_NEAR(purple.lightness, 0.4, 1e-15);
 }
 
-}  // namespace
-}  // namespace remote_touch::colour_test
-
-namespace remote_touch::camera_test {
-namespace {
-
+constexpr double kPi = std::numbers::pi;
 constexpr CameraIntrinsics kCamera{4, 3, 10, 20, 1.5, 1};
 
 PointCloud cloud_of(int width, int height, std::size_t depths, const CameraIntrinsics& camera = kCamera) {
@@ -130,31 +83,22 @@ std::string error_of(int width, int height, std::size_t depths) {
 }
 
 TEST(CloudFromDepth, EveryPixelIsAPointOnItsRay) {
-  const PointCloud cloud = cloud_of(4, 3, 12);
+  DepthImage image{4, 3, std::vector<double>(12, 0.5)};
+  image.z_m[5] = std::nan("");
+  const PointCloud cloud = cloud_from_depth(image, kCamera, RigidTransform::Identity());
   ASSERT_EQ(cloud.size(), 12u);
   EXPECT_LT((cloud.point(11) - Vec3(0.075, 0.025, 0.5)).norm(), 1e-15);
-  DepthImage hole{4, 3, std::vector<double>(12, 0.5)};
-  hole.z_m[5] = std::nan("");
-  EXPECT_FALSE(cloud_from_depth(hole, kCamera, RigidTransform::Identity()).is_measured(5));
+  EXPECT_FALSE(cloud.is_measured(5));
+  EXPECT_EQ(cloud_of(0, 0, 0, {}).size(), 0u);
 }
 
 TEST(CloudFromDepth, RefusesAnImageOfAnotherSize) {
   EXPECT_EQ(error_of(4, 3, 12), "");
   EXPECT_EQ(error_of(3, 4, 12), "depth image: 3 x 4 pixels: expected the camera's 4 x 3 pixels");
-  EXPECT_EQ(error_of(4, 3, 11), "depth image: 11 depths: expected one for each of 4 x 3 pixels");
-  EXPECT_EQ(error_of(4, 3, 13), "depth image: 13 depths: expected one for each of 4 x 3 pixels");
-  EXPECT_EQ(error_of(4, 3, 0), "depth image: 0 depths: expected one for each of 4 x 3 pixels");
+  for (const std::size_t depths : {0u, 11u, 13u})
+    EXPECT_EQ(error_of(4, 3, depths),
+              "depth image: " + std::to_string(depths) + " depths: expected one for each of 4 x 3 pixels");
 }
-
-TEST(CloudFromDepth, AnImageWithoutPixelsIsAnEmptyCloud) {
-  EXPECT_EQ(cloud_of(0, 0, 0, {}).size(), 0u);
-}
-
-}  // namespace
-}  // namespace remote_touch::camera_test
-
-namespace remote_touch::counting_sort_test {
-namespace {
 
 TEST(CountingSort, ItemsOfACellAreSideBySideInTheirOrder) {
   const std::vector<std::uint32_t> cell{2, 0, 2, 3, 0, 2};
@@ -165,19 +109,6 @@ TEST(CountingSort, ItemsOfACellAreSideBySideInTheirOrder) {
   EXPECT_EQ(start, (std::vector<std::uint32_t>{0, 2, 2, 5, 6}));
   EXPECT_EQ(sorted, (std::vector<std::uint32_t>{1, 4, 0, 2, 5, 3}));
 }
-
-TEST(CountingSort, EveryCellIsEmptyIfThereAreNoItems) {
-  std::vector<std::uint32_t> start(3, 77), next(3);
-  sort_by_cell(
-      0, start, next, [](std::size_t) { return 0u; }, [](std::size_t, std::uint32_t) { FAIL(); });
-  EXPECT_EQ(start, (std::vector<std::uint32_t>{0, 0, 0}));
-}
-
-}  // namespace
-}  // namespace remote_touch::counting_sort_test
-
-namespace remote_touch::whole_lines_test {
-namespace {
 
 TEST(WholeLines, ColumnsBeginAtALineAndKeepTheirNumbers) {
   for (const std::size_t size : {1u, 7u, 100u, 100000u}) {
@@ -192,42 +123,15 @@ TEST(WholeLines, ColumnsBeginAtALineAndKeepTheirNumbers) {
   }
 }
 
-}  // namespace
-}  // namespace remote_touch::whole_lines_test
-
-namespace remote_touch::order_statistic_test {
-namespace {
-
-double quantile_of(std::vector<double> values, double fraction) {
-  return quantile_in_place(values, fraction);
-}
-
 TEST(OrderStatistic, IsTheValueThatTheFractionLiesBelow) {
-  const std::vector<double> values{5, 1, 4, 2, 3};
-  EXPECT_EQ(quantile_of(values, 0), 1);
-  EXPECT_EQ(quantile_of(values, 0.19), 1);
-  EXPECT_EQ(quantile_of(values, 0.4), 3);
-  EXPECT_EQ(quantile_of(values, 0.99), 5);
-}
-
-TEST(OrderStatistic, MedianOfAnEvenNumberIsTheUpperOne) {
-  std::vector<double> odd{9, 7, 8}, even{4, 1, 3, 2}, one{6};
-  EXPECT_EQ(median_in_place(odd), 8);
-  EXPECT_EQ(median_in_place(even), 3);
+  const std::vector<double> values{5, 1, 4, 2, 3, 6};
+  for (const auto& [fraction, expected] : {std::pair{0.0, 1}, {0.16, 1}, {0.34, 3}, {0.5, 4}, {0.99, 6}}) {
+    std::vector<double> copy = values;
+    EXPECT_EQ(quantile_in_place(copy, fraction), expected) << fraction;
+  }
+  std::vector<double> even{4, 1, 3, 2}, one{6};
+  EXPECT_EQ(median_in_place(even), 3) << "the upper one of the two in the middle";
   EXPECT_EQ(median_in_place(one), 6);
-}
-
-}  // namespace
-}  // namespace remote_touch::order_statistic_test
-
-namespace remote_touch::vector_test {
-namespace {
-
-TEST(BoundingBox, IsAroundEveryPosition) {
-  const BoundingBox box = bounding_box(std::vector<Vec3>{{1, -2, 3}, {-1, 5, 3}, {0, 0, 4}});
-  EXPECT_EQ(box.min(), Vec3(-1, -2, 3));
-  EXPECT_EQ(box.max(), Vec3(1, 5, 4));
-  EXPECT_TRUE(bounding_box(std::vector<Vec3>{}).isEmpty());
 }
 
 TEST(LimitedLength, OnlyWhatIsLongerIsShortened) {
@@ -236,14 +140,6 @@ TEST(LimitedLength, OnlyWhatIsLongerIsShortened) {
   EXPECT_EQ(limited_length({3, 0, 4}, 0), Vec3(0, 0, 0));
   EXPECT_EQ(limited_length({0, 0, 0}, 0), Vec3(0, 0, 0));
 }
-
-}  // namespace
-}  // namespace remote_touch::vector_test
-
-namespace remote_touch::rotation_test {
-namespace {
-
-const double kPi = std::acos(-1.0);
 
 TEST(Rotation, SineAndCosineAreThoseOfTheLibrary) {
   for (double angle = -50; angle < 50; angle += 0.00137) {
@@ -285,14 +181,6 @@ TEST(Rotation, VectorIsTheShortestOfTheRotation) {
   EXPECT_LT((rotation_vector(rotation(far)) + 0.5 * kPi * Vec3::UnitX()).norm(), 1e-15);
 }
 
-}  // namespace
-}  // namespace remote_touch::rotation_test
-
-namespace remote_touch::angle_test {
-namespace {
-
-constexpr double kPi = std::numbers::pi;
-
 TEST(AngleBetween, IsThatOfTheLibraryForRandomVectors) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
@@ -318,4 +206,4 @@ TEST(AngleBetween, IsExactAtBothEnds) {
 }
 
 }  // namespace
-}  // namespace remote_touch::angle_test
+}  // namespace remote_touch::point_cloud_test
