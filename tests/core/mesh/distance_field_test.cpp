@@ -1,3 +1,4 @@
+// The distance field of a mesh and its bounds against loops over all triangles and finite differences.
 #include "core/mesh/distance_field.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +14,22 @@
 
 namespace remote_touch::distance_field_test {
 namespace {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : generator_(seed) {}
+  double number(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(generator_);
+  }
+  Vec3 vector(const Vec3& low, const Vec3& high) {
+    const double x = number(low.x(), high.x()), y = number(low.y(), high.y());
+    return {x, y, number(low.z(), high.z())};
+  }
+  Vec3 vector(double most) { return vector(Vec3::Constant(-most), Vec3::Constant(most)); }
+
+ private:
+  std::mt19937 generator_;
+};
 
 struct Field {
   explicit Field(const TriangleMesh& mesh, double voxel_m = 5e-4)
@@ -85,12 +102,10 @@ TEST(TriangleTree, FindsTheNearestFaceAndAllWithinADistance) {
 
 // Three corners on a line: rounding alone would decide whether a position is above their triangle.
 TEST(TriangleTree, ATriangleWithoutAreaIsAsFarAsItsEdges) {
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> within(-0.01, 0.01);
-  const auto draw = [&] { return Vec3(within(random), within(random), within(random)); };
+  Random random(4);
   for (int i = 0; i < 20000; ++i) {
-    const Vec3 a = draw(), along = draw(), p = draw();
-    const Vec3 b = a + 100 * within(random) * along, c = a + 100 * within(random) * along;
+    const Vec3 a = random.vector(0.01), along = random.vector(0.01), p = random.vector(0.01);
+    const Vec3 b = a + random.number(-1, 1) * along, c = a + random.number(-1, 1) * along;
     const TriangleTree tree(TriangleMesh{{a, b, c}, {{0, 1, 2}}});
     const double expected =
         std::min({meshes::to_segment(p, a, b), meshes::to_segment(p, b, c), meshes::to_segment(p, c, a)});
@@ -108,19 +123,6 @@ TEST(TriangleTree, WindingNumberEqualsTheSumOfSolidAngles) {
   }
 }
 
-// The distance to a box has a closed form inside and outside, also for edges and corners.
-TEST(DistanceField, AgreesWithTheClosedFormOfABox) {
-  const Vec3 half(0.02, 0.01, 0.005);
-  const Field field(box_mesh(2 * half));
-  for (std::size_t n = 0; n < field.values.size(); ++n) {
-    const Vec3 q = field.place(n).cwiseAbs() - half;
-    const double expected = q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
-    const double larger_by = (expected < 0 ? -1 : 1) * (field.values[n] - expected);
-    ASSERT_GE(larger_by, -1e-8) << field.place(n).transpose();
-    ASSERT_LE(larger_by, std::abs(expected) <= kExactField_m ? 1e-8 : 1e-4) << field.place(n).transpose();
-  }
-}
-
 TEST(DistanceField, NeedlesAndTrianglesWithoutAreaDoNoHarm) {
   TriangleMesh body = box_mesh({0.02, 0.02, 0.02});
   const Field before(body);
@@ -133,12 +135,14 @@ TEST(DistanceField, NeedlesAndTrianglesWithoutAreaDoNoHarm) {
 }
 
 TEST(DistanceField, DoesNotDependOnTheNumberOfThreads) {
-  const TriangleMesh body = meshes::any_body("ball");
+  const TriangleMesh body = meshes::any_body("husky");
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
   const Field one(body, 1e-3);
+  const std::vector<std::uint8_t> crossed = crossed_cells(body, one.grid);
   omp_set_num_threads(3);
   EXPECT_EQ(Field(body, 1e-3).values, one.values);
+  EXPECT_EQ(crossed_cells(body, one.grid), crossed);
   omp_set_num_threads(threads);
 }
 
@@ -188,137 +192,115 @@ double highest(const VoxelTool& tool, const std::vector<Vec3>& places) {
   return most;
 }
 
-struct Solid {
-  const char* name;
-  TriangleMesh mesh;
-  double voxel_m;
-  bool convex;
-};
-
-class OuterField : public testing::TestWithParam<Solid> {};
-INSTANTIATE_TEST_SUITE_P(
-    Solids, OuterField,
-    testing::Values(Solid{"turned_box",
-                          meshes::moved(box_mesh({0.03, 0.02, 0.01}), meshes::rotated(), Vec3::Zero()), 5e-4,
-                          true},
-                    Solid{"knife", knife(), 5e-4, true}, Solid{"coarse_knife", knife(), 1.1e-3, true},
-                    Solid{"fork", find_generated_tool("fork")->make(), 2e-3, false}),
-    [](const auto& solid) { return std::string(solid.param.name); });
-
-TEST_P(OuterField, IsNowhereAboveZeroInTheSolid) {
-  const VoxelTool plain = made(GetParam().mesh, false, GetParam().voxel_m),
-                  outer = made(GetParam().mesh, true, GetParam().voxel_m);
-  const Places places = places_of(outer.mesh, GetParam().convex);
-  ASSERT_GT(places.inside.size(), 500u);
-  EXPECT_GT(highest(plain, places.inside), 1e-5) << "nothing to lower";
-  EXPECT_LE(highest(outer, places.inside), 0);
-  EXPECT_LE(highest(outer, places.on_surface), 0);
-}
-
 // The field is lowered by no more than its error, and only around the surface.
-TEST_P(OuterField, IsLoweredByPartOfAVoxel) {
-  const double voxel_m = GetParam().voxel_m;
-  const VoxelTool plain = made(GetParam().mesh, false, voxel_m), outer = made(GetParam().mesh, true, voxel_m);
-  std::size_t lowered = 0;
-  for (std::size_t n = 0; n < plain.distance_m.size(); ++n) {
-    const float by = plain.distance_m[n] - outer.distance_m[n];
-    EXPECT_GE(by, 0);
-    EXPECT_LE(by, 0.87 * voxel_m);
-    lowered += by > 0;
-    if (std::abs(plain.distance_m[n]) > 2 * voxel_m) {
-      EXPECT_EQ(by, 0);
+TEST(OuterField, IsNowhereAboveZeroInTheSolidAndIsLoweredByPartOfAVoxel) {
+  const TriangleMesh turned = meshes::moved(box_mesh({0.03, 0.02, 0.01}), meshes::rotated(), Vec3::Zero());
+  const struct {
+    const char* name;
+    TriangleMesh mesh;
+    double voxel_m;
+    bool convex;
+  } solids[] = {{"turned box", turned, 5e-4, true},
+                {"knife", knife(), 5e-4, true},
+                {"coarse knife", knife(), 1.1e-3, true},
+                {"fork", find_generated_tool("fork")->make(), 2e-3, false}};
+  for (const auto& [name, mesh, voxel_m, convex] : solids) {
+    SCOPED_TRACE(name);
+    const VoxelTool plain = made(mesh, false, voxel_m), outer = made(mesh, true, voxel_m);
+    const Places places = places_of(outer.mesh, convex);
+    ASSERT_GT(places.inside.size(), 500u);
+    EXPECT_GT(highest(plain, places.inside), 1e-5) << "nothing to lower";
+    EXPECT_LE(highest(outer, places.inside), 0);
+    EXPECT_LE(highest(outer, places.on_surface), 0);
+    for (std::size_t n = 0; n < plain.distance_m.size(); ++n) {
+      const float by = plain.distance_m[n] - outer.distance_m[n];
+      EXPECT_GE(by, 0);
+      EXPECT_LE(by, std::abs(plain.distance_m[n]) > 2 * voxel_m ? 0 : 0.87 * voxel_m);
     }
+    EXPECT_EQ(plain.voxels, outer.voxels);
   }
-  EXPECT_GT(lowered, 0u);
-  EXPECT_EQ(plain.voxels, outer.voxels);
 }
 
 // Positions within two cells of an edge are left out.
 TEST(OuterField, IsTheFieldOnFlatFaces) {
   const TriangleMesh mesh = meshes::moved(box_mesh({0.03, 0.02, 0.01}), meshes::rotated(), Vec3::Zero());
   const VoxelTool plain = made(mesh, false), outer = made(mesh, true);
-  const Vec3 half_m(0.015, 0.01, 0.005);
+  const Vec3 half_m(0.015, 0.01, 0.005), inner_m = half_m - Vec3::Constant(2e-3);
+  Random random(1);
   for (int n = 0; n < 20000; ++n) {
-    std::mt19937 random(static_cast<unsigned>(n));
-    std::uniform_real_distribution<double> place(-1, 1);
-    Vec3 p = Vec3(place(random), place(random), place(random)).cwiseProduct(half_m - Vec3::Constant(2e-3));
-    p[n % 3] = std::copysign(half_m[n % 3] + 3e-4 * place(random), p[n % 3]);
+    Vec3 p = random.vector(-inner_m, inner_m);
+    p[n % 3] = std::copysign(half_m[n % 3] + random.number(-3e-4, 3e-4), p[n % 3]);
     const Vec3 p_T = meshes::rotated() * p;
     EXPECT_NEAR(sample_field(outer, p_T).distance_m, sample_field(plain, p_T).distance_m, 1e-7);
   }
 }
 
-TEST(OuterField, MaxSlopeIsThatOfDifferences) {
-  const VoxelTool outer = made(knife(), true);
-  const double bound = max_slope(outer.grid, outer.distance_m);
+// The field of the knife, at positions in units of cells.
+class KnifeField : public testing::Test {
+ protected:
+  FieldSample at(const Vec3& cells) const {
+    return sample_field(tool_, tool_.grid.origin_T + tool_.grid.size_m * cells);
+  }
+  const VoxelTool tool_ = made(knife(), true);
+  const Vec3 end_{double(tool_.grid.cells[0]), double(tool_.grid.cells[1]), double(tool_.grid.cells[2])};
+};
+
+TEST_F(KnifeField, MaxSlopeIsThatOfDifferences) {
+  const double bound = max_slope(tool_.grid, tool_.distance_m);
   EXPECT_LT(bound, 2.5);
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> fraction(0, 1);
+  Random random(5);
   double steepest = 0;
   for (int n = 0; n < 200000; ++n) {
-    Vec3 at;
-    for (int axis = 0; axis < 3; ++axis) at[axis] = fraction(random) * outer.grid.cells[axis];
-    const FieldSample here = sample_field(outer, outer.grid.origin_T + outer.grid.size_m * at);
+    const FieldSample here = at(random.vector(Vec3::Zero(), end_));
     if (std::abs(here.distance_m) < 2e-3) steepest = std::max(steepest, here.gradient_T.norm());
   }
   EXPECT_LE(steepest, bound);
   EXPECT_GT(steepest, 0.7 * bound);
 }
 
-TEST(CellField, IsTheTrilinearField) {
-  const VoxelTool tool = made(knife(), true);
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> fraction(0, 1);
+// Second differences of the field of a cell along any direction stay below its bound.
+TEST_F(KnifeField, OfACellIsTheTrilinearOne) {
+  Random random(7);
+  const std::size_t row = tool_.grid.cells[0] + 1, layer = row * (tool_.grid.cells[1] + 1);
   for (int n = 0; n < 2000; ++n) {
-    std::array<int, 3> cell;
-    Vec3 in;
-    for (int axis = 0; axis < 3; ++axis) {
-      cell[axis] = static_cast<int>(fraction(random) * tool.grid.cells[axis]);
-      in[axis] = fraction(random);
-    }
-    const CellField field(tool.grid, tool.distance_m, cell);
-    const Vec3 origin = tool.grid.origin_T + tool.grid.size_m * Vec3(cell[0], cell[1], cell[2]);
-    EXPECT_NEAR(field(in), sample_field(tool, origin + tool.grid.size_m * in).distance_m, 1e-12);
-    // Second differences along any direction stay below the bound.
-    const Vec3 direction =
-        Vec3(fraction(random) - 0.5, fraction(random) - 0.5, fraction(random) - 0.5).normalized();
-    const double bend = (field(in + 0.01 * direction) - 2 * field(in) + field(in - 0.01 * direction)) / 1e-4;
+    const Vec3 place = random.vector(Vec3::Zero(), end_);
+    const Eigen::Vector3i first = place.cast<int>();
+    const Vec3 in = place - first.cast<double>();
+    const CellField field(tool_.grid, tool_.distance_m, {first.x(), first.y(), first.z()});
+    EXPECT_NEAR(field(in), at(place).distance_m, 1e-12);
+    const float stored = tool_.distance_m[first.x() + row * first.y() + layer * first.z()];
+    EXPECT_EQ(field(Vec3::Zero()), stored);
+    EXPECT_NEAR(at(first.cast<double>()).distance_m, stored, 1e-9);
+    const Vec3 step = 0.01 * random.vector(1).normalized();
+    const double bend = (field(in + step) - 2 * field(in) + field(in - step)) / 1e-4;
     EXPECT_LE(std::abs(bend), field.max_bend() * 1.05 + 1e-9);
   }
 }
 
-TEST(SlopeBlocks, BoundTheChangeAlongEveryWay) {
-  const VoxelTool tool = made(knife(), true);
-  const SlopeBlocks slopes(tool.grid, tool.distance_m);
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> fraction(0, 1);
+TEST_F(KnifeField, SlopeBlocksBoundTheChangeAlongEveryWay) {
+  const SlopeBlocks slopes(tool_.grid, tool_.distance_m);
+  Random random(11);
   double closest = 1;
   for (int n = 0; n < 50000; ++n) {
-    Vec3 at, along;
-    for (int axis = 0; axis < 3; ++axis) {
-      at[axis] = 3 + fraction(random) * (tool.grid.cells[axis] - 6);
-      along[axis] = SlopeBlocks::kAround * (2 * fraction(random) - 1);
-    }
-    const auto field = [&](double s) {
-      return sample_field(tool, tool.grid.origin_T + tool.grid.size_m * (at + s * along)).distance_m;
-    };
+    const Vec3 from = random.vector(Vec3::Constant(3), end_ - Vec3::Constant(3)),
+               along = random.vector(SlopeBlocks::kAround);
+    const double before = at(from).distance_m;
     double least = 0;
-    for (int i = 1; i <= 20; ++i) least = std::min(least, field(i / 20.0) - field(0));
-    const double bound = slopes.min_change_m(at, along);
+    for (int i = 1; i <= 20; ++i) least = std::min(least, at(from + i / 20.0 * along).distance_m - before);
+    const double bound = slopes.min_change_m(from, along);
     ASSERT_LE(bound, least + 1e-9);
     closest = std::min(closest, least - bound);
   }
   EXPECT_LT(closest, 1e-7);  // the bound is reached on the flat sides of the blade
 }
 
-TEST(SlopeBlocks, GiveNoBoundForLongPathsAndPositionsOutside) {
-  const VoxelTool tool = made(knife(), false);
-  const SlopeBlocks slopes(tool.grid, tool.distance_m);
+TEST_F(KnifeField, SlopeBlocksGiveNoBoundForLongPathsAndPositionsOutside) {
+  const SlopeBlocks slopes(tool_.grid, tool_.distance_m);
   const Vec3 middle(10, 10, 10);
   EXPECT_GT(slopes.min_change_m(middle, {2, -2, 2}), -1);
   EXPECT_LT(slopes.min_change_m(middle, {2.1, 0, 0}), -1);
   EXPECT_LT(slopes.min_change_m({-0.1, 10, 10}, {0, 0, 0}), -1);
-  EXPECT_LT(slopes.min_change_m({10, 10, double(tool.grid.cells[2])}, {0, 0, 0}), -1);
+  EXPECT_LT(slopes.min_change_m({10, 10, end_.z()}, {0, 0, 0}), -1);
   EXPECT_LT(slopes.min_change_m(Vec3::Constant(std::nan("")), {0, 0, 0}), -1);
 }
 

@@ -1,3 +1,4 @@
+// The triangles of a mesh joined to a surface, and which of its faces bound the solid.
 #include "core/mesh/mesh_distance.h"
 
 #include <gtest/gtest.h>
@@ -12,82 +13,6 @@ namespace {
 
 using namespace mesh_shapes;
 
-void expect_direction(const Vec3& normal, const Vec3& expected) {
-  EXPECT_LT((normal - expected.normalized()).norm(), 1e-14) << normal.transpose();
-}
-
-// Each side of a box is two triangles, so that three, four or five faces meet at a corner. The angles make up
-// for it.
-TEST(Pseudonormals, OfABoxPointAlongItsSymmetries) {
-  const TriangleMesh box = box_mesh({2, 2, 2});
-  const Pseudonormals normals = pseudonormals(box);
-  ASSERT_EQ(normals.of_vertex.size(), 8u);
-  for (std::size_t v = 0; v < 8; ++v) expect_direction(normals.of_vertex[v], box.vertices[v]);
-  ASSERT_EQ(normals.of_face.size(), 12u);
-  ASSERT_EQ(normals.of_edge.size(), 18u);
-  for (std::size_t t = 0; t < 12; ++t) {
-    const auto& corners = box.triangles[t];
-    // Only one coordinate of a face is the same at all of its corners.
-    Vec3 outwards = box.vertices[corners[0]];
-    for (const int corner : corners)
-      outwards = (outwards.array() == box.vertices[corner].array()).select(outwards, 0);
-    expect_direction(normals.of_face[t], outwards);
-    for (int side = 0; side < 3; ++side) {
-      const Vec3 on_edge = (box.vertices[corners[side]] + box.vertices[corners[(side + 1) % 3]]) / 2;
-      expect_direction(normals.of_edge[normals.edges_of_face[t][side]], on_edge);
-    }
-  }
-  EXPECT_EQ(std::count(normals.edge_on_border.begin(), normals.edge_on_border.end(), 0), 18);
-  EXPECT_EQ(std::count(normals.vertex_on_border.begin(), normals.vertex_on_border.end(), 0), 8);
-}
-
-// The mean that is not weighted tends to the side of many faces.
-TEST(Pseudonormals, OfAVertexDoNotDependOnHowItsFacesAreDivided) {
-  const Vec3 apex(0.02, 0.01, 0.3);
-  const TriangleMesh plain = pyramid(kSquare, apex), divided = pyramid(divided_square(), apex);
-  expect_direction(pseudonormals(divided).of_vertex.back(), pseudonormals(plain).of_vertex.back());
-}
-
-TEST(Pseudonormals, OfAnEdgeAreTheMeanOfItsFaces) {
-  const TriangleMesh wedge = prism({{0, 0, 0}, {1, -0.05, 0}, {1, 0.05, 0}}, 1);
-  const Pseudonormals normals = pseudonormals(wedge);
-  bool found = false;
-  for (std::size_t t = 0; t < wedge.triangles.size(); ++t)
-    for (int side = 0; side < 3; ++side)
-      if (wedge.triangles[t][side] == 0 && wedge.triangles[t][(side + 1) % 3] == 3) {
-        expect_direction(normals.of_edge[normals.edges_of_face[t][side]], {-1, 0, 0});
-        found = true;
-      }
-  EXPECT_TRUE(found);
-}
-
-TEST(Pseudonormals, MarkTheBorderOfASheet) {
-  const Sheet sheet(4, 0);
-  const Pseudonormals normals = pseudonormals(sheet.mesh);
-  EXPECT_EQ(std::count(normals.edge_on_border.begin(), normals.edge_on_border.end(), 1), 16);
-  for (int j = 0; j <= 4; ++j)
-    for (int i = 0; i <= 4; ++i) {
-      const bool expected = i == 0 || i == 4 || j == 0 || j == 4;
-      EXPECT_EQ(normals.vertex_on_border[sheet.at(i, j)] != 0, expected) << i << " " << j;
-      expect_direction(normals.of_vertex[sheet.at(i, j)], Vec3::UnitZ());
-    }
-}
-
-// A flap on the edge of a box makes it an edge of three faces, at which the surface ends. A second box at the
-// same edge makes it one of four.
-TEST(Pseudonormals, MarkEdgesWithMoreFacesInOneDirectionAsBorder) {
-  TriangleMesh box = box_mesh({2, 2, 2});
-  const auto [a, b, c] = box.triangles.front();
-  box.vertices.emplace_back(9, 9, 9);
-  box.triangles.push_back({a, b, 8});
-  const Pseudonormals flap = pseudonormals(box);
-  EXPECT_EQ(std::count(flap.edge_on_border.begin(), flap.edge_on_border.end(), 1), 3);
-  EXPECT_EQ(std::count(flap.vertex_on_border.begin(), flap.vertex_on_border.end(), 1), 3);
-  const Pseudonormals touching = pseudonormals(boxes_at_an_edge());
-  EXPECT_EQ(touching.of_edge.size(), 35u);
-  EXPECT_EQ(std::count(touching.edge_on_border.begin(), touching.edge_on_border.end(), 1), 0);
-}
-
 TEST(Pseudonormals, AreThoseOfTheFirstFaceWhereTheMeanVanishes) {
   const TriangleMesh folded{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
   const Pseudonormals normals = pseudonormals(folded);
@@ -98,9 +23,9 @@ TEST(Pseudonormals, AreThoseOfTheFirstFaceWhereTheMeanVanishes) {
 // The prism's edge from vertex 0 to vertex 3 is the sharp one, along z.
 const TriangleMesh kWedge = prism({{0, 0, 0}, {1, -0.05, 0}, {1, 0.05, 0}}, 1);
 
-std::ptrdiff_t without_area(const TriangleMesh& mesh) {
-  return std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
-                       [&](const auto& triangle) { return is_degenerate(mesh, triangle); });
+std::size_t without_area(const TriangleMesh& mesh) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      mesh.triangles, [&](const auto& triangle) { return is_degenerate(mesh, triangle); }));
 }
 
 void expect_closed(const TriangleMesh& mesh, double volume_m3) {
@@ -108,12 +33,6 @@ void expect_closed(const TriangleMesh& mesh, double volume_m3) {
   EXPECT_TRUE(check.closed()) << text(check);
   EXPECT_EQ(check.degenerate_triangles, 0);
   EXPECT_NEAR(check.volume_m3, volume_m3, 1e-10);
-}
-
-TEST(WeldedMesh, IsTheMeshItselfIfNothingHasToBeJoined) {
-  const TriangleMesh same = welded_mesh(kWedge);
-  EXPECT_EQ(same.vertices, kWedge.vertices);
-  EXPECT_EQ(same.triangles, kWedge.triangles);
 }
 
 TEST(WeldedMesh, HasOneVertexPerPosition) {
@@ -124,88 +43,63 @@ TEST(WeldedMesh, HasOneVertexPerPosition) {
   expect_closed(welded, 0.05);
 }
 
-TEST(WeldedMesh, LeavesOutVerticesThatNoTriangleUses) {
-  TriangleMesh mesh = kWedge;
-  mesh.vertices.insert(mesh.vertices.begin(), Vec3(9, 9, 9));
-  for (auto& triangle : mesh.triangles)
+// Vertices that no triangle uses, a very short side, triangles without area that join nothing, and small fins
+// are left out. The box of the wedge is 1 m long.
+TEST(WeldedMesh, IsTheWedgeWithoutWhatBoundsNoVolume) {
+  TriangleMesh unused = kWedge, empty = kWedge;
+  unused.vertices.insert(unused.vertices.begin(), Vec3(9, 9, 9));
+  for (auto& triangle : unused.triangles)
     for (int& corner : triangle) ++corner;
-  EXPECT_EQ(welded_mesh(mesh).vertices, kWedge.vertices);
-  EXPECT_EQ(welded_mesh(mesh).triangles, kWedge.triangles);
-}
-
-TEST(WeldedMesh, DividesTheNeighbourOfACap) {
-  for (const double aside : {0.0, 1e-12}) {
-    const TriangleMesh cap = with_divided_side(kWedge, 0, 3, {{aside, 0, 0.25}});
-    ASSERT_EQ(without_area(cap), 1);
-    const TriangleMesh welded = welded_mesh(cap);
-    EXPECT_EQ(welded.triangles.size(), 10u);
-    EXPECT_EQ(welded.vertices.size(), 7u);
+  empty.vertices.emplace_back(0, 0, 0.5);
+  empty.triangles.push_back({1, 1, 2});
+  empty.triangles.push_back({0, 3, 6}), empty.triangles.push_back({0, 6, 3});
+  const TriangleMesh needle = with_divided_side(kWedge, 0, 3, {{0, 0, 1e-12}});
+  EXPECT_EQ(without_area(empty), 3u);
+  EXPECT_EQ(without_area(needle), 2u);
+  std::vector<TriangleMesh> all{kWedge, unused, empty, needle};
+  for (const double height_m : {1e-6, 9e-4}) {
+    TriangleMesh fins = kWedge;
+    fins.vertices.emplace_back(-height_m, 0, 0.4), fins.vertices.emplace_back(-height_m, 0, 0.6);
+    fins.triangles.insert(fins.triangles.begin() + 2, {0, 3, 6}), fins.triangles.push_back({3, 0, 7});
+    all.push_back(fins);
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const TriangleMesh welded = welded_mesh(all[i]);
+    EXPECT_EQ(welded.vertices, kWedge.vertices) << i;
+    if (i != 3)
+      EXPECT_EQ(welded.triangles, kWedge.triangles) << i;
+    else
+      EXPECT_EQ(welded.triangles.size(), 8u) << "in another order";
     expect_closed(welded, 0.05);
   }
+}
+
+// Two sides of the corners of a sheet have no other triangle, as in a fin, but the third has one neighbour
+// only.
+TEST(WeldedMesh, KeepsLargeFinsAndTheCornersOfASheet) {
+  const TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1e-4, 0}, {0, 1e-4, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  TriangleMesh large = kWedge;
+  large.vertices.emplace_back(-2e-3, 0, 0.4);
+  large.triangles.push_back({0, 3, 6});
+  for (const TriangleMesh& mesh : {sheet, large}) EXPECT_EQ(welded_mesh(mesh).triangles, mesh.triangles);
 }
 
 // The triangles without area form a fan about one end of the edge, so only one of them has a neighbour with
 // an area at first.
-TEST(WeldedMesh, DividesTheNeighbourOfARowOfCaps) {
+TEST(WeldedMesh, DividesTheNeighbourOfCaps) {
   std::vector<Vec3> row;
   for (int i = 1; i < 64; ++i) row.emplace_back(0, 0, i / 64.0);
-  for (const auto& [from, to] : {std::pair{0, 3}, std::pair{3, 0}}) {
-    const TriangleMesh caps = with_divided_side(kWedge, from, to, row);
-    ASSERT_EQ(without_area(caps), 63);
-    const TriangleMesh welded = welded_mesh(caps);
-    EXPECT_EQ(welded.triangles.size(), 8u + 2 * 63);
-    expect_closed(welded, 0.05);
-    std::reverse(row.begin(), row.end());
-  }
-}
-
-TEST(WeldedMesh, MergesTheEndsOfAVeryShortSide) {
-  const TriangleMesh needle = with_divided_side(kWedge, 0, 3, {{0, 0, 1e-12}});
-  ASSERT_EQ(without_area(needle), 2);
-  const TriangleMesh welded = welded_mesh(needle);
-  EXPECT_EQ(welded.triangles.size(), 8u);
-  EXPECT_EQ(welded.vertices, kWedge.vertices);
-  expect_closed(welded, 0.05);
-}
-
-TEST(WeldedMesh, DropsTrianglesWithoutAreaThatJoinNothing) {
-  TriangleMesh mesh = kWedge;
-  mesh.vertices.emplace_back(0, 0, 0.5);
-  mesh.triangles.push_back({1, 1, 2});
-  mesh.triangles.push_back({0, 3, 6}), mesh.triangles.push_back({0, 6, 3});
-  const TriangleMesh welded = welded_mesh(mesh);
-  EXPECT_EQ(welded.triangles, kWedge.triangles);
-  EXPECT_EQ(welded.vertices, kWedge.vertices);
-}
-
-// The box of the wedge is 1 m long.
-TEST(WeldedMesh, LeavesOutSmallFinsOnly) {
-  for (const double height_m : {1e-6, 9e-4}) {
-    TriangleMesh mesh = kWedge;
-    mesh.vertices.emplace_back(-height_m, 0, 0.4);
-    mesh.vertices.emplace_back(-height_m, 0, 0.6);
-    mesh.triangles.insert(mesh.triangles.begin() + 2, {0, 3, 6});
-    mesh.triangles.push_back({3, 0, 7});
+  const std::vector<TriangleMesh> caps{
+      with_divided_side(kWedge, 0, 3, {{0, 0, 0.25}}), with_divided_side(kWedge, 0, 3, {{1e-12, 0, 0.25}}),
+      with_divided_side(kWedge, 0, 3, row), with_divided_side(kWedge, 3, 0, {row.rbegin(), row.rend()})};
+  for (const TriangleMesh& mesh : caps) {
+    const std::size_t count = mesh.vertices.size() - 6;
+    ASSERT_EQ(without_area(mesh), count);
     const TriangleMesh welded = welded_mesh(mesh);
-    EXPECT_EQ(welded.triangles, kWedge.triangles);
-    EXPECT_EQ(welded.vertices, kWedge.vertices);
+    EXPECT_EQ(welded.triangles.size(), 8 + 2 * count);
+    EXPECT_EQ(welded.vertices.size(), 6 + count);
+    expect_closed(welded, 0.05);
   }
-  TriangleMesh large = kWedge;
-  large.vertices.emplace_back(-2e-3, 0, 0.4);
-  large.triangles.push_back({0, 3, 6});
-  EXPECT_EQ(welded_mesh(large).triangles, large.triangles);
-}
-
-// Two sides of such triangles have no other triangle, as in a fin, but the third has one neighbour only.
-TEST(WeldedMesh, KeepsTheCornersOfASheet) {
-  const TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1e-4, 0}, {0, 1e-4, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-  EXPECT_EQ(welded_mesh(sheet).triangles, sheet.triangles);
-}
-
-TEST(WeldedMesh, IsEmptyIfNoTriangleHasAnArea) {
-  const TriangleMesh line{{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {0, 0, 0}}, {{0, 1, 2}, {0, 3, 1}, {2, 1, 0}}};
-  EXPECT_TRUE(welded_mesh(line).triangles.empty());
-  EXPECT_TRUE(welded_mesh(line).vertices.empty());
 }
 
 // True if an edge of a face runs through the inside of another face. The reference goes over all pairs.

@@ -1,3 +1,4 @@
+// Polygons as triangles, the check and the repair of a mesh, and the meshes that need no file.
 #include "core/mesh/triangle_mesh.h"
 
 #include <gtest/gtest.h>
@@ -5,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 #include <string>
@@ -12,8 +14,7 @@
 #include <vector>
 
 #include "core/mesh/mesh_distance.h"
-#include "core/mesh/triangle_tree.h"
-#include "tests/core/mesh/mesh_shapes.h"
+#include "core/parameters/parameter.h"
 #include "tests/support/meshes.h"
 #include "tests/support/test_files.h"
 
@@ -32,30 +33,32 @@ Vec3 area_of(const Polygon& p) {
   return sum;
 }
 
-// All triangles have the orientation of the polygon, and their areas add up to its area.
-void expect_covered(const Polygon& polygon) {
+// Returns false if there are no triangles. Those of a polygon have its area as seen along its normal, and
+// none is turned.
+bool is_covered(const Polygon& polygon) {
   const auto triangles = polygon_triangles(polygon);
-  ASSERT_TRUE(triangles);
-  EXPECT_EQ(triangles->size(), polygon.size() - 2);
-  const Vec3 whole = area_of(polygon);
+  if (!triangles) return false;
+  const Vec3 whole = area_of(polygon), normal = whole.normalized();
   double sum = 0;
   for (const auto& triangle : *triangles) {
-    EXPECT_GT(area_of(polygon, triangle).dot(whole), 0);
-    sum += area_of(polygon, triangle).norm();
+    EXPECT_GT(area_of(polygon, triangle).dot(normal), 0);
+    sum += area_of(polygon, triangle).dot(normal);
   }
+  EXPECT_EQ(triangles->size(), polygon.size() - 2);
   EXPECT_NEAR(sum, whole.norm(), 1e-9 * whole.norm());
+  return true;
 }
 
-// Checks the polygon with each corner as the first, in both directions, in several planes.
-void expect_covered_from_everywhere(Polygon polygon) {
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    std::rotate(polygon.begin(), polygon.begin() + 1, polygon.end());
-    expect_covered(polygon);
-    expect_covered({polygon.rbegin(), polygon.rend()});
-    Polygon turned;
-    for (const Vec3& p : polygon) turned.push_back(meshes::rotated() * p + Vec3(1, 2, 3));
-    expect_covered(turned);
-  }
+// Expects the same answer with each corner as the first, in both directions, and turned and moved.
+void expect_covered(const Polygon& polygon, bool expected, const Eigen::Matrix3d& turn = meshes::rotated()) {
+  for (const Eigen::Matrix3d& turned : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), turn})
+    for (std::size_t first = 0; first < polygon.size(); ++first) {
+      Polygon same;
+      for (std::size_t j = 0; j < polygon.size(); ++j)
+        same.push_back(turned * polygon[(first + j) % polygon.size()] + Vec3(1, 2, 3));
+      EXPECT_EQ(is_covered(same), expected) << first;
+      EXPECT_EQ(is_covered({same.rbegin(), same.rend()}), expected) << first;
+    }
 }
 
 // A regular polygon, or a star if the step is above one.
@@ -68,44 +71,27 @@ Polygon around(int corners, int step) {
   return polygon;
 }
 
-TEST(PolygonTriangles, AreAFanForAConvexPolygon) {
+TEST(PolygonTriangles, AreAFanForAConvexPolygonAndForOneWithoutArea) {
   const auto triangles = polygon_triangles(around(6, 1));
   ASSERT_TRUE(triangles);
   EXPECT_EQ(*triangles, (std::vector<std::array<int, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}));
+  const auto line = polygon_triangles({{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}});
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->size(), 2u);
 }
 
-TEST(PolygonTriangles, LeaveTheNotchesOfConcavePolygonsEmpty) {
-  expect_covered_from_everywhere(
-      {{4, 4, 0}, {4, 1, 0}, {2, 1, 0}, {2, 4, 0}, {0, 4, 0}, {0, 0, 0}, {6, 0, 0}, {6, 4, 0}});
-  expect_covered_from_everywhere({{0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}});  // an arrow
-}
-
-TEST(PolygonTriangles, CoverAStarAndAComb) {
+// Notches, an arrow, corners on straight edges, a star and a comb.
+TEST(PolygonTriangles, CoverConcavePolygons) {
   Polygon star = around(14, 1), comb{{0, 0, 0}, {21, 0, 0}};
   for (std::size_t i = 0; i < star.size(); i += 2) star[i] *= 0.2;
-  expect_covered_from_everywhere(star);
   for (int x = 20; x >= 0; --x) comb.emplace_back(x, x % 2 == 0 ? 5 : 1, 0);
-  expect_covered_from_everywhere(comb);
-}
-
-TEST(PolygonTriangles, HaveAnAreaAlsoIfCornersLieOnStraightEdges) {
-  expect_covered_from_everywhere(
-      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
-}
-
-// The triangles of a polygon that is not flat have its area as seen along its normal, and none is turned.
-bool is_covered_along_normal(const Polygon& polygon) {
-  const auto triangles = polygon_triangles(polygon);
-  if (!triangles) return false;
-  const Vec3 whole = area_of(polygon), normal = whole.normalized();
-  double sum = 0;
-  for (const auto& triangle : *triangles) {
-    EXPECT_GT(area_of(polygon, triangle).dot(normal), 0);
-    sum += area_of(polygon, triangle).dot(normal);
-  }
-  EXPECT_EQ(triangles->size(), polygon.size() - 2);
-  EXPECT_NEAR(sum, whole.norm(), 1e-9 * whole.norm());
-  return true;
+  for (const Polygon& polygon : std::vector<Polygon>{
+           {{4, 4, 0}, {4, 1, 0}, {2, 1, 0}, {2, 4, 0}, {0, 4, 0}, {0, 0, 0}, {6, 0, 0}, {6, 4, 0}},
+           {{0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}},
+           {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}},
+           star,
+           comb})
+    expect_covered(polygon, true);
 }
 
 // True if two edges that are no neighbours meet, seen along the normal. The polygon has no straight corner.
@@ -138,15 +124,7 @@ TEST(PolygonTriangles, DependOnTheShapeOfABentPolygonAlone) {
     const bool expected = !crosses_itself(polygon);
     (expected ? covered : refused) += 1;
     const Vec3 axis = Vec3(any(random), any(random), any(random)).normalized();
-    for (const Eigen::Matrix3d& turned : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), meshes::rotated(),
-                                          Eigen::AngleAxisd(3 * any(random), axis).toRotationMatrix()})
-      for (std::size_t first = 0; first < polygon.size(); ++first) {
-        Polygon same;
-        for (std::size_t j = 0; j < polygon.size(); ++j)
-          same.push_back(turned * polygon[(first + j) % polygon.size()] + Vec3(1, 2, 3));
-        ASSERT_EQ(is_covered_along_normal(same), expected) << i << " " << first;
-        ASSERT_EQ(is_covered_along_normal({same.rbegin(), same.rend()}), expected) << i << " " << first;
-      }
+    expect_covered(polygon, expected, Eigen::AngleAxisd(3 * any(random), axis).toRotationMatrix());
   }
   EXPECT_GT(covered, 150);
   EXPECT_GT(refused, 150);
@@ -163,107 +141,57 @@ TEST(PolygonTriangles, FollowTheNormalOfABentDart) {
 }
 
 TEST(PolygonTriangles, DoNotExistWhereEdgesCrossOrTouch) {
-  EXPECT_FALSE(polygon_triangles({{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 2, 0}}));  // figure 8, unequal loops
-  EXPECT_FALSE(polygon_triangles({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}));  // equal loops: no area
-  EXPECT_FALSE(polygon_triangles(around(5, 2)));
   Polygon twice = around(4, 1);
   twice.insert(twice.end(), twice.begin(), twice.begin() + 4);
-  EXPECT_FALSE(polygon_triangles(twice));
-  EXPECT_FALSE(
-      polygon_triangles({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 0, 0}, {0, 4, 0}}));  // touches an edge
-  EXPECT_FALSE(
-      polygon_triangles({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {9, 2, 0}, {4, 2, 0}, {0, 4, 0}}));  // a spike
+  for (const auto& [what, polygon] : std::map<std::string, Polygon>{
+           {"figure 8, unequal loops", {{0, 0, 0}, {2, 1, 0}, {2, 0, 0}, {0, 2, 0}}},
+           {"figure 8, equal loops: no area", {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}},
+           {"a star", around(5, 2)},
+           {"twice around", twice},
+           {"touches an edge", {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, 0, 0}, {0, 4, 0}}},
+           {"a spike", {{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {9, 2, 0}, {4, 2, 0}, {0, 4, 0}}}})
+    EXPECT_FALSE(polygon_triangles(polygon)) << what;
 }
-
-TEST(PolygonTriangles, AreAFanForAPolygonWithoutArea) {
-  const auto triangles = polygon_triangles({{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {2, 2, 2}});
-  ASSERT_TRUE(triangles);
-  EXPECT_EQ(triangles->size(), 2u);
-}
-
-}  // namespace
-}  // namespace remote_touch::triangle_mesh_test
-
-namespace remote_touch::mesh_check_test {
-namespace {
 
 const TriangleMesh kBox = box_mesh({2, 3, 4}, {1, 1, 1});
 
-TEST(MeshCheck, ABoxIsClosed) {
-  const MeshCheck check = check_mesh(kBox);
-  EXPECT_TRUE(check.closed());
-  EXPECT_FALSE(check.inverted());
-  EXPECT_EQ(check.parts, 1);
-  EXPECT_NEAR(check.volume_m3, 24, 1e-12);
-  EXPECT_EQ(text(check), "closed (1 part, 12 triangles)");
+// Returns the box with another vertex and another triangle.
+TriangleMesh box_and(const Vec3& vertex, const std::array<int, 3>& triangle) {
+  TriangleMesh mesh = kBox;
+  mesh.vertices.push_back(vertex), mesh.triangles.push_back(triangle);
+  return mesh;
 }
 
-TEST(MeshCheck, AMissingTriangleLeavesThreeBoundaryEdges) {
-  TriangleMesh open = kBox;
+TEST(MeshCheck, CountsWhatIsWrong) {
+  TriangleMesh open = kBox, turned = kBox, bad_vertices = kBox, bad_indices = kBox;
   open.triangles.pop_back();
-  const MeshCheck check = check_mesh(open);
-  EXPECT_FALSE(check.closed());
-  EXPECT_EQ(check.boundary_edges, 3);
-  EXPECT_EQ(text(check), "not closed: 3 boundary edges (1 part, 11 triangles)");
-}
-
-TEST(MeshCheck, ATurnedTriangleDisagreesWithItsNeighbours) {
-  TriangleMesh rotated = kBox;
-  std::swap(rotated.triangles[4][0], rotated.triangles[4][1]);
-  const MeshCheck check = check_mesh(rotated);
-  EXPECT_FALSE(check.closed());
-  EXPECT_EQ(check.inconsistent_edges, 3);
-  EXPECT_EQ(check.boundary_edges, 0);
-}
-
-TEST(MeshCheck, AFinMakesAnEdgeOfThree) {
-  TriangleMesh fin = kBox;
-  fin.vertices.emplace_back(9, 9, 9);
-  fin.triangles.push_back({0, 1, 8});
-  const MeshCheck check = check_mesh(fin);
-  EXPECT_EQ(check.non_manifold_edges, 1);
-  EXPECT_EQ(check.boundary_edges, 2);
-}
-
-TEST(MeshCheck, CountsPartsAndFindsThoseInsideOut) {
+  std::swap(turned.triangles[4][0], turned.triangles[4][1]);
+  bad_vertices.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
+  bad_vertices.vertices[4].x() = std::numeric_limits<double>::infinity();
+  bad_indices.triangles[0][0] = 8, bad_indices.triangles[1][2] = -1;
   const TriangleMesh two = meshes::together(kBox, box_mesh({1, 1, 1}, {10, 0, 0}));
-  EXPECT_EQ(check_mesh(two).parts, 2);
-  const MeshCheck check = check_mesh(meshes::inside_out(two));
-  EXPECT_TRUE(check.closed());
-  EXPECT_TRUE(check.inverted());
-  EXPECT_NEAR(check.volume_m3, -25, 1e-12);
-  EXPECT_HAS(text(check), "inside out");
-}
-
-TEST(MeshCheck, CountsBadVerticesAndIndices) {
-  TriangleMesh bad = kBox;
-  bad.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
-  bad.vertices[4].x() = std::numeric_limits<double>::infinity();
-  bad.triangles[0][0] = 8, bad.triangles[1][2] = -1;
-  const MeshCheck check = check_mesh(bad);
-  EXPECT_EQ(check.bad_vertices, 2);
-  EXPECT_EQ(check.bad_indices, 2);
-  EXPECT_FALSE(check.closed());
-  EXPECT_FALSE(check_mesh({}).closed());
-  EXPECT_EQ(text(check_mesh({})), "no triangles");
-}
-
-TEST(MeshCheck, TrianglesWithoutAreaAreCounted) {
-  TriangleMesh flat = kBox;
-  flat.triangles.push_back({1, 1, 2});
-  EXPECT_EQ(check_mesh(flat).degenerate_triangles, 1);
-  flat.vertices.push_back((flat.vertices[0] + flat.vertices[1]) / 2);
-  flat.triangles.push_back({0, 1, 8});
-  EXPECT_EQ(check_mesh(flat).degenerate_triangles, 2);
-}
-
-TEST(MeshCheck, ANeedleHasNoArea) {
-  TriangleMesh needle = kBox;
-  const Vec3 edge = needle.vertices[1] - needle.vertices[0],
-             aside(0, 1e-12 * edge.norm(), 1e-12 * edge.norm());
-  needle.vertices.push_back(needle.vertices[1] + aside);
-  needle.triangles.push_back({0, 1, 8});
-  EXPECT_EQ(check_mesh(needle).degenerate_triangles, 1);
+  const Vec3 corner = kBox.vertices[0], end = kBox.vertices[1];
+  const double needle = 1e-12 * (end - corner).norm();
+  const std::pair<TriangleMesh, const char*> rows[] = {
+      {kBox, "closed (1 part, 12 triangles)"},
+      {two, "closed (2 parts, 24 triangles)"},
+      {meshes::inside_out(two), "closed (2 parts, 24 triangles, inside out)"},
+      {TriangleMesh(), "no triangles"},
+      {open, "not closed: 3 boundary edges (1 part, 11 triangles)"},
+      {turned, "not closed: 3 edges between faces of opposite orientation (1 part, 12 triangles)"},
+      {box_and({9, 9, 9}, {0, 1, 8}),
+       "not closed: 2 boundary edges, 1 non-manifold edge (1 part, 13 triangles)"},
+      {bad_vertices, "2 vertices that are not finite"},
+      {bad_indices, "2 triangles with a corner that is not a vertex"}};
+  for (const auto& [mesh, expected] : rows) {
+    EXPECT_EQ(text(check_mesh(mesh)), expected);
+    EXPECT_EQ(check_mesh(mesh).closed(), std::string(expected).starts_with("closed"));
+  }
+  for (const auto& flat : {box_and({9, 9, 9}, {1, 1, 2}), box_and((corner + end) / 2, {0, 1, 8}),
+                           box_and(end + Vec3(0, needle, needle), {0, 1, 8})})
+    EXPECT_EQ(check_mesh(flat).degenerate_triangles, 1);
+  EXPECT_NEAR(check_mesh(two).volume_m3, 25, 1e-12);
+  EXPECT_NEAR(check_mesh(meshes::inside_out(two)).volume_m3, -25, 1e-12);
 }
 
 // A box as loose triangles: each has corners of its own, one occurs twice, every second one is turned, two
@@ -333,114 +261,71 @@ TEST(MeshRepair, LeavesAClosedMeshAlone) {
   EXPECT_EQ(text(done), "nothing");
 }
 
-}  // namespace
-}  // namespace remote_touch::mesh_check_test
-
-namespace remote_touch::face_tree_test {
-namespace {
-
-using namespace mesh_shapes;
-
-std::vector<int> visited(const FaceTree& tree, const Vec3& p, double limit_m) {
-  std::vector<int> faces;
-  tree.visit(p, limit_m, [&](int face) { faces.push_back(face); });
-  std::sort(faces.begin(), faces.end());
-  return faces;
+Vec3 sides(const TriangleMesh& mesh) {
+  return bounding_box(mesh.vertices).sizes();
 }
 
-double to_face(const TriangleMesh& mesh, int face, const Vec3& p) {
-  const auto& [a, b, c] = mesh.triangles[face];
-  return meshes::to_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
-}
-
-// Every nearest face is visited, exactly once, also if its distance is the limit. Of several nearest faces,
-// the reference has other roundings than the tree.
-void expect_the_nearest(const TriangleMesh& mesh, const std::string& what) {
-  SCOPED_TRACE(what);
-  const FaceTree tree(mesh);
-  const BoundingBox box = bounding_box(mesh.vertices);
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> any(-0.7, 0.7);
-  for (int n = 0; n < 200; ++n) {
-    const Vec3 p = box.center() + box.sizes().cwiseProduct(Vec3(any(random), any(random), any(random)));
-    const double nearest_m = meshes::distance(mesh, p),
-                 rounding_m = 1e-14 * (box.diagonal().norm() + nearest_m);
-    for (const double limit_m : {nearest_m, 2 * nearest_m, std::numeric_limits<double>::infinity()}) {
-      const std::vector<int> faces = visited(tree, p, limit_m);
-      ASSERT_EQ(std::adjacent_find(faces.begin(), faces.end()), faces.end()) << p.transpose();
-      for (int f = 0; f < static_cast<int>(mesh.triangles.size()); ++f) {
-        const bool is_nearest = to_face(mesh, f, p) <= nearest_m + rounding_m;
-        ASSERT_TRUE(!is_nearest || std::binary_search(faces.begin(), faces.end(), f))
-            << f << " of " << p.transpose();
-      }
-    }
+TEST(GeneratedTools, AreClosedBodiesOfTheSizesThatTheirSummariesState) {
+  const std::map<std::string, Vec3> mm = {
+      {"ball", {20, 20, 20}},    {"bar", {80, 20, 10}},     {"block", {95, 20, 68}},
+      {"fork", {126, 22, 77}},   {"husky", {95, 20, 68}},   {"key", {151, 28, 90}},
+      {"slab-5", {40, 5, 40}},   {"slab-10", {40, 10, 40}}, {"slab-20", {40, 20, 40}},
+      {"slab-40", {40, 40, 40}},
+  };
+  EXPECT_EQ(mm.size(), generated_tools().size());
+  for (const GeneratedTool& tool : generated_tools()) {
+    SCOPED_TRACE(tool.name);
+    const TriangleMesh mesh = tool.make(), again = tool.make();
+    const MeshCheck check = check_mesh(mesh);
+    EXPECT_TRUE(check.closed()) << text(check);
+    EXPECT_GT(check.volume_m3, 0);
+    EXPECT_EQ(check.parts, 1);
+    EXPECT_EQ(check.degenerate_triangles, 0);
+    EXPECT_EQ(find_generated_tool(tool.name), &tool);
+    const bool sharp = std::string(tool.name) == "bar" || std::string(tool.name).starts_with("slab");
+    EXPECT_LT((1e3 * sides(mesh) - mm.at(tool.name)).cwiseAbs().maxCoeff(), sharp ? 1e-12 : 0.3);
+    EXPECT_TRUE(mesh.triangles == again.triangles && mesh.vertices == again.vertices)
+        << "the same every time";
   }
+  EXPECT_EQ(find_generated_tool("wolf"), nullptr);
 }
 
-TEST(FaceTree, VisitsTheNearestFaces) {
-  for (const int rings : {1, 2, 3, 7, 40})
-    expect_the_nearest(rough_ball(rings, rings + 2, 0.4), std::to_string(rings) + " rings");
-  expect_the_nearest(TriangleMesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, "one face");
-  expect_the_nearest(prism(kL, 1), "an L");
-}
-
-// Single precision has steps of 0.06 mm at 1000 m, but the tree knows no position so far from its centre.
-TEST(FaceTree, VisitsTheNearestFacesFarFromTheOrigin) {
-  const Eigen::Matrix3d turned = meshes::rotated();
-  expect_the_nearest(meshes::moved(rough_ball(20, 20, 0.4), 0.1 * turned, {1000, -900, 800}), "small");
-  expect_the_nearest(meshes::moved(rough_ball(20, 20, 0.4), 1e4 * turned, {1000, -900, 800}), "large");
-}
-
-// The normals of such faces have errors of up to 1e-6.
-TEST(FaceTree, VisitsTheNearestOfSlimFaces) {
-  TriangleMesh flat = meshes::moved(rough_ball(20, 20, 0.4), Vec3(1, 1, 1e-9).asDiagonal(), {0, 0, 0});
-  expect_the_nearest(meshes::moved(flat, meshes::rotated(), {0, 0, 0}), "flat");
-  const Eigen::Matrix3d long_one = Vec3(1e-8, 1, 1e-8).asDiagonal();
-  expect_the_nearest(meshes::moved(meshes::moved(rough_ball(20, 20, 0.4), long_one, {0, 0, 0}),
-                                   meshes::rotated(), {0, 0, 0}),
-                     "long");
-}
-
-// An upper bound that a tree without bounds could not keep.
-TEST(FaceTree, VisitsFewFaces) {
-  const TriangleMesh ball = rough_ball(80, 80, 0.02);
-  const FaceTree tree(ball);
-  std::mt19937 random(6);
-  std::normal_distribution<double> normal;
-  std::size_t faces = 0;
-  for (int n = 0; n < 100; ++n) {
-    const Vec3 p = Vec3(normal(random), normal(random), normal(random)).normalized();
-    faces += visited(tree, p, std::numeric_limits<double>::infinity()).size();
+// Returns the angle at which the tool, free to move in x and z, is stopped by the box of Fig 6.3, 110 x 90
+// mm: its extent first reaches that of the box.
+double stops_at_deg(const TriangleMesh& mesh, double sense) {
+  for (double deg = 0; deg < 90; deg += 0.01) {
+    const Eigen::AngleAxisd about_y(sense * deg * kRadiansPerDegree, Vec3::UnitY());
+    const Vec3 extent = sides(meshes::moved(mesh, about_y.toRotationMatrix(), Vec3::Zero()));
+    if (extent.x() >= 0.110 || extent.z() >= 0.090) return deg;
   }
-  EXPECT_LT(faces, 300u);
+  return 90;
 }
 
-// There are more nearest faces than the tree remembers.
-TEST(FaceTree, VisitsAllOfManyNearestFaces) {
-  Base circle;
-  for (int i = 0; i < 1000; ++i) {
-    const double angle = 2 * std::numbers::pi * i / 1000;
-    circle.emplace_back(std::cos(angle), std::sin(angle), 0);
+TEST(GeneratedTools, TheHuskyIsStoppedByTheNarrowBox) {
+  const TriangleMesh husky = find_generated_tool("husky")->make();
+  EXPECT_NEAR(stops_at_deg(husky, 1), 21.35, 0.15);
+  EXPECT_NEAR(stops_at_deg(husky, -1), 21.35, 0.15);
+}
+
+TEST(MarchingTetrahedra, RefusesABodyThatIsCutOff) {
+  const auto ball = [](const Vec3& p) { return p.norm() - 1; };
+  EXPECT_TRUE(check_mesh(marching_tetrahedra(ball, Vec3::Constant(-1.2), Vec3::Constant(1.2), 0.3)).closed());
+  EXPECT_THROW(marching_tetrahedra(ball, Vec3(-1.2, -0.5, -1.2), Vec3::Constant(1.2), 0.3), InputError);
+}
+
+// The function vanishes exactly at nodes. The second case is two bodies that touch in one node.
+TEST(MarchingTetrahedra, MeshIsClosedIfTheFunctionVanishesAtNodes) {
+  const auto diamond = [](const Vec3& p) { return p.cwiseAbs().sum() - 2; };
+  const auto two = [](const Vec3& p) {
+    return std::min((p - Vec3(1, 0, 0)).norm(), (p + Vec3(1, 0, 0)).norm()) - 1;
+  };
+  for (const std::function<double(const Vec3&)>& body :
+       {std::function<double(const Vec3&)>(diamond), {two}}) {
+    const MeshCheck check = check_mesh(marching_tetrahedra(body, Vec3::Constant(-4), Vec3::Constant(4), 0.5));
+    EXPECT_TRUE(check.closed()) << text(check);
+    EXPECT_EQ(check.degenerate_triangles, 0);
   }
-  const TriangleMesh cone = pyramid(circle, {0, 0, 1});
-  const std::vector<int> faces = visited(FaceTree(cone), {0, 0, 1.5}, 1);
-  const int last = static_cast<int>(cone.triangles.size());
-  for (int f = last - 1000; f < last; ++f)
-    ASSERT_TRUE(std::binary_search(faces.begin(), faces.end(), f)) << f;
-}
-
-TEST(FaceTree, VisitsNoFaceBeyondTheLimit) {
-  const FaceTree tree(prism(kL, 1));
-  EXPECT_TRUE(visited(tree, {-1, 0.5, 0.5}, 0.999).empty());
-  EXPECT_FALSE(visited(tree, {-1, 0.5, 0.5}, 1).empty());
-}
-
-TEST(FaceTree, VisitsNoFaceFromPositionsThatAreNotFiniteOrTooFar) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const FaceTree tree(prism(kL, 1));
-  for (const double x : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, 1e16, 1e300})
-    EXPECT_TRUE(visited(tree, {0, x, 0}, kInfinity).empty()) << x;
 }
 
 }  // namespace
-}  // namespace remote_touch::face_tree_test
+}  // namespace remote_touch::triangle_mesh_test
