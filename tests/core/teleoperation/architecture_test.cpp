@@ -1,13 +1,10 @@
-// Energies at the ports of a channel, for random signals and in a closed loop that is unstable without
-// control.
+// The passivity controllers of both ports: energies for random signals, and closed forms of what is removed.
 #include "core/teleoperation/architecture.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -92,8 +89,9 @@ Lowest lowest_energies(unsigned seed, int most_ticks, double loss, bool is_contr
   return lowest;
 }
 
+// The same signals gain energy without control.
 TEST(PassivityControl, NoEnergyFallsBelowZeroWhateverTheDelayAndTheLosses) {
-  for (unsigned seed = 0; seed < 20; ++seed)
+  for (unsigned seed = 0; seed < 20; ++seed) {
     for (const int most_ticks : {1, 20, 300})
       for (const double loss : {0.0, 0.5}) {
         const Lowest lowest = lowest_energies(seed, most_ticks, loss, true);
@@ -103,11 +101,10 @@ TEST(PassivityControl, NoEnergyFallsBelowZeroWhateverTheDelayAndTheLosses) {
         EXPECT_LE(lowest.miscounted_J, 1e-12);
         EXPECT_FALSE(lowest.dissipation_falls);
       }
-}
-
-TEST(PassivityControl, TheSameSignalsGainEnergyWithoutControl) {
-  for (unsigned seed = 0; seed < 5; ++seed)
-    EXPECT_LT(lowest_energies(seed, 300, 0, false).channel_J, -1e-3) << seed;
+    if (seed < 5) {
+      EXPECT_LT(lowest_energies(seed, 300, 0, false).channel_J, -1e-3) << seed;
+    }
+  }
 }
 
 TEST(PassivityControl, ChangesNothingWhileTheEnergySuffices) {
@@ -226,70 +223,6 @@ TEST(PassivityControl, TheDriftReturnsOnlyIfTheEnergySuffices) {
         slave.command(target, force, has_energy ? 1.0 : 0.0), slave.observe(force);
       EXPECT_NEAR(slave.drift_m().x(), has_energy ? 0 : -1e-3, 1e-6);
     }
-}
-
-struct LoopResult {
-  double largest_m = 0, lowest_hand_J = 0, lowest_slave_J = 0, peak_N = 0;
-};
-
-// A hand of 0.5 kg on a spring that moves 10 mm into a wall of 30 kN/m, a slave of 2 kg at 5 Hz, and a delay
-// each way.
-LoopResult press(int delay_ticks, bool is_controlled, double response) {
-  constexpr double m = 0.5, kh = 300, dh = 7, ms = 2, w = 2 * std::numbers::pi * 5, K = 30000, B = 20;
-  constexpr int parts = 20;
-  PassivitySettings settings;
-  settings.drift_time_s = 0.3;
-  ImpedancePassivityController hand(settings, kTick_s, response);
-  MotionPrediction prediction(response);
-  AdmittancePassivityController slave(settings, kTick_s);
-  std::deque<std::pair<double, double>> commands, forces;
-  const auto late = [&](std::deque<std::pair<double, double>>& link, double value, double in_J) {
-    link.push_back({value, in_J});
-    const std::pair<double, double> shown = link.front();
-    if (static_cast<int>(link.size()) > delay_ticks) link.pop_front();
-    return shown;
-  };
-  double x = -0.02, v = 0, xs = x, vs = 0, c = x, scene_N = 0;
-  LoopResult result;
-  for (int tick = 0; tick < 5000 && result.largest_m < 1; ++tick) {
-    const auto [shown_m, hand_in_J] = late(commands, x, hand.energy().credit_J());
-    const double next =
-        is_controlled ? slave.command({shown_m, 0, 0}, {scene_N, 0, 0}, hand_in_J).x() : shown_m;
-    const double cv = (next - c) / kTick_s, h = kTick_s / parts;
-    scene_N = 0;
-    for (int i = 0; i < parts; ++i) {
-      c += cv * h;
-      const double f = xs > 0 ? -std::max(0.0, K * xs + B * vs) : 0;
-      vs += h * (w * w * (c - xs) + 2 * w * (cv - vs) + f / ms), xs += h * vs;
-      scene_N += f / parts;
-    }
-    slave.observe({scene_N, 0, 0});
-    const auto [shown_N, slave_in_J] = late(forces, scene_N, slave.energy().credit_J());
-    const Vec3 expected = response > 0 ? prediction.free_displacement() : Vec3(v * kTick_s, 0, 0);
-    const double felt = is_controlled ? hand.force({shown_N, 0, 0}, expected, slave_in_J).x() : shown_N;
-    const double before = x, aim = std::min(0.01, -0.02 + 0.06 * tick * kTick_s);
-    for (int i = 0; i < parts; ++i) v += h * (felt + kh * (aim - x) - dh * v) / m, x += h * v;
-    hand.observe({x - before, 0, 0}, {felt, 0, 0}), prediction.observe({x - before, 0, 0}, {felt, 0, 0});
-    result.largest_m = std::max(result.largest_m, std::abs(x));
-    result.peak_N = std::max(result.peak_N, -scene_N);
-    result.lowest_hand_J = std::min(result.lowest_hand_J, hand.energy().balance_J());
-    result.lowest_slave_J = std::min(result.lowest_slave_J, slave.energy().balance_J());
-  }
-  return result;
-}
-
-// The prediction of the hand is not exact here: its damper and spring change their forces within a tick.
-TEST(PassivityControl, AnUnstableLoopStaysBounded) {
-  for (const int delay_ticks : {10, 50, 100}) {
-    EXPECT_GT(press(delay_ticks, false, 0).largest_m, 0.5) << delay_ticks;
-    for (const double response : {0.0, kTick_s * kTick_s}) {
-      const LoopResult result = press(delay_ticks, true, response);
-      EXPECT_LT(result.largest_m, 0.025) << delay_ticks;
-      EXPECT_LT(result.peak_N, 12) << delay_ticks;
-      EXPECT_GT(result.lowest_hand_J, -0.01) << delay_ticks;
-      EXPECT_GT(result.lowest_slave_J, -1e-4) << delay_ticks;
-    }
-  }
 }
 
 }  // namespace

@@ -79,12 +79,14 @@ TEST(ToolSlave, FollowsASineInPositionAndOrientation) {
   const Vec3 axis = Vec3(1, 2, -1).normalized();
   for (const double natural_hz : {1.0, 5.0, 20.0})
     for (const double signal_hz : {0.5, 2.0, 8.0}) {
+      SCOPED_TRACE(testing::Message() << natural_hz << " " << signal_hz);
       SlaveSettings s;
-      s.natural_frequency_hz = natural_hz, s.damping_ratio = 0.7, s.steps_per_tick = 20;
+      s.natural_frequency_hz = natural_hz, s.steps_per_tick = 20;
+      s.damping_ratio = signal_hz == 2 ? 0.5 : 1;
       ToolSlave slave(s, plate(), kTick_s, nothing());
       const double w = 2 * std::numbers::pi * natural_hz, u = 2 * std::numbers::pi * signal_hz;
       std::complex<double> moved = 0, turned = 0;
-      const int settle = 6000, window = static_cast<int>(std::lround(4 / signal_hz / kTick_s));
+      const int settle = 8000, window = static_cast<int>(std::lround(4 / signal_hz / kTick_s));
       for (int tick = 0; tick < settle + window; ++tick) {
         const double t = tick * kTick_s;
         const ToolSlave::State& state =
@@ -94,13 +96,12 @@ TEST(ToolSlave, FollowsASineInPositionAndOrientation) {
         moved += state.position_W.y() / 0.1 * turn;
         turned += rotation_vector(state.orientation_W).dot(axis) / 0.3 * turn;
       }
-      const std::complex<double> i(0, 1);
-      const std::complex<double> expected = (w * w + i * 1.4 * w * u) / (w * w - u * u + i * 1.4 * w * u);
+      const std::complex<double> i(0, 1), damper = i * 2.0 * s.damping_ratio * w * u;
+      const std::complex<double> expected = (w * w + damper) / (w * w - u * u + damper);
       for (const std::complex<double> sum : {moved, turned}) {
         const std::complex<double> measured = sum * i;
-        EXPECT_NEAR(std::abs(measured), std::abs(expected), 0.01 * std::abs(expected))
-            << natural_hz << " " << signal_hz;
-        EXPECT_NEAR(std::arg(measured / expected) / u, 0, 0.05 * kTick_s) << natural_hz << " " << signal_hz;
+        EXPECT_NEAR(std::abs(measured), std::abs(expected), 0.01 * std::abs(expected));
+        EXPECT_NEAR(std::arg(measured / expected) / u, 0, 0.05 * kTick_s);
       }
     }
 }
@@ -127,51 +128,28 @@ TEST(ToolSlave, TurnsTheShorterWayWithinItsLimits) {
   EXPECT_NEAR(slave.state().orientation_W.angularDistance(rotation({0, 2, 0})), 0, 1e-6);
 }
 
-// The springs of the drive and the kinetic energy together never grow after a step of the command.
-TEST(ToolSlave, GainsNoEnergyInFreeFlight) {
-  SlaveSettings s;
-  s.natural_frequency_hz = 3, s.damping_ratio = 0.05;
-  const SlaveTool tool = plate();
-  ToolSlave slave(s, tool, kTick_s, nothing());
-  const ToolSlave::Pose target = pose({0.02, 0.03, 0}, {0.3, -0.6, 0.2});
-  const double inertia = s.mass_kg * tool.gyration_m * tool.gyration_m, k = drive_stiffness(s);
-  const auto energy = [&] {
-    const ToolSlave::State& at = slave.state();
-    const Vec3 e = rotation_vector(target.orientation_W * at.orientation_W.conjugate());
-    return 0.5 * (s.mass_kg * at.velocity_W.squaredNorm() + inertia * at.angular_velocity_W.squaredNorm() +
-                  k * (target.position_W - at.position_W).squaredNorm() +
-                  k * tool.gyration_m * tool.gyration_m * e.squaredNorm());
-  };
-  slave.move(pose({0, 0, 0}), 0);
-  slave.move(target, kTick_s);
-  const double start = energy();
-  double before = start;
-  for (int tick = 2; tick < 5000; ++tick) {
-    slave.move(target, tick * kTick_s);
-    EXPECT_LT(energy(), before + 1e-3 * start) << tick;
-    before = energy();
-  }
-  EXPECT_LT(before, 0.01 * start);
-}
-
-// A small ball of points is the ball of Slave, within twice the rounding of the depths.
+// A small ball of points is the ball of Slave, within twice the rounding of the depths, on a surface at rest
+// and on one that rises.
 TEST(ToolSlave, AgreesWithTheBall) {
-  SlaveSettings s;
-  s.radius_m = 0.005, s.max_speed_m_per_s = 0.5;
-  Slave oracle(s, kTick_s, plane());
-  ToolSlave slave(s, ball(0.005), kTick_s, plane());
-  double largest_N = 0;
-  for (int tick = 0; tick < 3000; ++tick) {
-    const double t = tick * kTick_s;
-    const Vec3 command(0.02 * std::sin(5 * t), 0.02 * std::cos(9 * t), 0);
-    const Slave::State& ball = oracle.move(command, t);
-    const ToolSlave::State& tool = slave.move(pose(command), t);
-    ASSERT_NEAR((tool.position_W - ball.position_W).norm(), 0, 2 * ToolSlave::kRounding_m) << tick;
-    ASSERT_NEAR(tool.clearance_m, ball.clearance_m, 2 * ToolSlave::kRounding_m) << tick;
-    ASSERT_NEAR((tool.force_N - ball.force_N).norm(), 0, 3) << tick;
-    largest_N = std::max(largest_N, ball.peak_force_N);
+  for (const double rise_m_per_s : {0.0, 0.05}) {
+    SlaveSettings s;
+    s.radius_m = 0.005, s.max_speed_m_per_s = 0.5;
+    const SlaveScene scene = plane(Vec3::UnitY(), rise_m_per_s);
+    Slave oracle(s, kTick_s, scene);
+    ToolSlave slave(s, ball(0.005), kTick_s, scene);
+    double largest_N = 0;
+    for (int tick = 0; tick < 3000; ++tick) {
+      const double t = tick * kTick_s;
+      const Vec3 command(0.02 * std::sin(5 * t), 0.02 * std::cos(9 * t) + rise_m_per_s * t, 0);
+      const Slave::State& ball = oracle.move(command, t);
+      const ToolSlave::State& tool = slave.move(pose(command), t);
+      ASSERT_NEAR((tool.position_W - ball.position_W).norm(), 0, 2 * ToolSlave::kRounding_m) << tick;
+      ASSERT_NEAR(tool.clearance_m, ball.clearance_m, 2 * ToolSlave::kRounding_m) << tick;
+      ASSERT_NEAR((tool.force_N - ball.force_N).norm(), 0, 3) << tick;
+      largest_N = std::max(largest_N, ball.peak_force_N);
+    }
+    EXPECT_GT(largest_N, 30);
   }
-  EXPECT_GT(largest_N, 30);
 }
 
 // Static: the drive is in balance with K g, and a face of n points has g = d + s ln n.
@@ -246,34 +224,6 @@ TEST(ToolSlave, GainsNoEnergyInAnUndampedContact) {
   }
 }
 
-// Steps of 10 kHz are within 2 % of much shorter ones in the peak of an impact, and the error is of first
-// order.
-TEST(ToolSlave, ConvergesWithItsSteps) {
-  const auto peak_N = [](int steps) {
-    SlaveSettings s;
-    s.steps_per_tick = steps;
-    ToolSlave slave(s, plate(), kTick_s, plane());
-    double peak = 0;
-    for (int tick = 0; tick < 600; ++tick)
-      peak = std::max(
-          peak, slave.move(pose({0, 0.02 - 0.0002 * tick, 0}, {0.03, 0, 0.01}), tick * kTick_s).peak_force_N);
-    return peak;
-  };
-  const double best = peak_N(640), at_10_kHz = peak_N(10), at_40_kHz = peak_N(40);
-  EXPECT_GT(best, 10);
-  EXPECT_NEAR(at_10_kHz, best, 0.02 * best);
-  EXPECT_LT(std::abs(at_40_kHz - best), 0.5 * std::abs(at_10_kHz - best));
-}
-
-TEST(ToolSlave, IsPushedByASurfaceThatRises) {
-  SlaveSettings s;
-  ToolSlave slave(s, plate(), kTick_s, plane(Vec3::UnitY(), 0.05));
-  for (int tick = 0; tick < 1000; ++tick) slave.move(pose({0, 0.006, 0}), tick * kTick_s);
-  EXPECT_GT(slave.state().position_W.y(), 0.05);
-  EXPECT_GT(slave.state().force_N.y(), 1);
-}
-
-// The resultant moves over the plate without a jump while it rocks from one edge to the other.
 // A jump of the surface loads the spring and has no speed, at any length of the tick.
 TEST(ToolSlave, NoDamperActsOverAJumpOfTheSurface) {
   const auto surface_s = [](double t) { return t < 0.4995 ? 0 : 0.4995; };
@@ -291,6 +241,7 @@ TEST(ToolSlave, NoDamperActsOverAJumpOfTheSurface) {
   }
 }
 
+// The resultant moves over the plate without a jump while it rocks from one edge to the other.
 TEST(ToolSlave, ForceAndTorqueAreContinuousWhileThePlateRocks) {
   SlaveSettings s;
   s.natural_frequency_hz = 10;
@@ -336,21 +287,9 @@ TEST(ToolSlave, NeedsMoreStepsForALongTool) {
   EXPECT_NE(validate(s, tool, kTick_s).find("steps_per_tick = 2"), std::string::npos);
 }
 
-// --- the points of a tool ---
-
-TriangleMesh box(const Vec3& half) {
-  TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices.emplace_back((i & 1 ? 1 : -1) * half.x(), (i & 2 ? 1 : -1) * half.y(),
-                               (i & 4 ? 1 : -1) * half.z());
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
-
 TEST(SlaveTool, KeepsCornersAndTheWholeArea) {
   const Vec3 half(0.05, 0.005, 0.03);
-  const SlaveTool tool = make_slave_tool(box(half), Eigen::Vector3d(3, 4, 5).asDiagonal(), 200);
+  const SlaveTool tool = make_slave_tool(box_mesh(2 * half), Eigen::Vector3d(3, 4, 5).asDiagonal(), 200);
   ASSERT_LE(tool.points_T.size(), 200u);
   EXPECT_GT(tool.points_T.size(), 100u);
   double area = 0, outside = 0;
