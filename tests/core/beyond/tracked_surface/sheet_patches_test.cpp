@@ -1,3 +1,4 @@
+// Positions of a tool at which sheets are tracked, the motion that carries it, and where patches begin.
 #include "core/beyond/tracked_surface/sheet_patches.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch::carried_tool_test {
+namespace remote_touch::sheet_patches_test {
 namespace {
 
 constexpr double kRadius_m = 0.0325;
@@ -86,7 +87,8 @@ TEST(CarriedMotion, IsUnknownIfThereAreNoPlaces) {
   EXPECT_TRUE(result.motion.isZero(0));
 }
 
-// A face determines the displacement along its normal and the rotations about two axes within it.
+// A face determines the displacement along its normal and the rotations about two axes within it. Motion
+// within the face is not seen.
 TEST(CarriedMotion, AFaceDeterminesItsNormalMotionAndTwoRotations) {
   const Vec3 middle_W(0.1, 0.02, -0.05);
   CarriedMotion places(kLever_m);
@@ -104,10 +106,19 @@ TEST(CarriedMotion, AFaceDeterminesItsNormalMotionAndTwoRotations) {
   EXPECT_NEAR((there - expected).norm(), 0, 1e-12);
 }
 
-TEST(CarriedMotion, MotionWithinAFaceIsNotSeen) {
-  CarriedMotion places(kLever_m);
-  add_face(places, kAbout_W, Vec3::UnitY(), Vec3::UnitX(), {{0.01, 0, -0.02}, {0, 0, 0}});
-  EXPECT_NEAR(places.about(kAbout_W).motion.norm(), 0, 1e-15);
+// An edge: positions in a row along x determine the rotation about z, but not about x. Positions closer
+// together than a third of the lever determine no rotation: noise would turn the tool by any angle.
+TEST(CarriedMotion, ARowOfPlacesTurnsAboutOneAxis) {
+  CarriedMotion row(kLever_m), close(kLever_m);
+  const Motion motion{{0, 0.001, 0}, {0.1, 0, 0.04}};
+  for (const double x : {-0.03, -0.01, 0.01, 0.03})
+    row.add({{x, 0, 0}, Vec3::UnitY(), motion.along(Vec3::UnitY(), {x, 0, 0}), 0, 1});
+  for (const double x : {-0.001, 0.001}) close.add({{x, 0, 0}, Vec3::UnitY(), x, 0, 1});
+  const Vector6 found = row.about(Vec3::Zero()).motion;
+  EXPECT_NEAR(found[5], 0.04, 1e-12);
+  EXPECT_NEAR(found[3], 0, 1e-12);
+  EXPECT_NEAR(found[1], 0.001, 1e-12);
+  EXPECT_NEAR(close.about(Vec3::Zero()).motion.norm(), 0, 1e-15);
 }
 
 TEST(CarriedMotion, OnePositionGivesADisplacementAlongItsNormal) {
@@ -117,36 +128,6 @@ TEST(CarriedMotion, OnePositionGivesADisplacementAlongItsNormal) {
   Vector6 expected = Vector6::Zero();
   expected.head<3>() = 0.003 * n_W;
   EXPECT_NEAR((places.about(kAbout_W).motion - expected).norm(), 0, 1e-12);
-}
-
-// An edge: positions in a row along x determine the rotation about z, but not about x.
-TEST(CarriedMotion, ARowOfPlacesTurnsAboutOneAxis) {
-  CarriedMotion places(kLever_m);
-  const Motion motion{{0, 0.001, 0}, {0.1, 0, 0.04}};
-  for (const double x : {-0.03, -0.01, 0.01, 0.03})
-    places.add({{x, 0, 0}, Vec3::UnitY(), motion.along(Vec3::UnitY(), {x, 0, 0}), 0, 1});
-  const Vector6 found = places.about(Vec3::Zero()).motion;
-  EXPECT_NEAR(found[5], 0.04, 1e-12);
-  EXPECT_NEAR(found[3], 0, 1e-12);
-  EXPECT_NEAR(found[1], 0.001, 1e-12);
-}
-
-// Positions closer together than a third of the lever determine no rotation: noise would turn the tool by any
-// angle.
-TEST(CarriedMotion, PlacesCloseTogetherDoNotTurn) {
-  CarriedMotion places(kLever_m);
-  for (const double x : {-0.001, 0.001}) places.add({{x, 0, 0}, Vec3::UnitY(), x, 0, 1});
-  EXPECT_NEAR(places.about(Vec3::Zero()).motion.norm(), 0, 1e-15);
-}
-
-TEST(CarriedMotion, AFloorAndAWallGiveBothDisplacements) {
-  CarriedMotion places(kLever_m);
-  const Motion motion{{0.002, 0.005, 0.009}, {0, 0, 0}};
-  add_face(places, {0, 0, 0}, Vec3::UnitY(), Vec3::UnitX(), motion);
-  add_face(places, {-0.03, 0.03, 0}, Vec3::UnitX(), Vec3::UnitZ(), motion);
-  const Vector6 found = places.about({0, 0.01, 0}).motion;
-  EXPECT_NEAR((found.head<3>() - Vec3(0.002, 0.005, 0)).norm(), 0, 1e-12);
-  EXPECT_NEAR(found.tail<3>().norm(), 0, 1e-12);
 }
 
 // Three faces determine all six components. The least-squares motion equals the one that made the positions,
@@ -179,13 +160,6 @@ TEST(CarriedMotion, IsLessSureTheMoreNoiseMayExplainIt) {
   }
 }
 
-}  // namespace
-}  // namespace remote_touch::carried_tool_test
-
-// Positions at which patches of tracked sheets begin around a tool.
-namespace remote_touch::sheet_patches_test {
-namespace {
-
 constexpr double kUnit_m = 0.005;
 const Vec3 kHalf_m(0.02, 0.005, 0.02);
 
@@ -211,42 +185,32 @@ std::vector<ToolContact> wall_contacts(std::size_t deepest) {
   return contacts;
 }
 
-TEST(SheetPatches, AnotherPatchBeginsAtTheDeepestContactThatNoneExplains) {
-  const auto tool = scenes::box_tool(kHalf_m);
-  const auto frame = floor_and_wall();
-  for (const std::size_t deepest : {0u, 2u, 4u}) {
-    SheetPatches patches({}, kUnit_m, 3, *tool, scenes::kernels());
-    patches.keep(frame, 0);
-    patches.requery({}, false);
-    const std::vector<ToolContact> contacts = wall_contacts(deepest);
-    patches.on_frame(frame, {{}, true, contacts}, 1.0 / 30);
-    int walls = 0;
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      if (!patches.tracks(i)) continue;
-      const PatchFrame& of = patches.tracker(i).region().frame;
-      if (of.normal_W().dot(contacts[deepest].n_T) < 0.9) continue;
-      ++walls;
-      const PatchPlace place = of.place(contacts[deepest].r_T);
-      EXPECT_NEAR(std::hypot(place.u, place.v), 0, 1e-3) << deepest;
-    }
-    EXPECT_EQ(walls, 1) << deepest;
-  }
-}
-
 // Two contacts with a wall may belong to an edge, so they begin no patch.
-TEST(SheetPatches, NoneBeginsAtFewContacts) {
+TEST(SheetPatches, AnotherPatchBeginsAtTheDeepestOfManyContactsThatNoneExplains) {
   const auto tool = scenes::box_tool(kHalf_m);
   const auto frame = floor_and_wall();
-  SheetPatches patches({}, kUnit_m, 3, *tool, scenes::kernels());
-  patches.keep(frame, 0);
-  patches.requery({}, false);
-  std::vector<ToolContact> contacts = wall_contacts(0);
-  contacts.resize(2);
-  patches.on_frame(frame, {{}, true, contacts}, 1.0 / 30);
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (!patches.tracks(i)) continue;
-    EXPECT_GT(patches.tracker(i).region().frame.normal_W().y(), 0.9);
-  }
+  for (const std::size_t count : {2u, 5u})
+    for (std::size_t deepest = 0; deepest < count; deepest += 2) {
+      SheetPatches patches({}, kUnit_m, 3, *tool, scenes::kernels());
+      patches.keep(frame, 0);
+      patches.requery({}, false);
+      std::vector<ToolContact> contacts = wall_contacts(deepest);
+      contacts.resize(count);
+      patches.on_frame(frame, {{}, true, contacts}, 1.0 / 30);
+      int walls = 0;
+      for (std::size_t i = 0; i < patches.size(); ++i) {
+        if (!patches.tracks(i)) continue;
+        const PatchFrame& of = patches.tracker(i).region().frame;
+        if (of.normal_W().dot(contacts[deepest].n_T) < 0.9) {
+          EXPECT_TRUE(count > 2 || of.normal_W().y() > 0.9) << "the floor";
+          continue;
+        }
+        ++walls;
+        const PatchPlace place = of.place(contacts[deepest].r_T);
+        EXPECT_NEAR(std::hypot(place.u, place.v), 0, 1e-3) << deepest;
+      }
+      EXPECT_EQ(walls, count > 2 ? 1 : 0) << deepest;
+    }
 }
 
 }  // namespace

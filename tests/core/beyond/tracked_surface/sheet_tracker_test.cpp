@@ -1,3 +1,5 @@
+// A tracked sheet: what is shown of it, its registration to the frame before, and how it is found in one
+// frame.
 #include "core/beyond/tracked_surface/sheet_tracker.h"
 
 #include <gtest/gtest.h>
@@ -10,23 +12,38 @@
 #include "core/beyond/tracked_surface/height_fit.h"
 #include "tests/support/scenes.h"
 
-// Points that a SheetTracker shows for a sheet which it tracks from frame to frame.
 namespace remote_touch::sheet_tracker_test {
 namespace {
 
 constexpr double kUnit = 0.005;
 
-// A plane y = height_m, with points 1.5 mm apart and noise of standard deviation sigma in contact radii.
-std::shared_ptr<const NeighbourSearch> plane(double height_m, double sigma, unsigned seed) {
+// Planes y = -depth + slope x of (2 n + 1)^2 points, 1.5 mm apart, with noise of standard deviation sigma in
+// contact radii.
+PointCloud planes(const std::vector<double>& depths_m, double sigma, unsigned seed, double slope, int n) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   PointCloud cloud;
-  for (int j = -60; j <= 60; ++j)
-    for (int i = -60; i <= 60; ++i) {
-      const Vec3 off(normal(random), normal(random), normal(random));
-      cloud.append(Vec3(0.0015 * i, height_m, 0.0015 * j) + sigma * kUnit * off);
-    }
-  return std::make_shared<BruteForceSearch>(cloud);
+  for (const double depth : depths_m)
+    for (int j = -n; j <= n; ++j)
+      for (int i = -n; i <= n; ++i) {
+        const Vec3 off(normal(random), normal(random), normal(random));
+        cloud.append(Vec3(0.0015 * i, -depth + slope * 0.0015 * i, 0.0015 * j) + sigma * kUnit * off);
+      }
+  return cloud;
+}
+
+std::shared_ptr<const NeighbourSearch> plane(double height_m, double sigma, unsigned seed) {
+  return std::make_shared<BruteForceSearch>(planes({-height_m}, sigma, seed, 0, 60));
+}
+
+void begin(SheetTracker& tracker, std::shared_ptr<const NeighbourSearch> frame) {
+  tracker.keep(std::move(frame));
+  tracker.requery({Vec3(0, kUnit, 0), false});
+}
+
+// Shows the next frame to a tracker whose proxy is held one contact radius above the plane.
+SheetUpdate follow(SheetTracker& tracker, std::shared_ptr<const NeighbourSearch> frame, double height_m = 0) {
+  return tracker.on_frame(std::move(frame), {Vec3(0, height_m + kUnit, 0), true}, 1.0 / 30);
 }
 
 struct Shown {
@@ -53,18 +70,16 @@ TEST(SheetTracker, ShowsAllPointsOfASheetWithoutTheirNoise) {
     for (unsigned seed = 1; seed <= 5; ++seed) {
       SheetTracker tracker({}, kUnit, scenes::kernels());
       tracker.reserve(20000, false, false);
-      double height_m = 0;
-      std::shared_ptr<const NeighbourSearch> frame = plane(height_m, sigma, seed);
-      tracker.keep(frame);
-      SheetUpdate update = tracker.requery({Vec3(0, kUnit, 0), false});
+      begin(tracker, plane(0, sigma, seed));
+      std::shared_ptr<const NeighbourSearch> frame;
+      SheetUpdate update;
       for (unsigned k = 1; k <= 6; ++k) {
-        height_m = 0.001 * k;
-        frame = plane(height_m, sigma, 100 * k + seed);
-        update = tracker.on_frame(frame, {Vec3(0, height_m + kUnit, 0), true}, 1.0 / 30);
+        frame = plane(0.001 * k, sigma, 100 * k + seed);
+        update = follow(tracker, frame, 0.001 * k);
       }
       ASSERT_TRUE(update.points) << sigma;
-      const Shown raw = shown_of(*frame, height_m, 3 * sigma * kUnit),
-                  clean = shown_of(*update.points, height_m, 3 * sigma * kUnit);
+      const double most_m = 3 * sigma * kUnit;
+      const Shown raw = shown_of(*frame, 0.006, most_m), clean = shown_of(*update.points, 0.006, most_m);
       EXPECT_GE(clean.count, 0.97 * raw.count) << sigma << ", seed " << seed;
       EXPECT_LE(clean.rms_m, 0.35 * raw.rms_m) << sigma << ", seed " << seed;
     }
@@ -86,13 +101,10 @@ TEST(SheetTracker, ChanceMakesNoSecondSheetOfFewPointsSpreadEvenly) {
       return cloud;
     };
     SheetTracker tracker({}, kUnit, scenes::kernels(), SheetTracker::Shows::points);
-    tracker.keep(std::make_shared<BruteForceSearch>(noisy(0)));
-    tracker.requery({Vec3(0, kUnit, 0), false});
+    begin(tracker, std::make_shared<BruteForceSearch>(noisy(0)));
     for (int k = 1; k <= 4; ++k) {
-      const double height_m = 0.001 * k;
-      const PointCloud cloud = noisy(height_m);
-      tracker.on_frame(std::make_shared<BruteForceSearch>(cloud), {Vec3(0, height_m + kUnit, 0), true},
-                       1.0 / 30);
+      const PointCloud cloud = noisy(0.001 * k);
+      follow(tracker, std::make_shared<BruteForceSearch>(cloud), 0.001 * k);
       ASSERT_TRUE(tracker.changes_points()) << "seed " << seed;
       for (std::size_t i = 0; i < cloud.size(); ++i) {
         if (std::hypot(cloud.x[i], cloud.z[i]) > 3 * kUnit) continue;
@@ -105,35 +117,30 @@ TEST(SheetTracker, ChanceMakesNoSecondSheetOfFewPointsSpreadEvenly) {
 TEST(SheetTracker, LeavesASheetWithoutNoiseAsItIs) {
   SheetTracker tracker({}, kUnit, scenes::kernels());
   tracker.reserve(20000, false, false);
-  tracker.keep(plane(0, 0, 1));
-  tracker.requery({Vec3(0, kUnit, 0), false});
+  begin(tracker, plane(0, 0, 1));
   const auto frame = plane(0.001, 0, 2);
-  EXPECT_EQ(tracker.on_frame(frame, {Vec3(0, kUnit, 0), true}, 1.0 / 30).points, frame);
+  EXPECT_EQ(follow(tracker, frame).points, frame);
   EXPECT_FALSE(tracker.changes_points());
 }
 
-// --- for tools: the points one by one ---
-
 TEST(SheetTracker, ReportsHowFarTheNewestFrameMovedTheSheet) {
   SheetTracker tracker({}, kUnit, scenes::kernels(), SheetTracker::Shows::points);
-  tracker.keep(plane(0, 0, 1));
-  tracker.requery({Vec3(0, kUnit, 0), false});
+  begin(tracker, plane(0, 0, 1));
   EXPECT_TRUE(std::isnan(tracker.moved(Vec3::Zero()))) << "seen once";
-  tracker.on_frame(plane(0.004, 0, 2), {Vec3(0, kUnit, 0), true}, 1.0 / 30);
+  follow(tracker, plane(0.004, 0, 2));
   for (const Vec3& p_W : {Vec3(0, 0, 0), Vec3(0.02, 0.01, 0), Vec3(-0.01, -0.002, 0.02)}) {
     EXPECT_NEAR(tracker.moved(p_W), 0.004 / kUnit, 1e-3);
     EXPECT_NEAR(tracker.clearance(p_W), (p_W.y() - 0.004) / kUnit, 1e-3);
   }
-  tracker.on_frame(plane(0.004, 0, 2), {Vec3(0, 0.004 + kUnit, 0), true}, 1.0 / 30);
+  follow(tracker, plane(0.004, 0, 2), 0.004);
   EXPECT_EQ(tracker.moved(Vec3::Zero()), 0) << "at rest";
 }
 
 TEST(SheetTracker, ShowsAPointOnTheSheetOrNotAtAll) {
   const double sigma = 0.4;
   SheetTracker tracker({}, kUnit, scenes::kernels(), SheetTracker::Shows::points);
-  tracker.keep(plane(0, sigma, 1));
-  tracker.requery({Vec3(0, kUnit, 0), false});
-  for (unsigned k = 1; k <= 4; ++k) tracker.on_frame(plane(0, sigma, k), {Vec3(0, kUnit, 0), true}, 1.0 / 30);
+  begin(tracker, plane(0, sigma, 1));
+  for (unsigned k = 1; k <= 4; ++k) follow(tracker, plane(0, sigma, k));
   ASSERT_TRUE(tracker.changes_points());
   const Vec3 noisy_W(0.01, sigma * kUnit, -0.01);
   const ShownPoint shown = tracker.shown(noisy_W);
@@ -145,14 +152,6 @@ TEST(SheetTracker, ShowsAPointOnTheSheetOrNotAtAll) {
   EXPECT_EQ(tracker.shown(Vec3(0.01, 3.5 * kUnit, 0)).kind, ShownPoint::Kind::stray);
   EXPECT_EQ(tracker.shown(Vec3(0.05, 0, 0)).kind, ShownPoint::Kind::outside);
 }
-
-}  // namespace
-}  // namespace remote_touch::sheet_tracker_test
-
-namespace remote_touch::sheet_search_test {
-namespace {
-
-// Registration of a frame's sheet to that of the frame before, from points alone.
 
 constexpr double kHalfRange = 8;
 constexpr double kStandardError = 0.029;  // standard error of a mean over some 1200 points, in sigma
@@ -239,11 +238,6 @@ TEST(SheetRegistration, FindsNoMotionIfThereAreNoPoints) {
   EXPECT_EQ(shift.height, 0);
 }
 
-// SheetSearch: a frame's points outside a tracked sheet's region, and the points shown within it.
-// StrayPoints: stray points that form a surface.
-
-constexpr double kUnit = 0.005;
-
 std::set<std::uint32_t> found(const NeighbourSearch& search, const Ball& ball) {
   const GatheredPoints out = scenes::gathered(search, ball);
   std::set<std::uint32_t> numbers;
@@ -328,31 +322,11 @@ TEST(StrayPoints, ASecondSheetIsASurfaceAndScatteredPointsAreNot) {
   EXPECT_FALSE(strays.is_surface({-4, 0, -3}));
 }
 
-}  // namespace
-}  // namespace remote_touch::sheet_search_test
-
-namespace remote_touch::sheet_acquisition_test {
-namespace {
-
-// Finding a sheet in one frame, before there is a track.
-
-constexpr double kUnit = 0.005;
-
-// Planes y = -depth + 0.3 x, with points 1.5 mm apart and noise of standard deviation sigma in contact radii.
-PointCloud planes(const std::vector<double>& depths_m, double sigma, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  PointCloud cloud;
-  for (const double depth : depths_m)
-    for (int j = -40; j <= 40; ++j)
-      for (int i = -40; i <= 40; ++i) {
-        const Vec3 off(normal(random), normal(random), normal(random));
-        cloud.append(Vec3(0.0015 * i, -depth + 0.3 * 0.0015 * i, 0.0015 * j) + sigma * kUnit * off);
-      }
-  return cloud;
+PointCloud slanted(const std::vector<double>& depths_m, double sigma, unsigned seed) {
+  return planes(depths_m, sigma, seed, 0.3, 40);
 }
 
-std::optional<FoundSheet> found(const PointCloud& cloud, const Vec3& proxy_W) {
+std::optional<FoundSheet> acquired(const PointCloud& cloud, const Vec3& proxy_W) {
   const BruteForceSearch frame(cloud);
   GatheredPoints gathered;
   gathered.reserve(cloud.size(), false, false);
@@ -371,7 +345,7 @@ double height_above(const FoundSheet& sheet, double depth_m) {
 
 TEST(SheetAcquisition, FindsPlaceNormalAndNoise) {
   for (const double sigma : {0.0, 0.2, 0.6, 1.0}) {
-    const auto sheet = found(planes({0}, sigma, 3), Vec3(0, 0.01, 0));
+    const auto sheet = acquired(slanted({0}, sigma, 3), Vec3(0, 0.01, 0));
     ASSERT_TRUE(sheet) << sigma;
     EXPECT_GT(sheet->frame.normal_W().dot(kNormal), std::cos(0.1)) << sigma;
     EXPECT_NEAR(height_above(*sheet, 0), 0, 0.02 + 0.2 * sigma) << sigma;
@@ -380,30 +354,30 @@ TEST(SheetAcquisition, FindsPlaceNormalAndNoise) {
 }
 
 TEST(SheetAcquisition, FacesDownIfItIsFoundFromBelow) {
-  const auto sheet = found(planes({0}, 0.2, 3), Vec3(0, -0.01, 0));
+  const auto sheet = acquired(slanted({0}, 0.2, 3), Vec3(0, -0.01, 0));
   ASSERT_TRUE(sheet);
   EXPECT_LT(sheet->frame.normal_W().dot(kNormal), -std::cos(0.1));
 }
 
 // Two planes, 4 contact radii apart: the sheet is the one that is nearer to the proxy.
 TEST(SheetAcquisition, TheNearerOfTwoIsTheSheet) {
-  const PointCloud cloud = planes({0, 0.02}, 0.2, 5);
-  const auto upper = found(cloud, Vec3(0, 0.006, 0)), lower = found(cloud, Vec3(0, -0.028, 0));
+  const PointCloud cloud = slanted({0, 0.02}, 0.2, 5);
+  const auto upper = acquired(cloud, Vec3(0, 0.006, 0)), lower = acquired(cloud, Vec3(0, -0.028, 0));
   ASSERT_TRUE(upper && lower);
   EXPECT_NEAR(height_above(*upper, 0), 0, 0.1);
   EXPECT_NEAR(height_above(*lower, 0.02), 0, 0.1);
 }
 
 TEST(SheetAcquisition, FindsNoSheetIfThereIsNoSurface) {
-  EXPECT_FALSE(found(PointCloud(), Vec3::Zero()));
-  EXPECT_FALSE(found(planes({0}, 0, 1), Vec3(0, 0.5, 0))) << "too far away";
+  EXPECT_FALSE(acquired(PointCloud(), Vec3::Zero()));
+  EXPECT_FALSE(acquired(slanted({0}, 0, 1), Vec3(0, 0.5, 0))) << "too far away";
   PointCloud few;
   for (const Vec3& p : {Vec3(0, 0, 0), Vec3(0.001, 0, 0), Vec3(0, 0, 0.001)}) few.append(p);
-  EXPECT_FALSE(found(few, Vec3(0, 0.005, 0)));
+  EXPECT_FALSE(acquired(few, Vec3(0, 0.005, 0)));
   PointCloud lost;
   for (int i = 0; i < 100; ++i) lost.append(Vec3::Constant(std::nan("")));
-  EXPECT_FALSE(found(lost, Vec3::Zero()));
+  EXPECT_FALSE(acquired(lost, Vec3::Zero()));
 }
 
 }  // namespace
-}  // namespace remote_touch::sheet_acquisition_test
+}  // namespace remote_touch::sheet_tracker_test
