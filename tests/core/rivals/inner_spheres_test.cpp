@@ -1,4 +1,4 @@
-// The packing compared with closed forms for a cube and a ball, and with every pair of spheres.
+// Spheres packed into a tool against closed forms and every pair of them, and their penetration volume.
 #include "core/rivals/inner_sphere_motion.h"
 
 #include <gtest/gtest.h>
@@ -7,10 +7,13 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <random>
 
 #include "core/mesh/triangle_mesh.h"
 #include "core/mesh/triangle_tree.h"
 #include "core/parameters/parameter.h"
+#include "core/points/vector.h"
+#include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
@@ -47,20 +50,16 @@ TEST(InnerSpheres, DoNotOverlap) {
   expect_no_overlap(make_inner_spheres(tool_of("fork", 1e-3), 300).spheres);
 }
 
-TEST(InnerSpheres, LieInsideABox) {
-  for (const Sphere& sphere : in_box().spheres) {
-    EXPECT_GE(sphere.radius_m, 0.9 * 5e-4);
-    EXPECT_LE(scenes::box_distance(kHalf_m, sphere.centre), -sphere.radius_m + kRounding_m);
-  }
-}
-
 // The winding number says which side of the mesh a centre is on.
-TEST(InnerSpheres, LieInsideAMeshThatIsNotConvex) {
-  const VoxelTool tool = tool_of("fork", 1e-3);
-  const TriangleTree tree(tool.mesh);
-  for (const Sphere& sphere : make_inner_spheres(tool, 300).spheres) {
-    EXPECT_GT(tree.winding_number(sphere.centre), 0.9);
-    EXPECT_GE(std::sqrt(tree.nearest(sphere.centre, 0).squared_m2), sphere.radius_m - kRounding_m);
+TEST(InnerSpheres, LieInsideABoxAndAMeshThatIsNotConvex) {
+  const VoxelTool fork = tool_of("fork", 1e-3), box = *scenes::box_tool(kHalf_m);
+  for (const VoxelTool* tool : {&fork, &box}) {
+    const TriangleTree tree(tool->mesh);
+    for (const Sphere& sphere : make_inner_spheres(*tool, 300).spheres) {
+      EXPECT_GT(tree.winding_number(sphere.centre), 0.9);
+      EXPECT_GE(std::sqrt(tree.nearest(sphere.centre, 0).squared_m2), sphere.radius_m - kRounding_m);
+      EXPECT_GE(sphere.radius_m, 0.9 * tool->grid.size_m);
+    }
   }
 }
 
@@ -79,30 +78,12 @@ TEST(InnerSpheres, AreTheLargestThatFitIntoACube) {
   }
 }
 
-TEST(InnerSpheres, ABallIsOneSphere) {
-  const InnerSpheres made = make_inner_spheres(tool_of("ball"), 1000);
-  EXPECT_NEAR(made.spheres.front().radius_m, 0.01, 1e-4);
-  EXPECT_GT(made.coverage, 0.97);
-}
-
+// Equal spheres in a cubic lattice fill 52 % of space.
 TEST(InnerSpheres, CoverageIsTheirShareOfTheVolume) {
   double volume_m3 = 0;
   for (const Sphere& s : in_box().spheres) volume_m3 += 4 * std::numbers::pi / 3 * std::pow(s.radius_m, 3);
   EXPECT_NEAR(in_box().coverage, volume_m3 / (8 * kHalf_m.prod()), 1e-12);
-}
-
-// Equal spheres in a cubic lattice fill 52 % of space.
-TEST(InnerSpheres, FillTheMoreTheMoreThereAre) {
-  const auto tool = scenes::box_tool(kHalf_m);
-  double before = 0;
-  for (const int count : {4, 40, 400}) {
-    const InnerSpheres made = make_inner_spheres(*tool, count);
-    EXPECT_LE(made.spheres.size(), static_cast<std::size_t>(count));
-    EXPECT_GT(made.coverage, before);
-    before = made.coverage;
-  }
-  EXPECT_GT(before, 0.6);
-  EXPECT_LT(before, 1);
+  EXPECT_GT(in_box().coverage, 0.6);
 }
 
 TEST(InnerSpheres, EqualTheirMirrorImagesInABox) {
@@ -149,16 +130,6 @@ TEST(InnerSpheres, EverySphereCanBeReached) {
   }
 }
 
-TEST(InnerSpheres, AreTheSameEveryTime) {
-  const InnerSpheres again = make_inner_spheres(*scenes::box_tool(kHalf_m), 400);
-  ASSERT_EQ(again.spheres.size(), in_box().spheres.size());
-  for (std::size_t i = 0; i < again.spheres.size(); ++i) {
-    EXPECT_EQ(again.spheres[i].centre, in_box().spheres[i].centre);
-    EXPECT_EQ(again.spheres[i].radius_m, in_box().spheres[i].radius_m);
-  }
-  EXPECT_EQ(again.neighbour, in_box().neighbour);
-}
-
 TEST(InnerSpheres, AskForASmallerVoxelIfNoneFits) {
   VoxelTool tool = *scenes::box_tool({0.002, 0.002, 0.002});
   for (float& distance : tool.distance_m) distance = std::abs(distance) + 1e-6f;
@@ -188,13 +159,170 @@ TEST(SphereLocator, FindsTheSphereThatContainsAPosition) {
   }
   EXPECT_GT(found, 1000);
   EXPECT_LT(found, 19000);
-}
-
-TEST(SphereLocator, FindsNothingAtNan) {
-  const SphereLocator locator(in_box().spheres);
-  EXPECT_TRUE(locator.at(in_box().spheres[0].centre));
   EXPECT_FALSE(locator.at({0, std::nan(""), 0}));
   EXPECT_FALSE(locator.at({1e300, 0, 0}));
+}
+
+// --- the penetration volume, against the closed form for half-spaces, in a ball and in a box ---
+
+// A tool with its spheres.
+class Probe {
+ public:
+  Probe(std::shared_ptr<const VoxelTool> tool, int spheres)
+      : made_(std::make_shared<const InnerSpheres>(make_inner_spheres(*tool, spheres))),
+        finder_(tool, scenes::kernels()),
+        query_(made_) {}
+
+  SpherePenetration in(const PointCloud& cloud, const ToolPose& pose) {
+    const auto tiles = std::make_shared<TiledCloud>();
+    tiles->assign(cloud);
+    finder_.on_frame(tiles);
+    return query_.penetration(pose, finder_);
+  }
+  SpherePenetration again(const ToolPose& pose) { return query_.penetration(pose, finder_); }
+  const InnerSpheres& spheres() const { return *made_; }
+  // Sum over all spheres of their parts below the plane y = 0, for a tool that is not turned.
+  double below_m3(double height_m) const {
+    double volume_m3 = 0;
+    for (const Sphere& sphere : made_->spheres)
+      volume_m3 += cap_behind(sphere.radius_m, sphere.centre.y() + height_m).volume_m3;
+    return volume_m3;
+  }
+
+ private:
+  std::shared_ptr<const InnerSpheres> made_;
+  TouchFinder finder_;
+  PenetrationQuery query_;
+};
+
+Probe ball() {
+  ToolReport report;
+  return {std::make_shared<const VoxelTool>(make_voxel_tool(find_generated_tool("ball")->make(), {}, report)),
+          1000};
+}
+Probe& box() {
+  static Probe probe(scenes::box_tool(kHalf_m), 1000);
+  return probe;
+}
+
+// Points at y = 0, 0.4 mm apart, with normals along y. They are symmetric about x = 0 and z = 0. Only those
+// with x from low_x_m to high_x_m are there.
+PointCloud sheet(double low_x_m = -1, double high_x_m = 1) {
+  constexpr double spacing_m = 4e-4;
+  PointCloud cloud;
+  for (int k = -33; k < 33; ++k)
+    for (int i = -63; i < 63; ++i) {
+      const Vec3 p = spacing_m * Vec3(i + 0.5, 0, k + 0.5);
+      if (p.x() > low_x_m && p.x() < high_x_m) cloud.append(p, Vec3::UnitY());
+    }
+  return cloud;
+}
+
+ToolPose at(double height_m, const Vec3& turn = Vec3::Zero()) {
+  return {{0, height_m, 0}, rotation(turn)};
+}
+
+TEST(BallCap, HasTheVolumeOfItsSlices) {
+  constexpr double r = 0.007;
+  constexpr int slices = 100000;
+  for (const double height : {-0.008, -0.007, -0.003, 0.0, 0.002, 0.0069, 0.007, 0.009}) {
+    double volume = 0;
+    for (int i = 0; i < slices; ++i) {
+      const double y = r * ((2 * i + 1.0) / slices - 1);
+      if (y < -height) volume += std::numbers::pi * (r * r - y * y) * 2 * r / slices;
+    }
+    EXPECT_NEAR(cap_behind(r, height).volume_m3, volume, 1e-4 * r * r * r) << height;
+    const double disk = std::max(0.0, std::numbers::pi * (r * r - height * height));
+    EXPECT_NEAR(cap_behind(r, height).disk_m2, disk, 1e-12) << height;
+  }
+}
+
+TEST(SpherePenetration, IsThatOfAHalfSpaceInABall) {
+  Probe probe = ball();
+  ASSERT_EQ(probe.spheres().spheres.size(), 1u);
+  const Sphere& sphere = probe.spheres().spheres[0];
+  EXPECT_NEAR(sphere.radius_m, 0.01, 1e-4);
+  for (const double height : {0.009, 0.005, 0.0003, -0.004, -0.009}) {
+    const SpherePenetration found = probe.in(sheet(), at(height));
+    const BallCap cap = cap_behind(sphere.radius_m, height + sphere.centre.y());
+    EXPECT_NEAR(found.volume_m3, cap.volume_m3, 1e-6 * cap.volume_m3) << height;
+    EXPECT_NEAR(found.wrench_T[1], cap.volume_m3, 1e-6 * cap.volume_m3) << height;
+    EXPECT_NEAR(found.slope_T(1, 1), cap.disk_m2, 1e-6 * cap.disk_m2) << height;
+    EXPECT_EQ(found.spheres, 1);
+  }
+}
+
+// Spheres that the plane cuts contain points; those below contain none and take over a plane. The tool is
+// symmetric, so it is balanced.
+TEST(SpherePenetration, IsThatOfAHalfSpaceInABox) {
+  for (const double depth : {-0.0001, 0.0005, 0.001, 0.003, 0.005, 0.008}) {
+    const SpherePenetration found = box().in(sheet(), at(kHalf_m.y() - depth));
+    const double expected = box().below_m3(kHalf_m.y() - depth), rounding = 1e-6 * expected;
+    EXPECT_LE(found.volume_m3, (1 + 1e-6) * expected) << depth;
+    EXPECT_GE(found.volume_m3, 0.95 * expected) << depth;
+    EXPECT_LE(found.volume_m3, 4 * kHalf_m.x() * kHalf_m.z() * std::max(depth, 0.0)) << depth;
+    EXPECT_NEAR(found.wrench_T[1], found.volume_m3, rounding) << depth;
+    EXPECT_NEAR(std::hypot(found.wrench_T[0], found.wrench_T[2]), 0, rounding) << depth;
+    EXPECT_NEAR(found.wrench_T.tail<3>().norm(), 0, rounding * kHalf_m.x()) << depth;
+  }
+}
+
+// The derivative of the wrench, by differences, is the slope.
+TEST(SpherePenetration, SlopeIsTheDecreaseOfTheWrench) {
+  constexpr double small = 1e-6;
+  const ToolPose pose = at(0.0035, {0.1, 0.2, 0});
+  const SpherePenetration here = box().in(sheet(), pose);
+  const Vec3 up_W = Vec3::UnitY() * small, up_T = pose.q_WT.conjugate() * up_W;
+  const SpherePenetration above = box().again({pose.p_W + up_W, pose.q_WT});
+  Vector6 displacement_T;
+  displacement_T << up_T, Vec3::Zero();
+  const Vector6 expected = here.slope_T * displacement_T;
+  EXPECT_NEAR((here.wrench_T - above.wrench_T - expected).norm(), 0, 0.05 * expected.norm());
+}
+
+// The part over the sheet is pushed up, so the tool turns about z.
+TEST(SpherePenetration, DoesNotSpreadBeyondTheEdgeOfASheet) {
+  const double height_m = kHalf_m.y() - 0.001;
+  const double whole_m3 = box().in(sheet(), at(height_m)).volume_m3;
+  const SpherePenetration half = box().in(sheet(-1, 0), at(height_m));
+  EXPECT_NEAR(half.volume_m3, 0.5 * whole_m3, 0.15 * whole_m3);
+  EXPECT_LT(half.wrench_T[5], -0.5 * 0.005 * half.volume_m3);
+}
+
+TEST(SpherePenetration, OfTwoOppositeWallsIsNoForce) {
+  PointCloud walls;
+  const PointCloud below = sheet();
+  for (std::size_t i = 0; i < below.size(); ++i) {
+    walls.append(below.point(i) - Vec3(0, 0.0045, 0), Vec3::UnitY());
+    walls.append(below.point(i) + Vec3(0, 0.0045, 0), -Vec3::UnitY());
+  }
+  const SpherePenetration found = box().in(walls, at(0));
+  EXPECT_GT(found.volume_m3, 0);
+  EXPECT_LT(found.wrench_T.head<3>().norm(), 1e-6 * found.volume_m3);
+  EXPECT_GT(found.slope_T(1, 1), 0);
+}
+
+// The tool leaves a point that is near its lower side downwards, so it is pushed up.
+TEST(SpherePenetration, PointsWithoutANormalPushOutOfTheNearestSide) {
+  PointCloud bare = sheet();
+  bare.nx.clear(), bare.ny.clear(), bare.nz.clear();
+  const ToolPose pose = at(kHalf_m.y() - 0.001);
+  const SpherePenetration with = box().in(sheet(), pose), without = box().in(bare, pose);
+  EXPECT_NEAR(without.wrench_T[1], with.wrench_T[1], 0.2 * with.wrench_T[1]);
+  EXPECT_LT(std::hypot(without.wrench_T[0], without.wrench_T[2]), 0.05 * with.wrench_T[1]);
+}
+
+TEST(SpherePenetration, DependsOnThePoseOnlyAndAllocatesNothing) {
+  const SpherePenetration before = box().in(sheet(), at(0.004));
+  std::size_t allocated = 0;
+  for (const double height : {0.002, -0.002, 0.02, 0.004}) {
+    const std::size_t count = allocation_count();
+    const SpherePenetration found = box().again(at(height, {0.2, height, 0}));
+    allocated += allocation_count() - count;
+    EXPECT_TRUE(found.wrench_T.allFinite());
+  }
+  EXPECT_EQ(allocated, 0u);
+  EXPECT_EQ(box().again(at(0.004)).wrench_T, before.wrench_T);
 }
 
 }  // namespace

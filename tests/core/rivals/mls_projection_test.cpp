@@ -1,5 +1,5 @@
-// The moving least squares surface against closed forms (plane, quadric, sphere, noise) and against sums and
-// solvers written without the product's code.
+// The moving least squares surface against a quadric, and against sums and solvers written without the
+// product's code.
 #include "core/rivals/mls_surface_renderer.h"
 
 #include <gtest/gtest.h>
@@ -16,10 +16,7 @@
 namespace remote_touch::mls_projection_test {
 namespace {
 
-// Points of smooth surfaces, and positions near them.
-
 constexpr double kH = 0.0045;
-constexpr double kPi = 3.14159265358979323846;
 const Vec3 kNone = Vec3::Zero(), kUp = Vec3::UnitY();
 
 Neighbourhood near_of(const PointCloud& cloud, double h = kH) {
@@ -55,34 +52,9 @@ std::vector<Vec3> positions(int count, double height_m, unsigned seed) {
   return list;
 }
 
-// A sphere around the origin: points of a Fibonacci lattice, about spacing_m apart.
-PointCloud sphere(double radius_m, double spacing_m) {
-  const int count = static_cast<int>(4 * kPi * radius_m * radius_m / (spacing_m * spacing_m));
-  const double turn = kPi * (3 - std::sqrt(5.0));
-  PointCloud cloud;
-  for (int i = 0; i < count; ++i) {
-    const double y = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - y * y);
-    cloud.append(radius_m * Vec3(r * std::cos(turn * i), y, r * std::sin(turn * i)));
-  }
-  return cloud;
-}
-
-// --- sums and solvers without the product's code ---
-
 double brute_weight(double distance_m) {
   const double R = 2.5 * kH;
   return distance_m < R ? std::exp(-distance_m * distance_m / (kH * kH)) - std::exp(-6.25) : 0;
-}
-
-// The integral of weight^power (r^2 / h^2)^k over r^2 / h^2, for points that fill a plane.
-double moment(int k, int power = 1) {
-  constexpr int kSteps = 100000;
-  double sum = 0;
-  for (int i = 0; i < kSteps; ++i) {
-    const double s = 6.25 * (i + 0.5) / kSteps;
-    sum += std::pow(std::exp(-s) - std::exp(-6.25), power) * std::pow(s, k);
-  }
-  return sum * 6.25 / kSteps;
 }
 
 // e(n, t), in m^2.
@@ -164,28 +136,6 @@ TEST(MlsProjection, WithoutASideFIsNotNegative) {
   }
 }
 
-// --- closed forms ---
-
-// The points are an irregular sample, so that no symmetry helps.
-TEST(MlsProjection, APlaneIsExact) {
-  const Vec3 n = Vec3(0.3, 0.9, -0.2).normalized(), u = n.unitOrthogonal(), v = n.cross(u);
-  const PointCloud numbers = scenes::random_cloud(3000, 0.03, 5);
-  PointCloud cloud;
-  for (std::size_t i = 0; i < numbers.size(); ++i) cloud.append(numbers.x[i] * u + numbers.z[i] * v);
-  Neighbourhood near = near_of(cloud);
-  for (const int degree : {1, 2}) {
-    const MlsProjection surface(kH, degree);
-    for (const double height : {-0.008, -0.001, 0.0, 0.002, 0.009}) {
-      const Vec3 on_plane = 0.0004 * u + 0.0007 * v, x = on_plane + height * n;
-      const MlsFoot foot = surface.project(near, x, (n + 0.2 * u).normalized());
-      ASSERT_TRUE(foot.found) << height;
-      EXPECT_NEAR((foot.p_W - on_plane).norm(), 0, 1e-11) << height;
-      EXPECT_NEAR((foot.normal_W - n).norm(), 0, 1e-8) << height;
-      EXPECT_NEAR(surface.sample(near, x, n).value_m, height, 1e-11);
-    }
-  }
-}
-
 // A quadric over a plane, sampled symmetrically about its vertex: the reference plane is tangential there, so
 // the polynomial of degree 2 is the quadric itself. A plane misses the vertex by the sag of the points.
 TEST(MlsProjection, AQuadricIsExactAtItsVertex) {
@@ -213,61 +163,6 @@ TEST(MlsProjection, AQuadricIsExactAtItsVertex) {
   }
 }
 
-// Over the tangent plane a sphere is -r^2 / (2 rho) - r^4 / (8 rho^3). The polynomial of degree 2 contains
-// the first term. Its value at r = 0 is wrong by that of the fit a + b r^2 to the second term. With weights
-// exp(-r^2 / h^2) to infinity, this error would be h^4 / (4 rho^3). A plane is wrong by the mean of the first
-// term.
-TEST(MlsProjection, ASphereHasAnErrorOfFourthOrder) {
-  constexpr double kRadius_m = 0.05;
-  constexpr int kCount = 20;
-  const double determinant = moment(0) * moment(2) - moment(1) * moment(1);
-  const double fit_of_r4 = (moment(2) * moment(2) - moment(1) * moment(3)) / determinant;  // in h^4, negative
-  const PointCloud cloud = sphere(kRadius_m, 0.0007);
-  double mean_error_m[2] = {};
-  const double widths_m[] = {0.003, 0.006};
-  for (int k = 0; k < 2; ++k) {
-    const double h = widths_m[k];
-    Neighbourhood near = near_of(cloud, h);
-    for (int i = 0; i < kCount; ++i) {
-      const Vec3 out = scenes::random_cloud(1, 1, static_cast<unsigned>(i + 1)).point(0).normalized();
-      const MlsFoot foot = MlsProjection(h, 2).project(near, (kRadius_m + 0.0004 * (i % 5 - 2)) * out, out);
-      ASSERT_TRUE(foot.found);
-      mean_error_m[k] += (foot.p_W.norm() - kRadius_m) / kCount;
-      const MlsFoot flat = MlsProjection(h, 1).project(near, kRadius_m * out, out);
-      const double sag_m = moment(1) / moment(0) * h * h / (2 * kRadius_m);
-      EXPECT_NEAR(flat.p_W.norm() - kRadius_m, -sag_m, 0.05 * sag_m);
-    }
-    const double expected_m = -fit_of_r4 * std::pow(h, 4) / (8 * std::pow(kRadius_m, 3));
-    EXPECT_NEAR(mean_error_m[k], expected_m, 0.15 * expected_m) << h;
-  }
-  EXPECT_NEAR(std::log2(mean_error_m[1] / mean_error_m[0]), 4, 0.3);
-}
-
-// The value at r = 0 is a mean with the weights w of the points, for degree 2 with w (a + b r^2) so that r^2
-// has the value 0 there. The variance follows from the squares of these weights and from the density.
-TEST(MlsProjection, NoiseIsAveraged) {
-  constexpr double kSpacing_m = 0.0015, kNoise_m = 0.0003;
-  for (const int degree : {1, 2}) {
-    double sum = 0;
-    int count = 0;
-    for (unsigned seed = 1; seed <= 6; ++seed) {
-      PointCloud cloud = scenes::flat_grid(100, kSpacing_m);
-      Normals noise(seed);
-      for (double& y : cloud.y) y = kNoise_m * noise.next();
-      Neighbourhood near = near_of(cloud);
-      for (int i = -3; i <= 3; ++i)
-        for (int j = -3; j <= 3; ++j, ++count)  // 4 h apart: independent
-          sum += std::pow(MlsProjection(kH, degree).project(near, {0.018 * i, 0, 0.018 * j}, kUp).p_W.y(), 2);
-    }
-    const double determinant = moment(0) * moment(2) - moment(1) * moment(1);
-    const double a = degree == 1 ? 1 / moment(0) : moment(2) / determinant;
-    const double b = degree == 1 ? 0 : -moment(1) / determinant;
-    const double squares = a * a * moment(0, 2) + 2 * a * b * moment(1, 2) + b * b * moment(2, 2);
-    const double expected_m = kNoise_m * std::sqrt(squares * kSpacing_m * kSpacing_m / (kPi * kH * kH));
-    EXPECT_NEAR(std::sqrt(sum / count), expected_m, 0.15 * expected_m) << degree;
-  }
-}
-
 // The mean of the points of a half plane, seen from s h beyond its edge, is at exp(-s^2) / (sqrt(pi) erfc(s))
 // in units of h, without the cut at R. It is 0.75 at s = 0.27.
 TEST(MlsProjection, TheSurfaceEndsBeyondTheLastPoints) {
@@ -287,8 +182,6 @@ TEST(MlsProjection, TheSurfaceEndsBeyondTheLastPoints) {
     EXPECT_FALSE(surface.sample(near, x, kUp).supported) << s;
   }
 }
-
-// --- the definition ---
 
 // The derivatives of e along n, and for turns of n about r, vanish at the reference plane.
 TEST(MlsProjection, TheReferencePlaneIsALocalMinimum) {
@@ -328,19 +221,6 @@ TEST(MlsProjection, TheFootIsAFixedPointOfTheProjectionByQr) {
   }
 }
 
-TEST(MlsProjection, ProjectingAgainChangesNothing) {
-  const PointCloud cloud = bumps(9, 0.0003);
-  Neighbourhood near = near_of(cloud);
-  const MlsProjection surface(kH, 2);
-  for (const Vec3& x : positions(50, 0.006, 10)) {
-    const MlsFoot once = surface.project(near, x, kNone);
-    ASSERT_TRUE(once.found);
-    const MlsFoot twice = surface.project(near, once.p_W, once.normal_W);
-    EXPECT_NEAR((twice.p_W - once.p_W).norm(), 0, 1e-8 * surface.support_radius_m());
-    EXPECT_NEAR((twice.normal_W - once.normal_W).norm(), 0, 1e-6);
-  }
-}
-
 // Noise as large as h leaves no minimum of e. The plane of the weighted mean is used, and found.
 TEST(MlsProjection, MuchNoiseStillHasASurface) {
   PointCloud cloud = scenes::flat_grid(100);
@@ -355,23 +235,6 @@ TEST(MlsProjection, MuchNoiseStillHasASurface) {
   }
   EXPECT_GE(found, 97);
   EXPECT_LT(sum / found, 0.5 * kH);
-}
-
-TEST(MlsProjection, TheOrderOfThePointsAndMissingPointsDoNotMatter) {
-  const PointCloud cloud = bumps(12, 0.0005);
-  PointCloud reversed;
-  for (std::size_t i = cloud.size(); i-- > 0;) {
-    reversed.append(cloud.point(i));
-    if (i % 50 == 0) reversed.append(Vec3::Constant(std::nan("")));
-  }
-  Neighbourhood near = near_of(cloud), other = near_of(reversed);
-  const MlsProjection surface(kH, 2);
-  for (const Vec3& x : positions(20, 0.006, 13)) {
-    const MlsFoot a = surface.project(near, x, kUp), b = surface.project(other, x, kUp);
-    EXPECT_EQ(a.p_W, b.p_W);
-    EXPECT_EQ(a.normal_W, b.normal_W);
-    EXPECT_EQ(surface.sample(near, x, kUp).value_m, surface.sample(other, x, kUp).value_m);
-  }
 }
 
 TEST(MlsProjection, PointsThatSpanNoPlaneHaveNoSurface) {
@@ -401,14 +264,6 @@ TEST(MlsProjection, TooFewPointsLowerTheDegree) {
   const MlsFoot foot = MlsProjection(kH, 2).project(near, {0.0003, 0.002, -0.0004}, kUp);
   ASSERT_TRUE(foot.found);
   EXPECT_NEAR((foot.p_W - Vec3(0.0003, 0, -0.0004)).norm(), 0, 1e-11);
-}
-
-TEST(MlsProjection, PositionsBeyondTheRadiusHaveNoWeight) {
-  Neighbourhood near = near_of(scenes::flat_grid(40));
-  const MlsProjection surface(kH, 2);
-  EXPECT_EQ(surface.sample(near, {0, 0.02, 0}, kUp).weight, 0);
-  EXPECT_FALSE(surface.project(near, {0, 0.02, 0}, kUp).found);
-  EXPECT_GT(surface.sample(near, {0, 0.01, 0}, kUp).weight, 0);
 }
 
 }  // namespace

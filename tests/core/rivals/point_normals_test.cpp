@@ -1,3 +1,4 @@
+// Nearest points, spacing and normals of points, and implicit surfaces, against brute force and closed forms.
 #include "core/rivals/point_normals.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +13,6 @@
 
 namespace remote_touch::point_normals_test {
 namespace {
-
-// Nearest points, spacing and normals of points against brute force and closed forms.
 
 std::vector<double> found_by(NearestPoints& nearest) {
   std::vector<double> distances;
@@ -38,11 +37,15 @@ TEST(NearestPoints, AreThoseOfBruteForceWhateverWasAskedBefore) {
   }
 }
 
-TEST(NearestPoints, PointsAtTheSameDistanceBelongTogether) {
-  const auto search = make_search(scenes::flat_grid(21, 0.002));
+// Points at the same distance belong together. If there are few points, they are all.
+TEST(NearestPoints, MayBeMoreOrFewerThanAreAskedFor) {
   NearestPoints nearest(scenes::kernels());
-  EXPECT_NEAR(nearest.find(*search, Vec3::Zero(), 3), 0.002, 1e-12);
+  EXPECT_NEAR(nearest.find(*make_search(scenes::flat_grid(21, 0.002)), Vec3::Zero(), 3), 0.002, 1e-12);
   EXPECT_EQ(found_by(nearest).size(), 5u) << "the node and its four neighbours";
+  const PointCloud two = scenes::cloud_of({{0, 0, 0}, {0.01, 0, 0}});
+  EXPECT_NEAR(nearest.find(*make_search(two), Vec3::Zero(), 9), 0.01, 1e-15);
+  EXPECT_EQ(nearest.find(*make_search(PointCloud{}), Vec3::Zero(), 9), 0);
+  EXPECT_TRUE(found_by(nearest).empty());
 }
 
 // Whatever was found before, a point beyond half a metre does not count.
@@ -54,14 +57,6 @@ TEST(NearestPoints, AreThoseWithinHalfAMetre) {
     EXPECT_NEAR(nearest.find(*search, Vec3::Zero(), 3), 0.3, 1e-15) << before_m;
     EXPECT_EQ(found_by(nearest).size(), 2u) << before_m;
   }
-}
-
-TEST(NearestPoints, AreAllIfThereAreFewPoints) {
-  const PointCloud two = scenes::cloud_of({{0, 0, 0}, {0.01, 0, 0}});
-  NearestPoints nearest(scenes::kernels());
-  EXPECT_NEAR(nearest.find(*make_search(two), Vec3::Zero(), 9), 0.01, 1e-15);
-  EXPECT_EQ(nearest.find(*make_search(PointCloud{}), Vec3::Zero(), 9), 0);
-  EXPECT_TRUE(found_by(nearest).empty());
 }
 
 // A corner node of a grid has its third neighbour across the square, a node of a side at one spacing.
@@ -90,6 +85,7 @@ TEST(MeanSpacing, DoesNotDependOnTheOrderOfThePoints) {
   EXPECT_EQ(mean_spacing_m(*make_search(reversed), nearest, scenes::kernels(), buffer), spacing_m);
 }
 
+// Points on a line have no normal.
 TEST(PointNormals, AreThoseOfAnEigenvalueSolverTurnedToTheSensor) {
   const PointCloud cloud = scenes::random_cloud(400, 0.02, 9);
   const BruteForceSearch search(cloud);
@@ -110,25 +106,12 @@ TEST(PointNormals, AreThoseOfAnEigenvalueSolverTurnedToTheSensor) {
     EXPECT_LT(n.dot(x - view.position_W), 0);
     EXPECT_EQ(normals.of(i, x), n) << "kept";
   }
-}
-
-TEST(PointNormals, DoNotDependOnTheOrderAndPointsOnALineHaveNone) {
-  const PointCloud cloud = scenes::random_cloud(300, 0.01, 8);
-  PointCloud turned;
-  for (std::size_t i = cloud.size(); i-- > 0;) turned.append(cloud.point(i));
-  const BruteForceSearch a(cloud), b(turned);
-  PointNormals of_a(9, scenes::kernels()), of_b(9, scenes::kernels());
-  of_a.set_points(a, {}), of_b.set_points(b, {});
-  for (std::uint32_t i = 0; i < 300; ++i)
-    EXPECT_EQ(of_a.of(i, cloud.point(i)), of_b.of(299 - i, cloud.point(i)));
   PointCloud line;
   for (int i = 0; i < 20; ++i) line.append({0.001 * i, 0, 0});
   const BruteForceSearch on_a_line(line);
-  of_a.set_points(on_a_line, {});
-  EXPECT_TRUE(of_a.of(3, line.point(3)).isZero(0));
+  normals.set_points(on_a_line, view);
+  EXPECT_TRUE(normals.of(3, line.point(3)).isZero(0));
 }
-
-// The two implicit surfaces against closed forms and finite differences, and the axis that one of them needs.
 
 constexpr double kR = 0.01;
 const Vec3 kNoSide = Vec3::Zero();
@@ -147,7 +130,7 @@ double wendland(double q) {
   return std::pow(1 - q, 4) * (4 * q + 1);
 }
 
-TEST(PointSurface, AMetaballOfOnePointIsASphere) {
+TEST(PointSurface, AMetaballOfOnePointIsASphereAndTwoAddUp) {
   const PointCloud cloud = scenes::cloud_of({{0.02, -0.01, 0.03}});
   for (const SurfaceWeight weight : {SurfaceWeight::wyvill, SurfaceWeight::wendland}) {
     const auto w = weight == SurfaceWeight::wyvill ? wyvill : wendland;
@@ -162,12 +145,9 @@ TEST(PointSurface, AMetaballOfOnePointIsASphere) {
     EXPECT_FALSE(outside.supported);
     EXPECT_GT(outside.value, 0);
   }
-}
-
-TEST(PointSurface, TwoMetaballsAddUp) {
-  const PointCloud cloud = scenes::cloud_of({{-0.004, 0, 0}, {0.004, 0, 0}});
+  const PointCloud two = scenes::cloud_of({{-0.004, 0, 0}, {0.004, 0, 0}});
   const PointSurface surface(SurfaceKind::metaballs, SurfaceWeight::wyvill, kR, 0.5);
-  EXPECT_NEAR(sample(surface, cloud, {0, 0.003, 0}).value, 0.5 - 2 * wyvill(0.5), 1e-12);
+  EXPECT_NEAR(sample(surface, two, {0, 0.003, 0}).value, 0.5 - 2 * wyvill(0.5), 1e-12) << "they add up";
 }
 
 TEST(PointSurface, GradientsOfMetaballsAreThoseOfFiniteDifferences) {
@@ -230,12 +210,17 @@ TEST(PointSurface, TheOrderOfThePointsDoesNotMatter) {
   }
 }
 
+// The last two are a diagonal matrix, and one whose axes are equal.
 TEST(ThinnestAxis, IsThatOfAnEigenvalueSolver) {
   const PointCloud numbers = scenes::random_cloud(300, 1, 12);
+  std::vector<Eigen::Matrix3d> matrices;
   for (std::size_t i = 0; i + 3 <= numbers.size(); i += 3) {
     Eigen::Matrix3d half;
     half << numbers.point(i), numbers.point(i + 1), numbers.point(i + 2);
-    const Eigen::Matrix3d matrix = half * half.transpose();
+    matrices.emplace_back(half * half.transpose());
+  }
+  matrices.emplace_back(Vec3(3, 1, 2).asDiagonal()), matrices.push_back(Eigen::Matrix3d::Identity());
+  for (const Eigen::Matrix3d& matrix : matrices) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
     const ThinnestAxis thin = thinnest_axis(matrix);
     EXPECT_NEAR(thin.smallest, solver.eigenvalues()[0], 1e-13);
@@ -243,13 +228,6 @@ TEST(ThinnestAxis, IsThatOfAnEigenvalueSolver) {
     EXPECT_NEAR((matrix * thin.axis - thin.smallest * thin.axis).norm(), 0, 1e-13);
     EXPECT_NEAR(thin.axis.norm(), 1, 1e-14);
   }
-}
-
-TEST(ThinnestAxis, IsFoundForADiagonalMatrixAndForEqualAxes) {
-  EXPECT_EQ(thinnest_axis(Vec3(3, 1, 2).asDiagonal()).axis, Vec3(0, 1, 0));
-  const ThinnestAxis alike = thinnest_axis(Eigen::Matrix3d::Identity());
-  EXPECT_EQ(alike.smallest, alike.middle);
-  EXPECT_EQ(alike.axis.norm(), 1);
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+// Variants of the proxy, and direct rendering: averages of frames, radii, true motion, and the settings of
+// all rivals.
 #include "core/rivals/proxy_variants.h"
 
 #include <gtest/gtest.h>
@@ -5,15 +7,20 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/points/point_cloud.h"
+#include "core/rivals/god_object_renderer.h"
+#include "core/rivals/mls_surface_renderer.h"
+#include "core/rivals/rival_renderer.h"
+#include "tests/core/rivals/moved_hip.h"
 #include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::proxy_variants_test {
 namespace {
-
-// Averages over frames compared with their recursions, and their treatment of a missing point.
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -47,22 +54,17 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
   }
 }
 
-TEST(FrameAverage, ExponentialFollowsTheRecursionBelowTheThresholdAndTheNewDepthAboveIt) {
+// By default: the recursion below the threshold, and the new depth above it. A missing point is kept if it
+// was measured twice in the last four frames.
+TEST(FrameAverage, FollowsItsRule) {
+  FrameAverageSettings never, mean;
+  never.persistence_frames = 0;
+  mean.rule = AverageRule::mean, mean.mean_frames = 3;
   expect_same(shown({}, {0, 0.01, 0.01, 0.05, 0.04}), {0, 0.004, 0.0064, 0.05, 0.046});
-}
-
-TEST(FrameAverage, AMissingPointIsKeptIfMeasuredTwiceInTheLastFourFrames) {
   expect_same(shown({}, {0.001, kNaN, 0.001, kNaN, kNaN, kNaN, 0.001}),
               {0.001, kNaN, 0.001, 0.001, kNaN, kNaN, 0.001});
-  FrameAverageSettings never;
-  never.persistence_frames = 0;
   expect_same(shown(never, {0.001, 0.001, kNaN, 0.001}), {0.001, 0.001, kNaN, 0.001});
-}
-
-TEST(FrameAverage, MeanIsThatOfTheLastFramesInWhichThePointWasMeasured) {
-  FrameAverageSettings s;
-  s.rule = AverageRule::mean, s.mean_frames = 3;
-  expect_same(shown(s, {0, 0.003, 0.006, 0.009, kNaN, 0.012}), {0, 0.0015, 0.003, 0.006, kNaN, 0.0105});
+  expect_same(shown(mean, {0, 0.003, 0.006, 0.009, kNaN, 0.012}), {0, 0.0015, 0.003, 0.006, kNaN, 0.0105});
 }
 
 // The point moves along its ray, so it stays in its pixel.
@@ -129,25 +131,6 @@ TEST(BlockSearch, FindsWhatBruteForceFinds) {
   }
 }
 
-// A surface at rest without noise has nothing to average.
-TEST(AveragedProxy, IsTheProxyOnASurfaceAtRestAndLagsBehindOneThatMoves) {
-  for (const double speed : {0.0, 0.06}) {
-    ProxyRenderer plain({}, 1000, scenes::kernels());
-    AveragedProxyRenderer averaged({}, 1000, scenes::kernels());
-    RenderOutput a, b;
-    for (int tick = 0; tick < 600; ++tick) {
-      if (tick % 33 == 0) {
-        const Frame frame = scenes::frame(scenes::flat_grid(60, 0.0015, speed * (tick / 33) / 30), tick / 33);
-        plain.on_frame(frame), averaged.on_frame(frame);
-      }
-      const DeviceState device{Vec3(0, std::max(0.02 - 0.0002 * tick, -0.01), 0)};
-      a = plain.step(device, 0.001 * tick), b = averaged.step(device, 0.001 * tick);
-    }
-    // Depth that rises by v per frame is drawn (1 - alpha) / alpha v too low.
-    EXPECT_NEAR(a.proxy_W.y() - b.proxy_W.y(), 1.5 * speed / 30, 2e-5) << speed;
-  }
-}
-
 // A contact radius that follows the spacing of the points.
 
 // Returns the output after the HIP was pressed 2 cm deep into a grid of this spacing.
@@ -193,12 +176,6 @@ TEST(DensityProxy, EqualsTheProxyAtTheProxysRadius) {
   }
 }
 
-TEST(DensityProxy, RefusesLimitsThatAreTheWrongWayRound) {
-  DensityProxyParameters p;
-  p.max_radius_m = 0.001;
-  EXPECT_NE(validate(p).find("max_radius_m"), std::string::npos);
-}
-
 // The oracle against surfaces whose motion is known in closed form.
 
 struct Truth final : TrueSurface {
@@ -212,7 +189,7 @@ std::shared_ptr<const TrueSurface> truth(std::function<double(const Vec3&, doubl
   return surface;
 }
 
-TEST(TrueMotion, FollowsATiltedPlaneAndABall) {
+TEST(TrueMotion, FollowsATiltedPlaneAndABallAndIsNoneWhereItIsNotKnown) {
   const Vec3 n = Vec3(0.6, 0.8, 0);
   const auto plane = truth([&](const Vec3& p, double t) { return n.dot(p) - 0.2 * t; });
   const SurfaceMotion risen = true_motion(*plane, {0.3, 0.1, 5}, 1, 1.5);
@@ -222,10 +199,7 @@ TEST(TrueMotion, FollowsATiltedPlaneAndABall) {
   const SurfaceMotion moved = true_motion(*ball, {2, 0, 0}, 0, 0.5);
   EXPECT_NEAR((moved.displacement_m - Vec3(0.5, 0, 0)).norm(), 0, 1e-9);
   EXPECT_NEAR((moved.normal_W - Vec3::UnitX()).norm(), 0, 1e-9);
-}
-
-TEST(TrueMotion, IsNoneWhereItIsNotKnown) {
-  const auto unknown = truth([](const Vec3&, double) { return std::numeric_limits<double>::quiet_NaN(); });
+  const auto unknown = truth([](const Vec3&, double) { return kNaN; });
   EXPECT_TRUE(true_motion(*unknown, Vec3::Zero(), 0, 1).displacement_m.isZero(0));
   EXPECT_EQ(true_motion(*unknown, Vec3::Zero(), 0, 1).velocity_m_per_s, 0);
 }
@@ -251,6 +225,108 @@ double end_height(bool has_truth) {
 TEST(OracleProxy, HoldsWithTheTrueMotionAndPopsThroughWithoutIt) {
   EXPECT_NEAR(end_height(true), 0.005, 2e-4);
   EXPECT_NEAR(end_height(false), -0.02, 1e-9);
+}
+
+// --- direct rendering ---
+
+constexpr double kRadius_m = 0.005, kStiffness_N_per_m = 600;
+
+PenaltyRenderer over(const PointCloud& cloud, const PenaltyParameters& p = {}) {
+  return moved_hip::over<PenaltyRenderer>(cloud, p);
+}
+
+Vec3 force(PenaltyRenderer& r, const Vec3& hip, double time_s = 0) {
+  return r.step({hip}, time_s).force_N;
+}
+
+// The nearest distance over a point of a dense plane is the height, and the normal points away from the
+// plane: behind it, the force points away from its front, which is the known weakness of direct rendering.
+TEST(PenaltyRenderer, PushesByHowFarTheNearestPointIsInTheBall) {
+  PenaltyRenderer r = over(scenes::flat_grid(61, 0.0005));
+  for (const double height : {0.0045, 0.002, 0.0005, -0.0005, -0.002, -0.0045}) {
+    const RenderOutput out = r.step({Vec3(0, height, 0)}, 0);
+    const double expected_N = std::copysign(kStiffness_N_per_m * (kRadius_m - std::abs(height)), height);
+    EXPECT_NEAR(out.force_N.y(), expected_N, 1e-9);
+    EXPECT_NEAR(std::hypot(out.force_N.x(), out.force_N.z()), 0, 1e-9);
+    EXPECT_NEAR(out.nearest_distance_m, std::abs(height), 1e-12);
+    EXPECT_EQ(out.state, ContactState::contact);
+    EXPECT_EQ(out.proxy_W, Vec3(0, height, 0));
+  }
+}
+
+TEST(PenaltyRenderer, IsZeroInFreeSpaceAndRisesFromZeroAtTheRim) {
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()})), empty = over({});
+  EXPECT_EQ(force(r, {0, kRadius_m, 0}), Vec3::Zero());
+  EXPECT_EQ(force(r, {0.02, 0, 0}), Vec3::Zero());
+  EXPECT_NEAR(force(r, {0, kRadius_m - 1e-6, 0}).y(), kStiffness_N_per_m * 1e-6, 1e-12);
+  const RenderOutput nothing = empty.step({Vec3(0, 0.001, 0)}, 0.04);
+  EXPECT_TRUE(nothing.force_N.isZero(0));
+  EXPECT_TRUE(std::isinf(nothing.nearest_distance_m));
+}
+
+// A difference is spread over missed ticks.
+TEST(PenaltyRenderer, TheDamperSlowsAlongTheNormalAndNeverPulls) {
+  PenaltyParameters p;
+  p.damping_Ns_per_m = 2;
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}), p),
+                  missed = over(scenes::cloud_of({Vec3::Zero()}), p);
+  force(r, {0, 0.004, 0}, 0), force(missed, {0, 0.004, 0}, 0);
+  EXPECT_NEAR(force(r, {0, 0.0035, 0}, 0.001).y(), kStiffness_N_per_m * 0.0015 + 2 * 0.5, 1e-9);
+  EXPECT_TRUE(force(r, {0, 0.0049, 0}, 0.002).isZero(0)) << "out at 1.4 m/s: the damper would pull";
+  EXPECT_NEAR(force(missed, {0, 0.003, 0}, 0.004).y(), kStiffness_N_per_m * 0.002 + 2 * 0.25, 1e-9);
+}
+
+// (5.5), (5.8): a point with a region and a stiffness of its own.
+TEST(PenaltyRenderer, TakesRegionsAndStiffnessOfThePoints) {
+  PointCloud cloud = scenes::cloud_of({Vec3::Zero()});
+  cloud.fixture_radius_m = {0.01}, cloud.stiffness_N_per_m = {250};
+  PenaltyRenderer r = over(cloud);
+  EXPECT_NEAR(force(r, {0, 0.012, 0}).y(), 250 * 0.003, 1e-6);
+}
+
+TEST(PenaltyRenderer, HasNoDirectionAtAPointUntilItHadOne) {
+  PenaltyRenderer fresh = over(scenes::cloud_of({Vec3::Zero()}));
+  const RenderOutput out = fresh.step({Vec3::Zero()}, 0);
+  EXPECT_EQ(out.status, RenderStatus::degenerate_normal);
+  EXPECT_TRUE(out.force_N.isZero(0));
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}));
+  force(r, {0, 0.001, 0});
+  EXPECT_NEAR(force(r, Vec3::Zero()).y(), kStiffness_N_per_m * kRadius_m, 1e-12);
+}
+
+// The base of all rivals; see RenderOutput::slave_W.
+TEST(PenaltyRenderer, SlaveIsNotSentAnywhereBeforeTheHipIsKnown) {
+  PenaltyRenderer r = over(scenes::cloud_of({Vec3::Zero()}));
+  const Vec3 lost = Vec3::Constant(std::nan("")), hip(0, 0.02, 0);
+  EXPECT_TRUE(r.step({lost}, 0).slave_W.array().isNaN().all());
+  EXPECT_EQ(r.step({hip}, 0.001).slave_W, hip);
+  EXPECT_EQ(r.step({lost}, 0.002).slave_W, hip) << "the last command is repeated";
+}
+
+// --- settings of all rivals that do not fit together ---
+
+TEST(RivalSettings, RefuseWhatDoesNotFitTogether) {
+  PenaltyParameters penalty;
+  DensityProxyParameters density;
+  GodObjectParameters god_object;
+  MlsSurfaceParameters zero_width, small_width, no_view;
+  zero_width.weight_width_m = 0;
+  for (const std::string& valid : {validate(penalty), validate(density), validate(god_object),
+                                   validate(small_width), validate(zero_width)})
+    EXPECT_EQ(valid, "");
+  penalty.contact_radius_m = penalty.r3_m;
+  density.max_radius_m = 0.001;
+  god_object.max_edge_length_m = 0.00005;
+  small_width.weight_width_m = 1e-9;
+  no_view.view_direction = Vec3::Zero();
+  const std::pair<std::string, const char*> rows[] = {
+      {validate(penalty), "contact_radius_m = 0.01: expected below r3_m = 0.01"},
+      {validate(density), "max_radius_m"},
+      {validate(god_object),
+       "surface_offset_m = 1e-05: expected at most a tenth of max_edge_length_m = 5e-05"},
+      {validate(small_width), "weight_width_m: expected 0, or 0.000001 or more"},
+      {validate(no_view), "view_direction: expected a vector of length 0.001 or more"}};
+  for (const auto& [problem, expected] : rows) EXPECT_HAS(problem, expected);
 }
 
 }  // namespace
