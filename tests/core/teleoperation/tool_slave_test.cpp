@@ -134,6 +134,7 @@ TEST(ToolSlave, AgreesWithTheBall) {
   for (const double rise_m_per_s : {0.0, 0.05}) {
     SlaveSettings s;
     s.radius_m = 0.005, s.max_speed_m_per_s = 0.5;
+    if (rise_m_per_s > 0) s.natural_frequency_hz = 7, s.damping_ratio = 0.7;
     const SlaveScene scene = plane(Vec3::UnitY(), rise_m_per_s);
     Slave oracle(s, kTick_s, scene);
     ToolSlave slave(s, ball(0.005), kTick_s, scene);
