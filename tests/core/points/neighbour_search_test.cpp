@@ -28,7 +28,7 @@ TEST(CompactOrder, HoldsEveryIndexOnce) {
   EXPECT_EQ(compact_order(std::vector<Vec3>(100, Vec3(1, 2, 3))).size(), 100u);
 }
 
-// On a grid of 64 x 64 points, every run is a square, or half of one.
+// Every run of a grid of 64 x 64 points is a square, or half of one.
 TEST(CompactOrder, RunsOfAGridAreSquares) {
   std::vector<Vec3> points;
   for (int j = 0; j < 64; ++j)

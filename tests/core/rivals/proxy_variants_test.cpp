@@ -54,8 +54,8 @@ void expect_same(const std::vector<double>& a, const std::vector<double>& b) {
   }
 }
 
-// By default: the recursion below the threshold, and the new depth above it. A missing point is kept if it
-// was measured twice in the last four frames.
+// The default rule is the recursion below the threshold, and the new depth above it. A missing point is kept
+// if it was measured twice in the last four frames.
 TEST(FrameAverage, FollowsItsRule) {
   FrameAverageSettings never, mean;
   never.persistence_frames = 0;

@@ -28,8 +28,8 @@ struct Row {
   double followed_m, lost_m;  // jumps of the cloud
   bool is_on_plane = true;    // the surface of points in a plane is that plane
   bool has_front = false;     // also a HIP that a frame puts behind the surface is held
-  int most_steps = 0;         // of a tick; 0: a path is checked to its end
-  double reach_m = 0;         // of off_surface
+  int most_steps = 0;         // the limit of a tick; 0: a path is checked to its end
+  double reach_m = 0;         // needed by off_surface
   std::function<double(Neighbourhood& near, const RenderOutput& out)> off_surface = {};
 };
 
@@ -317,7 +317,7 @@ TEST(MlsSurfaceRenderer, HoldsAPressOnANoisyPlane) {
 }
 
 TEST(MlsSurfaceRenderer, SlidesOffTheEdge) {
-  MlsSurfaceRenderer r = mls_over(scenes::flat_grid(30));  // to x = 21.75 mm
+  MlsSurfaceRenderer r = mls_over(scenes::flat_grid(30));  // its edge is at x = 21.75 mm
   press(r, 0.003);
   EXPECT_GT(go(r, {0, -0.003, 0}, {0.02, -0.003, 0}, 200).force_N.y(), 1.7);
   const RenderOutput out = go(r, {0.02, -0.003, 0}, {0.03, -0.003, 0}, 100);

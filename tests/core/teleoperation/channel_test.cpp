@@ -151,7 +151,7 @@ TEST(PacketFates, LosesTheFirstPacketAsOftenAsOthers) {
   EXPECT_NEAR(fraction(tenth), kLoss, interval);
 }
 
-// Independently of the packet before, and of the losses.
+// The time is independent of the packet before, and of the losses.
 TEST(PacketFates, TravelsForAUniformTime) {
   std::vector<double> late;
   double product = 0, arrived_late = 0, arrived = 0;
@@ -167,7 +167,7 @@ TEST(PacketFates, TravelsForAUniformTime) {
   std::sort(late.begin(), late.end());
   EXPECT_GT(late.front(), -1e-12);
   EXPECT_LT(late.back(), 1 + 1e-12);
-  double distance = 0;  // of Kolmogorov and Smirnov; 2.5 / sqrt(n) has a chance of 7e-6
+  double distance = 0;  // Kolmogorov-Smirnov; 2.5 / sqrt(n) has a chance of 7e-6
   for (int n = 0; n < kMany; ++n) distance = std::max(distance, std::abs(late[n] - (n + 0.5) / kMany));
   EXPECT_LT(distance, 2.5 / std::sqrt(1.0 * kMany));
 }

@@ -58,7 +58,7 @@ TEST(DeadBand, SendsEverySampleByDefaultAndARampAtEqualSteps) {
     EXPECT_EQ(sent_ticks({.predicts = predicts}, 100, [](int) { return Vec3(1, 2, 3); }), multiples(1, 100));
 }
 
-// For each packet the next one is searched.
+// The oracle searches the next packet after each one.
 std::vector<int> searched_ticks(const DeadBandSettings& s, int ticks, const Signal& signal) {
   std::vector<int> sent{0};
   for (int k = 1; k < ticks; ++k) {
@@ -197,7 +197,7 @@ std::vector<TestPose> wandering_poses(int ticks) {
   return poses;
 }
 
-// After a constant delay the receiver shows what the sender showed then, and the dead-band bounds its error.
+// The receiver shows what the sender showed one delay before, and the dead-band bounds its error.
 TEST(DeadBandReceiver, ShowsTheDelayedPoseOfTheSender) {
   constexpr double kReach_m = 0.08;
   const std::vector<TestPose> poses = wandering_poses(5000);
