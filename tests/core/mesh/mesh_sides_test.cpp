@@ -13,6 +13,21 @@ namespace {
 
 using namespace mesh_shapes;
 
+// A flap on the edge of a box makes it an edge of three faces, at which the surface ends. A second box at the
+// same edge makes it one of four.
+TEST(Pseudonormals, MarkEdgesWithMoreFacesInOneDirectionAsBorder) {
+  TriangleMesh box = box_mesh({2, 2, 2});
+  const auto [a, b, c] = box.triangles.front();
+  box.vertices.emplace_back(9, 9, 9);
+  box.triangles.push_back({a, b, 8});
+  const Pseudonormals flap = pseudonormals(box);
+  EXPECT_EQ(std::count(flap.edge_on_border.begin(), flap.edge_on_border.end(), 1), 3);
+  EXPECT_EQ(std::count(flap.vertex_on_border.begin(), flap.vertex_on_border.end(), 1), 3);
+  const Pseudonormals touching = pseudonormals(boxes_at_an_edge());
+  EXPECT_EQ(touching.of_edge.size(), 35u);
+  EXPECT_EQ(std::count(touching.edge_on_border.begin(), touching.edge_on_border.end(), 1), 0);
+}
+
 TEST(Pseudonormals, AreThoseOfTheFirstFaceWhereTheMeanVanishes) {
   const TriangleMesh folded{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}};
   const Pseudonormals normals = pseudonormals(folded);
