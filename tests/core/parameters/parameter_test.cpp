@@ -1,7 +1,9 @@
+// Units, the text of messages, and formatted text.
 #include "core/parameters/parameter.h"
 
 #include <gtest/gtest.h>
 #include <string>
+#include <utility>
 
 namespace remote_touch::parameter_test {
 namespace {
@@ -21,44 +23,26 @@ TEST(Unit, EveryUnitIsFoundByItsOwnEnding) {
     EXPECT_EQ(unit_of(std::string("x") + unit.ending), &unit) << unit.ending;
 }
 
-}  // namespace
-}  // namespace remote_touch::parameter_test
-
-namespace remote_touch::input_error_test {
-namespace {
-
-TEST(Printable, LeavesTextAsItIs) {
-  for (const char* text :
-       {"", "renderer.r1_m = 3: expected 0 to 1", "grün", "€", "\xF0\x9F\x98\x80", "\\x00"})
-    EXPECT_EQ(printable(text), text);
-}
-
-TEST(Printable, IsOneLine) {
-  EXPECT_EQ(printable("a\nb\tc\r\nd"), "a b c  d");
-}
-
-TEST(Printable, ShowsUnprintableBytesAsEscapes) {
-  EXPECT_EQ(printable(std::string("a\0b", 3)), "a\\x00b");
-  EXPECT_EQ(printable("\x1b[31m\x7f"), "\\x1b[31m\\x7f");
-}
-
 // A terminal obeys U+009B as it does ESC [, and some viewers begin a line at U+2028.
-TEST(Printable, ShowsControlCharactersAndLineEndsBeyondAscii) {
-  EXPECT_EQ(printable("z\xc2\x9b[z"), "z\\xc2\\x9b[z");
-  EXPECT_EQ(printable("\xc2\x80 \xc2\x9f"), "\\xc2\\x80 \\xc2\\x9f");
-  EXPECT_EQ(printable("z\xe2\x80\xa8z\xe2\x80\xa9"), "z\\xe2\\x80\\xa8z\\xe2\\x80\\xa9");
-  for (const char* text : {"\xc2\xa0", "\xe2\x80\xa7", "\xe2\x80\xaa", "\xc3\x9b"})
+TEST(Printable, IsOneLineAndShowsWhatIsNotTextAsEscapes) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"a\nb\tc\r\nd", "a b c  d"},
+      {std::string("a\0b", 3), "a\\x00b"},
+      {"\x1b[31m\x7f", "\\x1b[31m\\x7f"},
+      {"z\xc2\x9b[z", "z\\xc2\\x9b[z"},
+      {"\xc2\x80 \xc2\x9f", "\\xc2\\x80 \\xc2\\x9f"},
+      {"z\xe2\x80\xa8z\xe2\x80\xa9", "z\\xe2\\x80\\xa8z\\xe2\\x80\\xa9"},
+      {"\xff", "\\xff"},  // the others are no UTF-8
+      {"gr\xfcn", "gr\\xfcn"},
+      {"\xc3", "\\xc3"},                             // cut
+      {"\xc0\x80", "\\xc0\\x80"},                    // longer than it needs to be
+      {"\xed\xa0\x80", "\\xed\\xa0\\x80"},           // half of a pair of UTF-16
+      {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80"},  // beyond Unicode
+      {"\xe2\x82x", "\\xe2\\x82x"}};
+  for (const auto& [text, shown] : cases) EXPECT_EQ(printable(text), shown);
+  for (const char* text : {"", "renderer.r1_m = 3: expected 0 to 1", "grün", "€", "\xF0\x9F\x98\x80", "\\x00",
+                           "\xc2\xa0", "\xe2\x80\xa7", "\xe2\x80\xaa", "\xc3\x9b"})
     EXPECT_EQ(printable(text), text);
-}
-
-TEST(Printable, ShowsBytesThatAreNoUtf8) {
-  EXPECT_EQ(printable("\xff"), "\\xff");
-  EXPECT_EQ(printable("gr\xfcn"), "gr\\xfcn");
-  EXPECT_EQ(printable("\xc3"), "\\xc3");                             // cut
-  EXPECT_EQ(printable("\xc0\x80"), "\\xc0\\x80");                    // longer than it needs to be
-  EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // half of a pair of UTF-16
-  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond Unicode
-  EXPECT_EQ(printable("\xe2\x82x"), "\\xe2\\x82x");
 }
 
 TEST(Printable, ShortensWordsWithoutEnd) {
@@ -98,12 +82,6 @@ TEST(InputErrorTest, KeepsItsWholeMessage) {
   EXPECT_STREQ(InputError("a\xff: expected\nb").what(), "a\\xff: expected b");
 }
 
-}  // namespace
-}  // namespace remote_touch::input_error_test
-
-namespace remote_touch::formatted_test {
-namespace {
-
 TEST(Formatted, IsWhatPrintfPrintsAtAnyLength) {
   EXPECT_EQ(formatted("%zu of %s, %.3g %%", std::size_t{2}, "three", 0.25), "2 of three, 0.25 %");
   EXPECT_EQ(formatted("%s", ""), "");
@@ -112,4 +90,4 @@ TEST(Formatted, IsWhatPrintfPrintsAtAnyLength) {
 }
 
 }  // namespace
-}  // namespace remote_touch::formatted_test
+}  // namespace remote_touch::parameter_test
