@@ -1,3 +1,5 @@
+// The kernels of the proxy and of the search compared with the equations and plain loops, on every
+// instruction set level.
 #include "core/kernels/kernels.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +33,9 @@ PointCloud random_points(int count, double half_width, unsigned seed, bool with_
   const PointCloud more = scenes::random_cloud(count, 1, seed + 1000);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     if (with_radius) cloud.fixture_radius_m.push_back(0.002 * (more.x[i] + 1));
-    if (with_stiffness) cloud.stiffness_N_per_m.push_back(5000 * (more.y[i] + 1));
+    if (with_stiffness)
+      cloud.stiffness_N_per_m.push_back(i % 5 == 4 ? (i % 2 ? -1 : 1) * std::nan("")
+                                                   : 5000 * (more.y[i] + 1));
   }
   return cloud;
 }
@@ -52,7 +56,7 @@ Real radius_of(const PointCloud& cloud, std::size_t i) {
 
 using Vec = equations::Vec<Real>;
 
-// Agrees with (4.1), (4.2), (5.5) and (5.8).
+// Agrees with (4.1), (4.2), (5.5) and (5.8). A point without a stiffness, NaN, counts with the renderer's.
 void expect_query(const ContactQuery& got, const PointCloud& cloud, const Vec3& p) {
   const Vec P = p.cast<Real>();
   Real nearest = kInfinity, weights = 0, stiffness = 0;
@@ -65,7 +69,8 @@ void expect_query(const ContactQuery& got, const PointCloud& cloud, const Vec3& 
     nearest = std::min(nearest, r), touching += r <= kRegions.r2;
     normal += equations::normal_term(P, x, r_f, r1, r3);
     if (cloud.stiffness_N_per_m.empty()) continue;
-    weights += psi, stiffness += psi * cloud.stiffness_N_per_m[i];
+    const double k = cloud.stiffness_N_per_m[i];
+    weights += psi, stiffness += psi * (std::isnan(k) ? kRegions.stiffness : k);
   }
   // psi and the unit vector of a point carry a few roundings of their own, in addition to those of the grid.
   const double rounding = static_cast<double>(cloud.size()) * (kOnGrid + 2e-15);
@@ -117,60 +122,30 @@ TEST(ContactQuery, HasTheSameBitsOnEveryLevelInAnyOrderAndWithPointsFarAway) {
   }
 }
 
-// A point without a stiffness of its own counts with the renderer's, bit for bit.
-TEST(ContactQuery, ANanStiffnessMeansTheRenderersOwn) {
-  const PointCloud at = scenes::random_cloud(20, 0.01, 4);
-  for (const bool with_radius : {false, true}) {
-    PointCloud some = random_points(601, 0.012, 3, with_radius, true), filled = some;
-    for (std::size_t i = 0; i < some.size(); i += 1 + i % 3)
-      some.stiffness_N_per_m[i] = (i % 2 ? -1 : 1) * std::nan(""),
-      filled.stiffness_N_per_m[i] = kRegions.stiffness;
-    const GatheredPoints with_nan = columns(some), with_own = columns(filled);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const Vec3 p = at.point(i);
-      const ContactQuery want =
-          supported_kernels()[0]->proxy.contact_query(with_own.view(), p.data(), kRegions);
-      expect_query(want, filled, p);
-      for (const Kernels* kernels : supported_kernels()) {
-        const ContactQuery got = kernels->proxy.contact_query(with_nan.view(), p.data(), kRegions);
-        EXPECT_EQ(std::memcmp(&got, &want, sizeof got), 0) << kernels->isa;
-      }
-    }
-  }
-}
-
-TEST(ContactQuery, WeightFallsFromOneAtR1ToZeroAtR3) {
+TEST(ContactQuery, WeightFallsFromOneAtR1ToZeroAtR3AndTouchingIncludesR2) {
   const double halfway = 0.5 * (kRegions.r1 + kRegions.r3);  // (1/2)^4 (4/2 + 1) = 3/16
   const std::pair<double, double> cases[] = {
       {0.001, 1}, {kRegions.r1, 1}, {halfway, 0.1875}, {kRegions.r3, 0}, {0.5, 0}};
-  for (const Kernels* kernels : supported_kernels())
+  const double r2 = kRegions.r2, above = nextafter(r2, 1.0), below = nextafter(r2, 0.0);
+  const GatheredPoints at_r2 =
+      columns(scenes::cloud_of({{0, r2, 0}, {-r2, 0, 0}, {0, above, 0}, {-above, 0, 0}, {0, below, 0}}));
+  for (const Kernels* kernels : supported_kernels()) {
+    const auto query = [&](const GatheredPoints& points) {
+      return kernels->proxy.contact_query(points.view(), kOrigin.data(), kRegions);
+    };
     for (const auto& [distance, psi] : cases) {
-      const GatheredPoints one = columns(one_point({0, 0, -distance}));
-      const ContactQuery got = kernels->proxy.contact_query(one.view(), kOrigin.data(), kRegions);
+      const ContactQuery got = query(columns(one_point({0, 0, -distance})));
       EXPECT_NEAR(got.normal_sum[2], psi, kOnGrid) << distance;
       EXPECT_EQ(got.normal_sum[0], 0);
       EXPECT_EQ(got.nearest, distance);
     }
-}
-
-TEST(ContactQuery, PointAtTheProxyGivesNoDirection) {
-  const GatheredPoints alone = columns(one_point(kOrigin)), none = columns({});
-  for (const Kernels* kernels : supported_kernels()) {
-    const ContactQuery got = kernels->proxy.contact_query(alone.view(), kOrigin.data(), kRegions);
-    EXPECT_EQ(Vec3(got.normal_sum), kOrigin);
-    EXPECT_EQ(got.nearest, 0);
-    EXPECT_EQ(got.touching_count, 1);
-    EXPECT_EQ(kernels->proxy.contact_query(none.view(), kOrigin.data(), kRegions).nearest, kInfinity);
+    EXPECT_EQ(query(at_r2).touching_count, 3);
+    const ContactQuery alone = query(columns(one_point(kOrigin)));
+    EXPECT_EQ(Vec3(alone.normal_sum), kOrigin) << "a point at the proxy gives no direction";
+    EXPECT_EQ(alone.nearest, 0);
+    EXPECT_EQ(alone.touching_count, 1);
+    EXPECT_EQ(query(columns({})).nearest, kInfinity);
   }
-}
-
-TEST(ContactQuery, TouchingIncludesR2) {
-  PointCloud cloud;
-  for (const double d : {kRegions.r2, nextafter(kRegions.r2, 1.0), nextafter(kRegions.r2, 0.0)})
-    cloud.append({0, d, 0}), cloud.append({-d, 0, 0});
-  const GatheredPoints points = columns(cloud);
-  for (const Kernels* kernels : supported_kernels())
-    EXPECT_EQ(kernels->proxy.contact_query(points.view(), kOrigin.data(), kRegions).touching_count, 4);
 }
 
 TEST(FirstHit, AgreesWithTheClosedFormForOnePoint) {
@@ -294,19 +269,13 @@ TEST(AppendWithin, FindsThePointsOfAPlainLoop) {
             EXPECT_EQ(Vec3(out[0][n], out[1][n], out[2][n]), p);
             EXPECT_EQ(index[n], named ? names[i] : 900 + i);
             EXPECT_EQ(out[3][n], named ? cloud.fixture_radius_m[i] : -1);
-            EXPECT_EQ(out[4][n++], cloud.stiffness_N_per_m[i]);
+            EXPECT_EQ(std::memcmp(&out[4][n++], &cloud.stiffness_N_per_m[i], sizeof(double)), 0);  // or NaN
           }
           ASSERT_EQ(count, n);
           EXPECT_EQ(out[0][before - 1], -1) << "wrote before the end";
           EXPECT_TRUE(out[0][buffer] == -1 && index[buffer] == 77) << "wrote beyond the room";
         }
 }
-
-}  // namespace
-}  // namespace remote_touch::kernels_test
-
-namespace remote_touch::isa_test {
-namespace {
 
 TEST(SupportedKernels, AreTheLevelsUpToTheBestInRisingOrder) {
   const auto supported = supported_kernels();
@@ -319,4 +288,4 @@ TEST(SupportedKernels, AreTheLevelsUpToTheBestInRisingOrder) {
 }
 
 }  // namespace
-}  // namespace remote_touch::isa_test
+}  // namespace remote_touch::kernels_test
