@@ -1,3 +1,5 @@
+// The depth pipeline compared with the equations in double precision, on synthetic scenes, every window size
+// and recorded frames; its bits, holes and odd frames, and sharp edges.
 #include "core/dissertation/depth/depth_pipeline.h"
 
 #include <gtest/gtest.h>
@@ -6,15 +8,138 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "runners/evaluation/contract/allocation_counter.h"
+#include "scenarios/recordings/recording.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
+#include "tests/core/dissertation/depth/reference_depth_pipeline.h"
+#include "tests/support/recorded_data.h"
 
 namespace remote_touch::depth_pipeline_test {
 namespace {
 
 using namespace depth_cases;
+
+struct Deviation {
+  double max_deg = 0, rms_deg = 0;
+  double max_fraction = 0;  // largest error of a point, as a fraction of its distance from the camera
+  std::size_t normals = 0, undecided = 0;
+};
+
+// Limits for a decidable normal. Single precision cannot decide it if two eigenvalues are nearly equal or if
+// the points lie nearly on a line. Nor can it decide which side of a plane faces the camera if the plane is
+// seen edge-on, as from one pixel column.
+constexpr double kClearGap = 2e-3, kClearWidth = 1e-3, kClearSide = 1e-4, kClearLine = 1e-6;
+
+bool undecided(const ReferenceDepth& reference, std::size_t i, const Vec3& p_C) {
+  const Vec3 normal = reference.cloud.image->X_WC.linear().transpose() * reference.cloud.normal(i);
+  return reference.gap[i] < kClearGap || reference.middle[i] < kClearWidth ||
+         std::abs(normal.dot(p_C)) < kClearSide * p_C.norm();
+}
+
+Deviation deviation(const PointCloud& cloud, const ReferenceDepth& reference) {
+  Deviation d;
+  const RigidTransform X_CW = reference.cloud.image->X_WC.inverse();
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const bool there = !std::isnan(reference.cloud.x[i]);
+    EXPECT_EQ(!std::isnan(cloud.x[i]), there) << i;
+    if (!there) {
+      EXPECT_FALSE(has_normal(cloud, i)) << i;
+      continue;
+    }
+    const Vec3 p_C = X_CW * reference.cloud.point(i);
+    const double off_m = (cloud.point(i) - reference.cloud.point(i)).norm();
+    d.max_fraction = std::max(d.max_fraction, off_m / p_C.norm());
+    if (!(reference.middle[i] > kClearLine)) {  // NaN for a single point
+      EXPECT_FALSE(has_normal(cloud, i)) << i;
+      continue;
+    }
+    if (undecided(reference, i, p_C)) {
+      ++d.undecided;
+      continue;
+    }
+    EXPECT_TRUE(has_normal(cloud, i)) << i;
+    EXPECT_NEAR(cloud.normal(i).norm(), 1, 1e-12) << i;
+    double angle = kInfinity;
+    for (const Vec3& normal : reference.as_good[i])
+      angle = std::min(angle, angle_deg(cloud.normal(i), normal));
+    d.max_deg = std::max(d.max_deg, angle), d.rms_deg += angle * angle, ++d.normals;
+  }
+  d.rms_deg = d.normals ? std::sqrt(d.rms_deg / static_cast<double>(d.normals)) : 0;
+  return d;
+}
+
+// The limit for normals is 0.05 degrees. The error of a filtered depth is 8e-6 (the error of the weights)
+// times the differences to its neighbours.
+void expect_as_reference(const std::string& what, const scenes::DepthScene& scene, const Settings& settings,
+                         double max_undecided = 0) {
+  const RigidTransform X_WC = some_pose();
+  const ReferenceDepth reference = reference_depth_pipeline(settings, scene.depth, scene.camera, X_WC);
+  const PointCloud cloud = processed(scene, settings, X_WC);
+  EXPECT_TRUE(cloud.image->X_WC.isApprox(X_WC));
+  const Deviation d = deviation(cloud, reference);
+  EXPECT_LE(d.max_deg, 0.05) << what;
+  EXPECT_LE(d.rms_deg, 0.001) << what;
+  EXPECT_LE(d.max_fraction, 2e-6) << what;
+  EXPECT_LE(static_cast<double>(d.undecided), max_undecided * static_cast<double>(d.normals)) << what;
+  printf("%s: %zu normals, largest %.5f deg, rms %.6f deg, points %.2g, undecided %zu\n", what.c_str(),
+         d.normals, d.max_deg, d.rms_deg, d.max_fraction, d.undecided);
+}
+
+TEST(DepthPipeline, AgreesWithTheEquations) {
+  for (const bool filter : {true, false}) {
+    Settings settings;
+    settings.filter = filter;
+    const std::string suffix = filter ? ", filtered" : ", not filtered";
+    expect_as_reference("waves" + suffix, noisy_waves(160, 120), settings);
+    expect_as_reference("waves with holes" + suffix, with_holes(noisy_waves(160, 120)), settings, 1e-3);
+    expect_as_reference("step" + suffix, scenes::step(scenes::kinect(160, 120), 0.8, 0.025), settings);
+    expect_as_reference("sphere" + suffix, scenes::sphere(scenes::kinect(160, 120), {0.02, 0, 0.6}, 0.05),
+                        settings);
+  }
+}
+
+TEST(DepthPipeline, AgreesWithTheEquationsForEveryWindow) {
+  for (int window = 3; window <= 15; window += 2)
+    expect_as_reference("window " + std::to_string(window), with_holes(noisy_waves(70, 50), 0.1),
+                        {true, window, 0.01, 18 - window, 0.008}, 0.02);
+}
+
+TEST(DepthPipeline, AgreesWithTheEquationsForEveryStepAndFit) {
+  for (const auto& [window, step] : {std::pair{3, 1}, {5, 2}, {9, 1}, {9, 2}, {9, 4}, {13, 3}, {15, 7}})
+    for (const NormalFit fit : {NormalFit::total_least_squares, NormalFit::inverse_depth})
+      expect_as_reference("normals " + std::to_string(window) + " by " + std::to_string(step) +
+                              (fit == NormalFit::inverse_depth ? ", inverse depth" : ""),
+                          with_holes(noisy_waves(70, 50), 0.1), {true, 5, 0.01, window, 0.02, step, fit},
+                          0.02);
+  for (const auto& scene :
+       {scenes::step(scenes::kinect(160, 120), 0.8, 0.025),
+        scenes::sphere(scenes::kinect(160, 120), {0.02, 0, 0.6}, 0.05), with_holes(noisy_waves(160, 120))})
+    expect_as_reference("fast", scene, kFastDepthPipeline, 0.02);
+}
+
+scenes::DepthScene recorded(const std::filesystem::path& path) {
+  const PointCloud cloud = read_frame(index_recording(path), 0, kInfinity);
+  const CameraIntrinsics& camera = cloud.image->camera;
+  return {camera, {camera.width, camera.height, cloud.z}, {}};
+}
+
+TEST(DepthPipeline, AgreesWithTheEquationsOnRecordedFrames) {
+  for (const char* name : {"visp_organ_table", "sr305_hand_flex", "pcd_single/mosd_boxes_learn3.pcd"}) {
+    const std::filesystem::path path = data_root() / "rgbd" / name;
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << "recorded data are missing: " << path;
+    expect_as_reference(name, recorded(path), {}, 0.015);
+    expect_as_reference(std::string(name) + ", fast", recorded(path), kFastDepthPipeline, 0.015);
+    expect_as_reference(std::string(name) + ", sigma_f 0.01", recorded(path), {true, 9, 0.01, 9, 0.014},
+                        0.01);
+  }
+}
+
+// --- bits, holes, odd frames, and simple scenes with known normals ---
 
 TEST(DepthPipeline, HasTheSameBitsOnEveryLevelAndForAnyNumberOfThreads) {
   const scenes::DepthScene scene = with_holes(noisy_waves(333, 250), 0.05);
@@ -128,50 +253,14 @@ TEST(DepthPipeline, PointsOnALineHaveNoNormal) {
   }
 }
 
-TEST(DepthPipeline, FindsTheNormalsOfAPlaneAndASphere) {
+TEST(DepthPipeline, FindsTheNormalsOfAPlane) {
   const scenes::DepthScene plane = scenes::plane(scenes::kinect(160, 120), {0.4, -0.7, 1}, 0.7);
-  Settings settings, fast = kFastDepthPipeline;
-  settings.filter = fast.filter = false;
-  const PointCloud flat = processed(plane, settings), fast_flat = processed(plane, fast);
-  for (std::size_t i = 0; i < flat.size(); ++i) {
-    ASSERT_LE(angle_deg(flat.normal(i), plane.normals[i]), 0.01) << i;
-    ASSERT_LE(angle_deg(fast_flat.normal(i), plane.normals[i]), 0.01) << i;
+  for (Settings settings : {Settings{}, kFastDepthPipeline}) {
+    settings.filter = false;
+    const PointCloud flat = processed(plane, settings);
+    for (std::size_t i = 0; i < flat.size(); ++i)
+      ASSERT_LE(angle_deg(flat.normal(i), plane.normals[i]), 0.01) << i;
   }
-
-  // Only normals within 45 degrees of the axis are checked, away from the rim. The window's points lie evenly
-  // on all sides of the centre there, except for perspective and curvature.
-  const scenes::DepthScene ball = scenes::sphere(scenes::kinect(160, 120), {0, 0, 0.7}, 0.06);
-  const PointCloud round = processed(ball, settings);
-  std::size_t seen = 0;
-  for (std::size_t i = 0; i < round.size(); ++i) {
-    if (std::isnan(round.x[i]) || ball.normals[i].z() > -0.7) continue;
-    ASSERT_LE(angle_deg(round.normal(i), ball.normals[i]), 1.0) << i;
-    ++seen;
-  }
-  EXPECT_GT(seen, 3000u);
-}
-
-TEST(DepthPipeline, NormalsAreUnitVectorsTowardsTheSensor) {
-  const RigidTransform X_WC = some_pose();
-  for (const Settings& settings : {Settings{}, kFastDepthPipeline}) {
-    const PointCloud cloud = processed(with_holes(noisy_waves(160, 120, 0.01)), settings, X_WC);
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (!has_normal(cloud, i)) continue;
-      ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-12);
-      ASSERT_GT(cloud.normal(i).dot(X_WC.translation() - cloud.point(i)), 0) << i;
-    }
-  }
-}
-
-TEST(DepthPipeline, APoseMovesPointsAndNormals) {
-  const scenes::DepthScene scene = noisy_waves(80, 60);
-  const RigidTransform X_WC = some_pose();
-  const PointCloud at_origin = processed(scene), moved = processed(scene, {}, X_WC);
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    ASSERT_LE((moved.point(i) - X_WC * at_origin.point(i)).norm(), 1e-15 * 8);
-    ASSERT_LE((moved.normal(i) - X_WC.linear() * at_origin.normal(i)).norm(), 1e-15 * 8);
-  }
-  EXPECT_TRUE(moved.image->X_WC.isApprox(X_WC));
 }
 
 TEST(DepthPipeline, KeepsMeasuredPointsIfTheFilterIsOff) {
@@ -248,27 +337,18 @@ TEST(DepthPipeline, AllocatesNothingAfterTheFirstFrame) {
 }
 
 TEST(DepthPipeline, RefusesWhatDoesNotFit) {
-  Settings even;
-  even.filter_window = 8;
-  EXPECT_EQ(validate(even), "filter_window = 8: expected odd numbers, 3 to 15");
-  EXPECT_THROW(DepthPipeline(even, best()), std::invalid_argument);
-  even = {};
-  even.normal_window = 10;
-  EXPECT_EQ(validate(even), "normal_window = 10: expected odd numbers, 3 to 15");
-  Settings odd_step;
-  odd_step.normal_step = 3;
-  EXPECT_EQ(validate(odd_step), "normal_step = 3: expected a divisor of 4 = (normal_window - 1) / 2");
-  EXPECT_THROW(DepthPipeline(odd_step, best()), std::invalid_argument);
-  Settings sharp;
-  sharp.sharp_edges = true;
-  EXPECT_EQ(validate(sharp), "sharp_edges = true: expected normal_fit = inverse-depth");
-  EXPECT_THROW(DepthPipeline(sharp, best()), std::invalid_argument);
-  EXPECT_EQ(validate(kFastDepthPipeline), "");
-  EXPECT_EQ(validate(Settings{}), "");
-  Settings settings;
-  for (const Parameter& parameter : parameters(settings))
-    EXPECT_TRUE(parameter.help.find("(7.") != std::string::npos ||
-                parameter.help.find("6.2.1") != std::string::npos);
+  Settings window, normals, step, sharp;
+  window.filter_window = 8, normals.normal_window = 10, step.normal_step = 3, sharp.sharp_edges = true;
+  const std::pair<Settings, const char*> cases[] = {
+      {window, "filter_window = 8: expected odd numbers, 3 to 15"},
+      {normals, "normal_window = 10: expected odd numbers, 3 to 15"},
+      {step, "normal_step = 3: expected a divisor of 4 = (normal_window - 1) / 2"},
+      {sharp, "sharp_edges = true: expected normal_fit = inverse-depth"}};
+  for (const auto& [settings, why] : cases) {
+    EXPECT_EQ(validate(settings), why);
+    EXPECT_THROW(DepthPipeline(settings, best()), std::invalid_argument) << why;
+  }
+  EXPECT_EQ(validate(kFastDepthPipeline) + validate(Settings{}), "");
 
   const scenes::DepthScene scene = scenes::plane(scenes::kinect(20, 10), {0, 0, 1}, 0.8);
   DepthPipeline pipeline({}, best());
@@ -279,15 +359,7 @@ TEST(DepthPipeline, RefusesWhatDoesNotFit) {
     EXPECT_THROW(pipeline.process(scene.depth, scene.camera, kIdentity, at, cloud), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace remote_touch::depth_pipeline_test
-
-// sharp_edges: normals are right up to a crease and up to a limb. A surface without an edge keeps its
-// normals.
-namespace remote_touch::sharp_edges_test {
-namespace {
-
-using namespace depth_cases;
+// --- sharp_edges: normals are right up to a crease and up to a limb ---
 
 Settings blunt() {
   Settings settings = kFastDepthPipeline;
@@ -328,13 +400,10 @@ TEST(SharpEdges, NormalsAreRightUpToACrease) {
       EXPECT_GT(rms_deg(rounded, truth, 12, away, away), 5) << away;
     }
   }
-}
-
-TEST(SharpEdges, NormalsAreRightUpToACreaseInNoise) {
-  scenes::DepthScene scene = roof();
-  scenes::add_noise(scene.depth, 0.001, 3);
-  const PointCloud rounded = processed(scene, blunt()), sharp = processed(scene, kFastDepthPipeline);
-  const double before = rms_deg(rounded, scene, 12, 1, 5), after = rms_deg(sharp, scene, 12, 1, 5);
+  scenes::DepthScene noisy = truth;
+  scenes::add_noise(noisy.depth, 0.001, 3);
+  const double before = rms_deg(processed(noisy, blunt()), truth, 12, 1, 5),
+               after = rms_deg(processed(noisy, kFastDepthPipeline), truth, 12, 1, 5);
   printf("within 5 pixels of a ridge, 1 mm of noise: %.1f deg, sharp %.1f deg\n", before, after);
   EXPECT_LT(after, 0.5 * before);
 }
@@ -384,4 +453,4 @@ TEST(SharpEdges, AHoleAndALineOfPointsStayWithoutANormal) {
 }
 
 }  // namespace
-}  // namespace remote_touch::sharp_edges_test
+}  // namespace remote_touch::depth_pipeline_test
