@@ -1,3 +1,4 @@
+// Tasks played tick by tick, targets that are lost, the goal of guidance, and how it pulls.
 #include "core/dissertation/virtual_fixtures/guided_renderer.h"
 
 #include <gtest/gtest.h>
@@ -10,12 +11,9 @@
 #include <vector>
 
 #include "core/points/vector.h"
-#include "tests/core/dissertation/virtual_fixtures/guided_scene.h"
 
-namespace remote_touch::fixture_sequence_test {
+namespace remote_touch::guidance_test {
 namespace {
-
-// Tasks, played tick by tick: which step is the current one, when it begins, and when it ends.
 
 SequenceStep step(StepStart start, StepEnd end, int button = 0) {
   SequenceStep s;
@@ -75,10 +73,7 @@ TEST(FixtureSequence, StepsThatEndAtOnceAllRunInOneTick) {
   play(
       {kAtOnce, kReach, kAtOnce},
       {{0, 0, false, 1, true, 0, {0, 1}}, {0.001, 0, false, 1, true, 0}, {0.002, 0, true, 3, false, 0, {2}}});
-}
-
-TEST(FixtureSequence, AStepCanBeDoneInTheTickThatItBeginsIn) {
-  play({kReach, kReach}, {{0, 0, true, 2, false, 0, {0, 1}}});
+  play({kReach, kReach}, {{0, 0, true, 2, false, 0, {0, 1}}});  // done in the tick that it begins in
 }
 
 TEST(FixtureSequence, BeginsWithAPressOfItsButtonAlone) {
@@ -140,14 +135,6 @@ TEST(FixtureSequence, BeginsAtItsTimeAndNotBefore) {
        {{0, 0, true, 0, false, 0}, {0.002, 0, true, 2, false, 0, {0, 1}}});
 }
 
-TEST(FixtureSequence, ADeadlineCountsFromTheBeginningOfItsStep) {
-  const SequenceStep s = with_deadline(step(StepStart::button, StepEnd::reached), 0.3);
-  play({s, kAtOnce}, {{0, 0, false, 0, false, 0},
-                      {0.9, 1, false, 0, true, 0, {0}},
-                      {1.199, 0, false, 0, true, 0},
-                      {1.2, 0, false, 2, false, 1, {1}}});  // 1.2 - 0.9 is less than 0.3 in doubles
-}
-
 TEST(FixtureSequence, EveryTickThatIsADeadlineMissesExactlyThen) {
   for (int begun = 0; begun < 2000; begun += 7) {
     FixtureSequence sequence({not_before(with_deadline(kReach, 0.1), begun / 1000.0)});
@@ -176,39 +163,24 @@ TEST(FixtureSequence, AMissedDeadlineBeginsTheNextStepWithItsOwnDeadline) {
                    {1.25, 0, true, 3, false, 2}});
 }
 
-TEST(FixtureSequence, WaitsForEverIfThereIsNoDeadline) {
+TEST(FixtureSequence, AStepWithoutADeadlineOrBeforeItsBeginningIsNotMissed) {
   play({kReach}, {{0, 0, false, 0, true, 0, {0}}, {86400, 0, false, 0, true, 0}});
-}
-
-TEST(FixtureSequence, AStepThatHasNotBegunIsNotMissed) {
   play({with_deadline(step(StepStart::button, StepEnd::reached), 0.5)},
        {{0, 0, false, 0, false, 0}, {10, 0, true, 0, false, 0}});
 }
 
-// --- what a step may state ---
-
-TEST(FixtureSequence, AStepNamesAFixtureWhereItNeedsOne) {
-  SequenceStep s;
-  EXPECT_EQ(validate(s), "");
+TEST(FixtureSequence, OnlyActivateAndWaitCanReachAGoal) {
+  SequenceStep s = kReach;
   s.fixture = "valve";
-  EXPECT_EQ(validate(s), "fixture = \"valve\": expected none for wait, unless done = reached");
-  s.end = StepEnd::reached;
-  EXPECT_EQ(validate(s), "");
-  s.fixture = "";
-  EXPECT_EQ(validate(s), "fixture = \"\": expected the label of a fixture");
-  s.action = FixtureAction::lock, s.fixture = "valve";
-  EXPECT_EQ(validate(s), "done = reached: expected only with action = activate or wait");
-  s.action = FixtureAction::activate;
-  EXPECT_EQ(validate(s), "");
+  for (const FixtureAction action : {FixtureAction::activate, FixtureAction::wait, FixtureAction::lock}) {
+    s.action = action;
+    EXPECT_EQ(validate(s), action != FixtureAction::lock
+                               ? ""
+                               : "done = reached: expected only with action = activate or wait");
+  }
 }
 
-}  // namespace
-}  // namespace remote_touch::fixture_sequence_test
-
-namespace remote_touch::guidance_spring_test {
-namespace {
-
-// Time for which a lost target is remembered. All times are exact in binary.
+// --- time for which a lost target is remembered; all times are exact in binary ---
 
 constexpr std::size_t kMinPoints = 20;
 constexpr double kHold_s = 0.125;
@@ -236,18 +208,14 @@ TEST(GuidancePresence, HoldsFromTheArrivalOfTheFirstFrameWithoutIt) {
 
 TEST(GuidancePresence, FewerPointsLoseItAndTheLastGoodTargetIsHeld) {
   GuidancePresence presence(kMinPoints, kHold_s, 0);
+  EXPECT_EQ(presence.target(0), nullptr);
+  presence.on_frame(seen(kMinPoints - 1), 0);
+  EXPECT_EQ(presence.target(0), nullptr) << "what never had enough points is not held";
   presence.on_frame(seen(kMinPoints, 1), 0);
   presence.on_frame(seen(kMinPoints - 1, 2), 1);
   ASSERT_NE(presence.target(1), nullptr);
   EXPECT_EQ(presence.target(1)->mean_W.x(), 1);
   EXPECT_EQ(presence.target(1 + kHold_s), nullptr);
-}
-
-TEST(GuidancePresence, ATargetThatNeverHadEnoughPointsIsNotHeld) {
-  GuidancePresence presence(kMinPoints, kHold_s, 0);
-  EXPECT_EQ(presence.target(0), nullptr);
-  presence.on_frame(seen(kMinPoints - 1), 0);
-  EXPECT_EQ(presence.target(0), nullptr);
 }
 
 // A schedule that falls to 0 says that the fixture has ended; nothing is lost.
@@ -275,7 +243,7 @@ TEST(GuidancePresence, AFrameEndsItAtAnyTimeIfThereIsNoHold) {
   for (const double time_s : {0.5, 1.0, 1.5}) EXPECT_EQ(presence.target(time_s), nullptr) << time_s;
 }
 
-// Guidance: where it leads the tool from a target, and how it pulls.
+// --- goal ---
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
@@ -296,8 +264,6 @@ GuidanceSettings against_the_plane() {
   return s;
 }
 
-// --- goal ---
-
 TEST(GuidanceGoal, FixedLiesBeforeTheTargetAgainstTheTurnedAxis) {
   GuidanceSettings s;
   s.rotation_deg = {0, 0, 90}, s.approach_axis = {0.5, 0, 0};  // turned to y
@@ -307,12 +273,6 @@ TEST(GuidanceGoal, FixedLiesBeforeTheTargetAgainstTheTurnedAxis) {
   EXPECT_LT((goal->p_W - Vec3(1.02, 1.9, 3.01)).norm(), 1e-15);
   EXPECT_LT((goal->q_WT * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
   EXPECT_LT((goal->q_WT * Vec3::UnitZ() - Vec3::UnitZ()).norm(), 1e-15);
-}
-
-TEST(GuidanceGoal, IsTheTargetIfThereIsNoStandoffOrOffset) {
-  GuidanceSettings s;
-  s.standoff_m = 0;
-  EXPECT_EQ(guidance_goal(s, target({1, 2, 3}))->p_W, Vec3(1, 2, 3));
 }
 
 TEST(GuidanceGoal, AgainstAPlaneTheAxisPointsAtItByTheShortestWay) {
@@ -353,23 +313,18 @@ TEST(GuidanceGoal, TheAxisTurnsToAPlaneBehind) {
   }
 }
 
-TEST(GuidanceGoal, HasTheFixedOrientationIfThereIsNoPlane) {
+TEST(GuidanceGoal, HasTheFixedOrientationIfThereIsNoPlaneAndNeedsEnoughPoints) {
   GuidanceSettings s = against_the_plane();
-  const auto goal = guidance_goal(s, target({1, 2, 3}));
-  s.orientation = GuidedOrientation::fixed;
-  const auto fixed = guidance_goal(s, target({1, 2, 3}, {0, 1, 0}));
-  EXPECT_EQ(goal->p_W, fixed->p_W);
-  EXPECT_EQ(goal->q_WT.coeffs(), fixed->q_WT.coeffs());
-}
-
-TEST(GuidanceGoal, NeedsEnoughPoints) {
-  GuidanceSettings s;
   s.min_points = 7;
   GuidanceTarget seen = target({1, 2, 3});
   seen.points = 6;
   EXPECT_FALSE(guidance_goal(s, seen));
   seen.points = 7;
-  EXPECT_TRUE(guidance_goal(s, seen));
+  const auto goal = guidance_goal(s, seen);
+  s.orientation = GuidedOrientation::fixed;
+  const auto fixed = guidance_goal(s, target({1, 2, 3}, {0, 1, 0}));
+  EXPECT_EQ(goal->p_W, fixed->p_W);
+  EXPECT_EQ(goal->q_WT.coeffs(), fixed->q_WT.coeffs());
   EXPECT_FALSE(guidance_goal({}, {}));
 }
 
@@ -382,64 +337,19 @@ TEST(GuidanceGoal, AnAxisWithoutLengthIsRefused) {
 
 // --- wrench ---
 
-GuidanceSettings without_limits() {
+// The spring is that of the coupling: rigid_tool_test.cpp derives its wrench from its energy.
+TEST(GuidanceWrench, PullsTowardsTheGoalWithTheStiffnessOfTheFixtureOrOfTheSettings) {
   GuidanceSettings s;
   s.max_force_N = s.max_torque_Nm = 1e9;
-  return s;
-}
-
-double energy(const GuidanceSettings& s, const ToolPose& goal, const ToolPose& device) {
-  const double angle = Eigen::AngleAxisd(device.q_WT * goal.q_WT.conjugate()).angle();
-  const double rotational = s.stiffness_N_per_m * s.gyration_radius_m * s.gyration_radius_m;
-  return 0.5 * s.stiffness_N_per_m * (device.p_W - goal.p_W).squaredNorm() + 0.5 * rotational * angle * angle;
-}
-
-TEST(GuidanceWrench, IsMinusTheGradientOfItsEnergy) {
-  std::mt19937 random(4);
-  const GuidanceSettings s = without_limits();
-  for (int i = 0; i < 50; ++i) {
-    const ToolPose goal{direction(random), rotation(0.06 * i * direction(random))};
-    const ToolPose device{goal.p_W + 0.1 * direction(random),
-                          rotation((0.3 + 0.05 * i) * direction(random)) * goal.q_WT};
-    const Wrench wrench = guidance_wrench(s, -1, goal, device);
-    constexpr double h = 1e-5;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vec3 d = h * Vec3::Unit(axis);
-      const auto place = [&](double side) { return energy(s, goal, {device.p_W + side * d, device.q_WT}); };
-      const auto angle = [&](double side) {
-        const Eigen::Quaterniond turn(Eigen::AngleAxisd(side * h, Vec3::Unit(axis)));
-        return energy(s, goal, {device.p_W, turn * device.q_WT});
-      };
-      EXPECT_NEAR(wrench.force_N[axis], -(place(1) - place(-1)) / (2 * h), 1e-6) << i;
-      EXPECT_NEAR(wrench.torque_Nm[axis], -(angle(1) - angle(-1)) / (2 * h), 1e-7) << i;
-    }
-  }
-}
-
-TEST(GuidanceWrench, PullsTowardsTheGoal) {
-  const GuidanceSettings s = without_limits();
   const ToolPose goal{{0.1, 0, 0}, rotation({0, 0.2, 0})};
-  const Wrench wrench = guidance_wrench(s, -1, goal, {});
-  EXPECT_LT((wrench.force_N - Vec3(20, 0, 0)).norm(), 1e-12);
-  EXPECT_LT((wrench.torque_Nm - Vec3(0, 0.2 * 200 * 9e-4, 0)).norm(), 1e-12);
-}
-
-TEST(GuidanceWrench, IsNothingAtTheGoal) {
-  std::mt19937 random(5);
-  for (int i = 0; i < 20; ++i) {
-    const ToolPose goal{direction(random), rotation(0.15 * i * direction(random))};
-    const Wrench wrench = guidance_wrench(without_limits(), 10000, goal, goal);
-    EXPECT_EQ(wrench.force_N, Vec3::Zero());
-    EXPECT_LT(wrench.torque_Nm.norm(), 1e-14);
+  for (const auto& [own, stiffness] : {std::pair(-1.0, 200.0), {50.0, 50.0}, {0.0, 0.0}}) {
+    const Wrench wrench = guidance_wrench(s, own, goal, {});
+    EXPECT_LT((wrench.force_N - stiffness * Vec3(0.1, 0, 0)).norm(), 1e-12) << own;
+    EXPECT_LT((wrench.torque_Nm - Vec3(0, 0.2 * stiffness * 9e-4, 0)).norm(), 1e-12) << own;
+    const Wrench there = guidance_wrench(s, own, goal, goal);
+    EXPECT_EQ(there.force_N, Vec3::Zero());
+    EXPECT_LT(there.torque_Nm.norm(), 1e-14);
   }
-}
-
-TEST(GuidanceWrench, AFixtureHasAStiffnessOfItsOwnOrThatOfTheSettings) {
-  const GuidanceSettings s = without_limits();
-  const ToolPose goal{{0.1, 0, 0}, Eigen::Quaterniond::Identity()};
-  EXPECT_NEAR(guidance_wrench(s, 50, goal, {}).force_N.x(), 5, 1e-12);
-  EXPECT_NEAR(guidance_wrench(s, -1, goal, {}).force_N.x(), 20, 1e-12);
-  EXPECT_EQ(guidance_wrench(s, 0, goal, {}).force_N, Vec3::Zero());
 }
 
 TEST(GuidanceWrench, IsCutToItsLargestLengths) {
@@ -455,4 +365,4 @@ TEST(GuidanceWrench, IsCutToItsLargestLengths) {
 }
 
 }  // namespace
-}  // namespace remote_touch::guidance_spring_test
+}  // namespace remote_touch::guidance_test

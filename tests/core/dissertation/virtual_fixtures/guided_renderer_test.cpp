@@ -1,3 +1,5 @@
+// Guidance on top of the renderers: what is added to their wrench, when, how it begins and ends, and what a
+// task switches.
 #include "core/dissertation/virtual_fixtures/guided_renderer.h"
 
 #include <gtest/gtest.h>
@@ -10,18 +12,94 @@
 #include <utility>
 #include <vector>
 
+#include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/points/vector.h"
-#include "runners/evaluation/contract/allocation_counter.h"
-#include "tests/core/dissertation/virtual_fixtures/guided_scene.h"
+#include "tests/support/box_tool.h"
+#include "tests/support/scenes.h"
 
 namespace remote_touch::guided_renderer_test {
 namespace {
 
-// Guidance on top of the renderers: what is added to their wrench, when, and what a task switches.
-
-using namespace guided_scene;
-
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+enum class Inner { proxy, tool };
+std::string inner_name(const testing::TestParamInfo<Inner>& info) {
+  return info.param == Inner::proxy ? "proxy" : "tool";
+}
+
+std::unique_ptr<Renderer> inner(Inner kind) {
+  if (kind == Inner::proxy)
+    return std::make_unique<ProxyRenderer>(ProxyParameters{}, 1000, scenes::kernels());
+  return std::make_unique<ToolRenderer>(ToolParameters{}, scenes::box_tool({0.02, 0.005, 0.01}),
+                                        scenes::kernels());
+}
+
+FixtureValues fixture(FixtureRole role, const std::string& label) {
+  FixtureValues values;
+  values.role = role, values.label = label;
+  return values;
+}
+FixtureValues guide(const std::string& label) {
+  return fixture(FixtureRole::guidance, label);
+}
+FixtureValues region(const std::string& label) {
+  return fixture(FixtureRole::forbidden, label);
+}
+
+SequenceStep step(FixtureAction action, const std::string& label, StepStart start = StepStart::previous,
+                  int button = 0) {
+  SequenceStep s;
+  s.action = action, s.fixture = label, s.start = start, s.button = button;
+  return s;
+}
+SequenceStep until_reached(SequenceStep s) {
+  s.end = StepEnd::reached;
+  return s;
+}
+
+// The goal is the target itself, in the orientation of the base.
+GuidanceSettings plain() {
+  GuidanceSettings s;
+  s.standoff_m = 0;
+  return s;
+}
+
+using Switches = std::shared_ptr<FixtureSwitches>;
+GuidedRenderer guided(Inner kind, const std::vector<FixtureValues>& fixtures,
+                      std::vector<SequenceStep> steps = {}, const GuidanceSettings& settings = plain(),
+                      const Switches& switches = std::make_shared<FixtureSwitches>()) {
+  EXPECT_EQ(validate(fixtures, steps), "");
+  return {inner(kind), settings, fixtures, std::move(steps), switches};
+}
+
+GuidanceTarget target(const Vec3& mean_W) {
+  return {100, mean_W, Vec3::Zero()};
+}
+
+Frame frame(std::vector<GuidanceTarget> targets, int index = 0) {
+  Frame f = scenes::frame(scenes::flat_grid(40), index);
+  f.guidance = std::move(targets);
+  return f;
+}
+
+DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero(), std::uint32_t buttons = 0) {
+  return {p_W, rotation(turn), buttons};
+}
+
+const Vec3 kAbove(0, 0.1, 0), kLeft(-0.05, 0.1, 0), kRight(0.05, 0.1, 0);
+
+void expect_no_guidance(const RenderOutput& out) {
+  ASSERT_TRUE(out.guidance);
+  EXPECT_FALSE(out.guidance->active);
+  EXPECT_EQ(out.guidance->force_N, Vec3::Zero());
+  EXPECT_EQ(out.guidance->torque_Nm, Vec3::Zero());
+  EXPECT_TRUE(out.guidance->goal_W.array().isNaN().all());
+  EXPECT_TRUE(out.guidance->goal_orientation_W.coeffs().array().isNaN().all());
+  EXPECT_EQ(out.force_N, Vec3::Zero());
+  if (out.tool) {
+    EXPECT_EQ(out.tool->torque_Nm, Vec3::Zero());
+  }
+}
 
 class EveryRenderer : public testing::TestWithParam<Inner> {};
 INSTANTIATE_TEST_SUITE_P(Guided, EveryRenderer, testing::Values(Inner::proxy, Inner::tool), inner_name);
@@ -29,8 +107,10 @@ INSTANTIATE_TEST_SUITE_P(Guided, EveryRenderer, testing::Values(Inner::proxy, In
 // --- the wrench ---
 
 // The guided renderer runs beside a plain renderer of the same kind, in a press into the grid.
-TEST_P(EveryRenderer, TheSpringIsAddedAndNothingElseIsChanged) {
-  GuidedRenderer r = guided(GetParam(), {guide("valve")});
+TEST_P(EveryRenderer, TheSpringOfTheFixtureIsAddedAndNothingElseIsChanged) {
+  FixtureValues valve = guide("valve");
+  valve.stiffness_N_per_m = 10;
+  GuidedRenderer r = guided(GetParam(), {valve});
   const auto alone = inner(GetParam());
   const ToolPose goal{{0.02, 0.05, 0}, Eigen::Quaterniond::Identity()};
   r.on_frame(frame({target(goal.p_W)})), alone->on_frame(frame({}));
@@ -38,7 +118,7 @@ TEST_P(EveryRenderer, TheSpringIsAddedAndNothingElseIsChanged) {
   for (int i = 0; i < 200; ++i) {
     const DeviceState d = device({0, 0.03 - 2.5e-4 * i, 0}, {0.002 * i, 0, 0.1});
     const RenderOutput out = r.step(d, 0.001 * i), plain_out = alone->step(d, 0.001 * i);
-    const Wrench wrench = guidance_wrench(plain(), -1, goal, {d.position_W, d.orientation_W.normalized()});
+    const Wrench wrench = guidance_wrench(plain(), 10, goal, {d.position_W, d.orientation_W.normalized()});
     EXPECT_EQ(out.guidance->force_N, wrench.force_N);
     EXPECT_EQ(out.force_N, Vec3(plain_out.force_N + wrench.force_N));
     EXPECT_EQ(out.proxy_W, plain_out.proxy_W);
@@ -55,14 +135,6 @@ TEST_P(EveryRenderer, TheSpringIsAddedAndNothingElseIsChanged) {
     touched |= plain_out.force_N.norm() > 1;
   }
   EXPECT_TRUE(touched);
-}
-
-TEST_P(EveryRenderer, PullsTowardsTheGoalWithTheFixturesOwnStiffness) {
-  FixtureValues soft = guide("valve");
-  soft.stiffness_N_per_m = 10;
-  GuidedRenderer r = guided(GetParam(), {soft});
-  r.on_frame(frame({target(kAbove + Vec3(0.1, 0, 0))}));
-  EXPECT_LT((r.step(device(kAbove), 0).force_N - Vec3(1, 0, 0)).norm(), 1e-12);
 }
 
 TEST_P(EveryRenderer, HasNoGuidanceBeforeAFrameOrWithoutATarget) {
@@ -140,26 +212,6 @@ TEST(GuidedRenderer, GuidanceBeginsAsTheOppositeOfItsFirstAction) {
 
 // --- tasks ---
 
-TEST(GuidedRenderer, OnlyTheActivatedFixturePulls) {
-  using enum FixtureAction;
-  const StepStart button = StepStart::button;
-  GuidedRenderer r = guided(
-      Inner::proxy, {guide("left"), region("table"), guide("right"), guide("")},
-      {step(activate, "left", button), step(activate, "right", button), step(release, "right", button)});
-  r.on_frame(frame({target(kLeft), target(kRight), target(kAbove + Vec3(0, 0.01, 0))}));
-  const auto pulled_to = [&](std::uint32_t buttons, double time_s) {
-    const RenderOutput out = r.step(device(kAbove, Vec3::Zero(), buttons), time_s);
-    EXPECT_EQ(out.force_N, out.guidance->force_N);
-    return std::pair{out.guidance->goal_W, out.force_N};
-  };
-  EXPECT_LT((pulled_to(0, 0).second - Vec3(0, 2, 0)).norm(), 1e-12) << "the one that no step names";
-  EXPECT_EQ(pulled_to(1, 0.001).first, kLeft);
-  EXPECT_LT((pulled_to(0, 0.002).second - Vec3(-4, 0, 0)).norm(), 1e-12);
-  EXPECT_EQ(pulled_to(1, 0.003).first, kRight);
-  EXPECT_LT((pulled_to(0, 0.004).second - Vec3(4, 0, 0)).norm(), 1e-12);
-  EXPECT_EQ(pulled_to(1, 0.005).second, Vec3::Zero());
-}
-
 // Fixtures that all start enabled pull together, but not beyond the limits of one, which every tick has
 // reached here.
 TEST_P(EveryRenderer, SeveralFixturesTogetherKeepTheLimits) {
@@ -204,6 +256,7 @@ TEST_P(EveryRenderer, AGoalIsReachedWithinTheFixturesRadiusAndAngle) {
   for (const Case& c : cases) {
     GuidedRenderer r =
         guided(GetParam(), {guide("valve")}, {until_reached(step(FixtureAction::activate, "valve"))});
+    EXPECT_EQ(r.step(device(kLeft), 0).guidance->sequence_step, 0) << "it is not seen";
     r.on_frame(frame({target(kLeft)}));
     EXPECT_EQ(r.step(device(kAbove), 0).guidance->sequence_step, 0);
     const RenderOutput out = r.step(device(c.place, c.turn), 0.001);
@@ -226,30 +279,6 @@ TEST_P(EveryRenderer, ItIsTheToolThatReachesAGoal) {
   EXPECT_EQ(out.guidance->sequence_step, 0);
 }
 
-TEST(GuidedRenderer, AGoalThatIsNotSeenIsNotReached) {
-  GuidedRenderer r =
-      guided(Inner::proxy, {guide("valve")}, {until_reached(step(FixtureAction::wait, "valve"))});
-  EXPECT_EQ(r.step(device({0, 0, 0}), 0).guidance->sequence_step, 0);
-  r.on_frame(frame({GuidanceTarget{}}));
-  EXPECT_EQ(r.step(device({0, 0.1, 0}), 0.001).guidance->sequence_step, 0);
-}
-
-TEST(GuidedRenderer, ReportsTheCurrentStepOfTheTask) {
-  using enum FixtureAction;
-  SequenceStep timed = until_reached(step(activate, "valve"));
-  timed.deadline_s = 0.01;
-  GuidedRenderer r =
-      guided(Inner::proxy, {guide("valve")}, {timed, step(release, "valve", StepStart::button)});
-  r.on_frame(frame({target(kLeft)}));
-  GuidanceOutput told = *r.step(device(kAbove), 0.5).guidance;
-  EXPECT_TRUE(told.sequence_running && told.sequence_step == 0 && told.sequence_missed == 0);
-  told = *r.step(device(kAbove), 0.51).guidance;
-  EXPECT_TRUE(!told.sequence_running && told.sequence_step == 1 && told.sequence_missed == 1);
-  EXPECT_TRUE(told.active) << "a step that is missed undoes nothing";
-  told = *r.step(device(kAbove, Vec3::Zero(), 1), 0.52).guidance;
-  EXPECT_TRUE(!told.active && told.sequence_step == 2);
-}
-
 // Only a step that waits until its goal is reached has a distance to it.
 TEST_P(EveryRenderer, AStepThatEndsAtOnceReportsNoDistance) {
   const SequenceStep activate = step(FixtureAction::activate, "valve");
@@ -263,73 +292,11 @@ TEST_P(EveryRenderer, AStepThatEndsAtOnceReportsNoDistance) {
   }
 }
 
-TEST_P(EveryRenderer, AStepAllocatesNothing) {
-  using enum FixtureAction;
-  const StepStart button = StepStart::button;
-  const std::string left = "a label that is too long to be kept within a string itself";
-  GuidanceSettings s = plain();
-  s.orientation = GuidedOrientation::plane;
-  SequenceStep timed = until_reached(step(activate, left, button));
-  timed.deadline_s = 0.05;
-  GuidedRenderer r =
-      guided(GetParam(), {guide(left), region("table"), guide("right")},
-             {timed, step(lock, "table", button), until_reached(step(activate, "right", button)),
-              step(unlock, "table"), step(release, "right", button)},
-             s);
-  r.on_frame(frame({target(kLeft), {100, kRight, Vec3::UnitX()}}));
-  RenderOutput out;
-  for (int i = 0; i < 400; ++i) {
-    const DeviceState d = device({0, 0.08 - 3e-4 * i, 0}, {0, 0.01 * i, 0}, i % 40 == 20 ? 1 : 0);
-    const std::size_t before = allocation_count();
-    out = r.step(i == 200 ? device({kNaN, 0, 0}) : d, 0.001 * i);
-    ASSERT_EQ(allocation_count(), before) << i;
-  }
-  EXPECT_GE(out.guidance->sequence_step, 2);
-}
-
-}  // namespace
-}  // namespace remote_touch::guided_renderer_test
-
-// A target that is lost, and forces that begin and end.
-namespace remote_touch::guidance_over_time_test {
-namespace {
-
-using namespace guided_scene;
-
-class GuidanceOverTime : public testing::TestWithParam<Inner> {};
-INSTANTIATE_TEST_SUITE_P(Guided, GuidanceOverTime, testing::Values(Inner::proxy, Inner::tool), inner_name);
-
-Frame frame_at(double arrives_s, std::vector<GuidanceTarget> targets, int index) {
-  Frame f = frame(std::move(targets), index);
-  f.arrives_s = arrives_s;
-  return f;
-}
-
-TEST_P(GuidanceOverTime, ALostTargetIsUsedForHoldSeconds) {
-  GuidanceSettings holding = plain();
-  holding.hold_s = 0.1;
-  GuidedRenderer r = guided(GetParam(), {guide("valve")}, {}, holding);
-  r.on_frame(frame_at(0, {target(kLeft)}, 0));
-  EXPECT_EQ(r.step(device(kAbove), 0.05).guidance->goal_W, kLeft);
-  r.on_frame(frame_at(0.0625, {GuidanceTarget{}}, 1));
-  r.on_frame(frame_at(0.125, {GuidanceTarget{}}, 2));  // lost since the first of the two
-  EXPECT_EQ(r.step(device(kAbove), 0.162).guidance->goal_W, kLeft);
-  expect_no_guidance(r.step(device(kAbove), 0.163));
-  r.on_frame(frame_at(0.1875, {target(kRight)}, 3));
-  EXPECT_EQ(r.step(device(kAbove), 0.1875).guidance->goal_W, kRight);
-}
-
-TEST_P(GuidanceOverTime, ATargetThatWasNeverSeenIsNotHeld) {
-  GuidanceSettings holding = plain();
-  holding.hold_s = 10;
-  GuidedRenderer r = guided(GetParam(), {guide("valve")}, {}, holding);
-  r.on_frame(frame_at(0, {GuidanceTarget{}}, 0));
-  expect_no_guidance(r.step(device(kAbove), 0.001));
-}
+// --- a target that is lost, and forces that begin and end ---
 
 // Closed form: a device that rests feels level times the spring, and the level changes by 1 ms / fade_s a
 // tick.
-TEST_P(GuidanceOverTime, TheForceRisesAndFallsEvenly) {
+TEST_P(EveryRenderer, TheForceRisesAndFallsEvenly) {
   GuidanceSettings fading = plain();
   fading.fade_s = 0.1;
   std::vector<SequenceStep> steps{step(FixtureAction::activate, "valve", StepStart::button, 0),
@@ -350,7 +317,7 @@ TEST_P(GuidanceOverTime, TheForceRisesAndFallsEvenly) {
 }
 
 // Wherever the two are in the list of fixtures.
-TEST_P(GuidanceOverTime, TheGoalIsThatOfTheActiveFixtureWhileAnotherFades) {
+TEST_P(EveryRenderer, TheGoalIsThatOfTheActiveFixtureWhileAnotherFades) {
   GuidanceSettings fading = plain();
   fading.fade_s = 0.1;
   for (const bool reversed : {false, true}) {
@@ -377,14 +344,14 @@ TEST_P(GuidanceOverTime, TheGoalIsThatOfTheActiveFixtureWhileAnotherFades) {
 }
 
 // The force of a lost target fades in the same way.
-TEST_P(GuidanceOverTime, TheForceFallsWhenTheTargetIsLost) {
+TEST_P(EveryRenderer, TheForceFallsWhenTheTargetIsLost) {
   GuidanceSettings fading = plain();
   fading.fade_s = 0.05, fading.hold_s = 0.1;
   GuidedRenderer r = guided(GetParam(), {guide("valve")}, {}, fading);
-  r.on_frame(frame_at(0, {target(kLeft)}, 0));
+  r.on_frame(frame({target(kLeft)}, 0));
   double before_N = 0, max_change_N = 0;
   for (int ms = 0; ms <= 400; ++ms) {
-    if (ms == 200) r.on_frame(frame_at(0.2, {GuidanceTarget{}}, 1));
+    if (ms == 200) r.on_frame(frame({GuidanceTarget{}}, 6));  // arrives then
     const double force_N = r.step(device(kAbove), 0.001 * ms).force_N.norm();
     max_change_N = std::max(max_change_N, std::abs(force_N - before_N));
     before_N = force_N;
@@ -397,4 +364,4 @@ TEST_P(GuidanceOverTime, TheForceFallsWhenTheTargetIsLost) {
 }
 
 }  // namespace
-}  // namespace remote_touch::guidance_over_time_test
+}  // namespace remote_touch::guided_renderer_test
