@@ -1,3 +1,4 @@
+// Contacts near a tool compared with a loop over all disks, and the merging of points of dense surfaces.
 #include "core/dissertation/tool_motion/contact_list.h"
 
 #include <gtest/gtest.h>
@@ -81,23 +82,6 @@ TEST(ContactList, HasTheSameBitsOnEveryInstructionSet) {
     }
 }
 
-TEST(ContactList, FewContactsAreAllThere) {
-  const PointCloud cloud = cloud_of(800);
-  const std::vector<Found> all = all_contacts(cloud, {});
-  ContactList list(kTool, {}, scenes::kernels());
-  list.on_frame(in_form<TiledCloud>(cloud));
-  const NearContacts near = list.near(kPose, 0);
-  ASSERT_GT(all.size(), 20u);
-  ASSERT_LT(all.size(), 256u);
-  ASSERT_EQ(near.contacts.size(), all.size());
-  double deepest_m = -1;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_TRUE(same(near.contacts[i], all[i].contact)) << i;
-    deepest_m = std::max(deepest_m, all[i].contact.depth_m);
-  }
-  EXPECT_EQ(near.deepest_m, deepest_m);
-}
-
 // The result does not depend on earlier queries. Contacts within kTouched_m are always included.
 TEST(ContactList, HasAllWithinTheGivenDistanceAndNoneFartherAway) {
   const PointCloud cloud = cloud_of(800);
@@ -113,8 +97,12 @@ TEST(ContactList, HasAllWithinTheGivenDistanceAndNoneFartherAway) {
     const NearContacts near = list.near(kPose, 0, asked_m);
     EXPECT_EQ(near.within_m, is_all ? std::numeric_limits<double>::infinity() : within_m);
     ASSERT_EQ(near.contacts.size(), expected.size()) << within_m;
-    for (std::size_t i = 0; i < expected.size(); ++i)
+    double deepest_m = -1;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
       EXPECT_TRUE(same(near.contacts[i], expected[i].contact)) << i << " " << within_m;
+      deepest_m = std::max(deepest_m, expected[i].contact.depth_m);
+    }
+    EXPECT_EQ(near.deepest_m, deepest_m);
     EXPECT_NE(near.contacts.size(), last);
     last = near.contacts.size();
   }
@@ -214,19 +202,6 @@ TEST(ContactList, MergedPointsAreAsFarAsTheyAre) {
   }
 }
 
-TEST(ContactList, PointsAreMergedOnlyIfAskedFor) {
-  const PointCloud cloud = scenes::dense_plane();
-  const ToolPose pose{{0, 0.0031, 0}, Eigen::Quaterniond::Identity()};
-  ToolParameters p;
-  for (const double merged_disk_m : {0.0, 0.002}) {
-    p.merged_disk_m = merged_disk_m;
-    ContactList list(kTool, p, scenes::kernels());
-    list.on_frame(in_form<TiledCloud>(cloud, used_merged_disk_m(p)));
-    list.near(pose, 0);
-    EXPECT_EQ(list.near_disks().size() > 500, merged_disk_m == 0);
-  }
-}
-
 // Every point that may stop a motion of the continuous rule is tested, even where points are merged.
 TEST(ContactList, PointsWithinReachAreNeverMerged) {
   const PointCloud cloud = scenes::dense_plane();
@@ -254,11 +229,7 @@ TEST(ContactList, HasNoContactBeforeAFrame) {
   EXPECT_TRUE(list.in_voxels(kPose).contacts.empty());
 }
 
-}  // namespace
-}  // namespace remote_touch::contact_list_test
-
-namespace remote_touch::contact_thinning_test {
-namespace {
+// --- merged points ---
 
 constexpr double kCube_m = 2e-3, kSpacing_m = 3e-4;
 
@@ -330,46 +301,30 @@ TEST(MergedPoints, EveryPointIsInADiskOrIsKept) {
   }
 }
 
-TEST(MergedPoints, AFullPlaneKeepsATwentiethOfItsPoints) {
-  const std::vector<CloudPoint> points = surface([](double, double) { return 0; });
-  std::size_t inside = 0, merged_inside = 0;  // away from the rim
-  const auto is_inside = [](const Vec3& p_W) { return p_W.cwiseAbs().maxCoeff() < 0.024; };
-  for (const CloudPoint& point : points) inside += is_inside(point.p_W) ? 1 : 0;
-  for (const PointOrDisk& disk : merged_points(points, kCube_m)) merged_inside += is_inside(disk.p_W) ? 1 : 0;
-  EXPECT_LT(20 * merged_inside, inside);
-}
-
+// Sheets with an edge, and with a hole, in several directions.
 TEST(MergedPoints, DisksEndWhereTheSurfaceEnds) {
-  for (const double angle_rad : {0.0, 0.3, 0.7})
+  for (const double angle_rad : {0.0, 0.3, 0.7}) {
     for (const double edge_m : {0.0, 3e-4, 8e-4, 1.4e-3})
       expect_no_more_than_the_cloud(
           turned(surface([&](double x, double) { return x > edge_m ? std::nan("") : 0; }), angle_rad));
-}
-
-TEST(MergedPoints, DisksDoNotCloseHoles) {
-  for (const double angle_rad : {0.0, 0.3, 0.7})
     for (const double radius_m : {8e-4, 1.5e-3})
       expect_no_more_than_the_cloud(
           turned(surface([&](double x, double z) { return std::hypot(x, z) < radius_m ? std::nan("") : 0; }),
                  angle_rad));
+  }
 }
 
-TEST(MergedPoints, PointsStandForThemselvesWhereTheyAreRoughOrFarApart) {
+TEST(MergedPoints, PointsThatAreRoughFarApartOrWithoutSpacingOrNormalsStandForThemselves) {
   const auto level = [](double, double) { return 5e-4; };  // the middle of a layer of cubes
-  EXPECT_FALSE(merged_points(surface(level), kCube_m).empty());
-  EXPECT_TRUE(merged_points(surface(level, 2 * kFlat_m), kCube_m).empty());
-  std::vector<CloudPoint> coarse = surface([](double, double) { return 0; });
-  for (CloudPoint& point : coarse) point.p_W *= 4, point.spacing_m *= 4;
-  EXPECT_TRUE(merged_points(coarse, kCube_m).empty());
+  const std::vector<CloudPoint> dense = surface(level);
+  EXPECT_FALSE(merged_points(dense, kCube_m).empty());
   EXPECT_TRUE(merged_points({}, kCube_m).empty());
-}
-
-TEST(MergedPoints, PointsWithoutASpacingOrNormalsStandForThemselves) {
-  std::vector<CloudPoint> unspaced = surface([](double, double) { return 5e-4; }), bare = unspaced;
+  EXPECT_TRUE(merged_points(surface(level, 2 * kFlat_m), kCube_m).empty());
+  std::vector<CloudPoint> coarse = surface([](double, double) { return 0; }), unspaced = dense, bare = dense;
+  for (CloudPoint& point : coarse) point.p_W *= 4, point.spacing_m *= 4;
   for (CloudPoint& point : unspaced) point.spacing_m = 0;
   for (CloudPoint& point : bare) point.n_W = Vec3::Constant(std::nan(""));
-  EXPECT_TRUE(merged_points(unspaced, kCube_m).empty());
-  EXPECT_TRUE(merged_points(bare, kCube_m).empty());
+  for (const auto& points : {coarse, unspaced, bare}) EXPECT_TRUE(merged_points(points, kCube_m).empty());
 }
 
 // The disks of a cloud of points one step apart: a circle of `half` steps in one cube. Points around it,
@@ -396,18 +351,14 @@ std::vector<PointOrDisk> disks_of_circle(int half) {
 }
 
 // A disk with the largest possible number of squares along a side, and with a point at each end of its axes.
-// The last square ends there.
-TEST(MergedPoints, ThePointsOnTheRimOfADiskBelongToNoSquare) {
+// The last square ends there: points on the rim belong to no square. Wider squares could hide holes.
+TEST(MergedPoints, OfACircleAreADiskUpToTheLargestNumberOfSquares) {
   constexpr int kHalf = 24;  // 32 squares of 1.5 steps
   const std::vector<PointOrDisk> disks = disks_of_circle(kHalf);
   ASSERT_EQ(disks.size(), 1u);
   EXPECT_EQ(disks[0].extent_m, kHalf * (1.0 / (1 << 16)));
-}
-
-// Wider squares could hide holes.
-TEST(MergedPoints, PointsThatNeedMoreSquaresStandForThemselves) {
   for (const int half : {25, 40, 64}) EXPECT_TRUE(disks_of_circle(half).empty()) << half;
 }
 
 }  // namespace
-}  // namespace remote_touch::contact_thinning_test
+}  // namespace remote_touch::contact_list_test

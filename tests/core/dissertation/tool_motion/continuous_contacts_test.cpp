@@ -1,3 +1,4 @@
+// The fraction of a motion after which a point touches, and the continuous rule that uses it.
 #include "core/dissertation/tool_motion/contact_list.h"
 
 #include <gtest/gtest.h>
@@ -5,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <random>
+#include <tuple>
 
 #include "tests/support/box_tool.h"
 #include "tests/support/cloud_form.h"
@@ -61,11 +63,18 @@ TEST_F(OfABox, EndsBeforeAMotionThatWouldEndAHairOutside) {
   }
 }
 
-TEST_F(OfABox, SlidesAlongAFaceAndLeavesIt) {
-  const Vec3 p_T(0.002, -0.001, 0.005 + 2e-6);
-  EXPECT_EQ(fraction(p_T, shift({1e-3, 3e-4, 0})), 1);
-  EXPECT_EQ(fraction(p_T, shift({1e-3, 3e-4, -1e-3})), 1);
-  EXPECT_EQ(fraction({0.002, -0.001, 0.005}, shift({1e-3, 0, -1e-6})), 1) << "from the surface itself";
+TEST_F(OfABox, AMotionAlongAwayOrFarFromAFaceIsWhole) {
+  const Vec3 at_face(0.002, -0.001, 0.005 + 2e-6);
+  const std::tuple<const char*, Vec3, Vec3, double> cases[] = {
+      {"along the face", at_face, {1e-3, 3e-4, 0}, 1},
+      {"away from it", at_face, {1e-3, 3e-4, -1e-3}, 1},
+      {"from the surface itself", {0.002, -0.001, 0.005}, {1e-3, 0, -1e-6}, 1},
+      {"a point in the tool", {0, 0, 0.004}, {0, 0, 1e-3}, 1},
+      {"out of the tool", {0, 0, 0.0049}, {0, 0, -1e-3}, 1},
+      {"a hair inside counts as touching", {0, 0, 0.005 - 1e-6}, {0, 0, 1e-3}, 0},
+      {"a far point", {0, 0, 0.05}, {0, 0, 1e-3}, 1},
+      {"a point beyond the motion", {0, 0, 0.0105}, {0, 0, 1e-3}, 1}};
+  for (const auto& [what, p_T, by, expected] : cases) EXPECT_EQ(fraction(p_T, shift(by)), expected) << what;
 }
 
 // A fraction below the limit is the same as without one; one above it is only known to be above it.
@@ -88,29 +97,6 @@ TEST_F(OfABox, FractionsUpToALimitAreThoseWithoutOne) {
   }
   EXPECT_GT(below, 1000);
   EXPECT_GT(above, 500);
-}
-
-// A turn alone: the face comes down on a point at a lever of 12 mm.
-TEST_F(OfABox, EndsWhereATurnTouches) {
-  const double distance_m = 1e-4, lever_m = 0.012, turn_rad = 0.02;
-  Vector6 a_g = Vector6::Zero();
-  a_g[4] = -turn_rad;  // about y: +x goes up
-  const double found = fraction({lever_m, 0, 0.005 + distance_m}, a_g);
-  // s: fraction of the turn after which the face z = 5 mm reaches the point's height at the point's x.
-  const double s = std::asin(distance_m / lever_m) / turn_rad;
-  EXPECT_NEAR(found, s, 0.06 * s);
-  EXPECT_LE(found, s);
-}
-
-TEST_F(OfABox, APointThatIsInTheToolDoesNotStopIt) {
-  EXPECT_EQ(fraction({0, 0, 0.004}, shift({0, 0, 1e-3})), 1);
-  EXPECT_EQ(fraction({0, 0, 0.0049}, shift({0, 0, -1e-3})), 1);
-  EXPECT_EQ(fraction({0, 0, 0.005 - 1e-6}, shift({0, 0, 1e-3})), 0) << "a hair inside counts as touching";
-}
-
-TEST_F(OfABox, FarPointsDoNotStopIt) {
-  EXPECT_EQ(fraction({0, 0, 0.05}, shift({0, 0, 1e-3})), 1);
-  EXPECT_EQ(fraction({0, 0, 0.0105}, shift({0, 0, 1e-3})), 1);
 }
 
 TEST_F(OfABox, NoOtherPointIsInsideAfterASafeMotion) {
@@ -232,10 +218,8 @@ TEST(ContinuousContacts, ASurfaceAheadStopsAMotionUnlessItOnlyTouches) {
   ContinuousContacts contacts(p, *tool);
   contacts.begin(points);
   const auto fraction = [&](double height_m, const Vec3& shift_W, double side) {
-    Vector6 a_g = Vector6::Zero();
-    a_g.head<3>() = shift_W;
-    return contacts.fraction_ahead({{0, half_m.y() + height_m, 0}, Eigen::Quaterniond::Identity()}, a_g,
-                                   side);
+    return contacts.fraction_ahead({{0, half_m.y() + height_m, 0}, Eigen::Quaterniond::Identity()},
+                                   shift(shift_W), side);
   };
   EXPECT_NEAR(fraction(2e-4, {0, -4e-4, 0}, 1), (2e-4 - ClearWay::kTouch_m) / 4e-4, 1e-3);
   EXPECT_EQ(fraction(2e-4, {0, -1e-4, 0}, 1), 1);

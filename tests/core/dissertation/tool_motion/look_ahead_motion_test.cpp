@@ -1,3 +1,5 @@
+// The motion that the nearest contacts allow compared with that of all contacts, and the continuous rule on
+// surfaces that frames take past the tool.
 #include "core/dissertation/tool_motion/look_ahead_motion.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +15,7 @@
 #include "core/dissertation/tool_motion/tool_renderer.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/points/vector.h"
+#include "tests/core/dissertation/tool_motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/cloud_form.h"
 #include "tests/support/scenes.h"
@@ -110,17 +113,6 @@ TEST(LookAheadProgram, FindsTheMotionThatAllContactsAllow) {
   EXPECT_GT(held, 300);
 }
 
-TEST(LookAheadProgram, QueriesOnlyNearPointsWhileTheToolMovesLittle) {
-  const Vec3 up = Vec3::UnitY();
-  Planes planes({{-0.003 * up, up, 0, 1}, {Vec3(0.005, -0.003, 0), up, -1e-3, 1}});
-  LookAheadProgram program({}, *kTool, kTool->reach_m);
-  Vector6 a_gu = Vector6::Zero();
-  a_gu.head<3>() = kPose.q_WT * Vec3(5e-5, -0.01, 0);  // along the plane, and pressed against it
-  const LookAheadProgram::Detection detection = program.detect(kPose, a_gu, planes, 0);
-  EXPECT_EQ(detection.near.contacts.size(), 1u);
-  EXPECT_EQ(planes.asked_m, std::vector<double>{LookAheadProgram::kMinFirst_m});
-}
-
 TEST(LookAheadProgram, QueriesAllPointsBeforeItReportsThatNoneIsNear) {
   Planes planes({{Vec3(0, -0.003, 0), Vec3::UnitY(), -1.9e-3, 1}});
   LookAheadProgram program({}, *kTool, kTool->reach_m);
@@ -192,12 +184,8 @@ TEST(LookAheadProgram, FindsTheMotionThatAllPointsAllow) {
 
 const Vec3 kHalf_m(0.015, 0.0025, 0.01);  // a plate of 5 mm
 
-PointCloud sheet(double height_m, double facing = 1, double spacing_m = 0.0013) {
-  PointCloud cloud;
-  for (int j = 0; j < 41; ++j)
-    for (int i = 0; i < 41; ++i)
-      cloud.append({(i - 20) * spacing_m, height_m, (j - 20) * spacing_m}, {0, facing, 0});
-  return cloud;
+PointCloud sheet(double height_m, double facing = 1) {
+  return sheet_of({.spacing_m = 0.0013, .y_m = height_m, .normal = {0, facing, 0}});
 }
 
 struct Ride {
@@ -340,16 +328,6 @@ TEST(ContinuousMotion, NeedsNoNormals) {
   double height_m = 0;
   for (int n = 0; n < 6; ++n) ride.frame(bare(sheet(height_m += 0.008)), -0.001);
   EXPECT_NEAR(ride.out.proxy_W.y(), height_m + kHalf_m.y(), 1e-4);
-}
-
-// The plate stays between two sheets that close on it, however often frames come.
-TEST(ContinuousMotion, KeepsTheToolBetweenWallsThatClose) {
-  Ride ride({});
-  for (int n = 0; n < 20; ++n) {
-    const double gap_m = std::max(0.006 - 0.0003 * n, 0.002);
-    const PointCloud walls = together(sheet(-0.5 * gap_m, 1), sheet(0.5 * gap_m, -1));
-    EXPECT_LT(std::abs(ride.frame(walls, -0.002)), 0.5 * gap_m + 1e-3) << n;
-  }
 }
 
 }  // namespace

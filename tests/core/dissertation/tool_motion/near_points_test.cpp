@@ -1,3 +1,4 @@
+// Points near a tool and on its way, and what it touches, compared with loops over all points.
 #include "core/dissertation/tool_motion/near_points.h"
 
 #include <gtest/gtest.h>
@@ -76,57 +77,6 @@ struct Query {
   }
 };
 
-TEST(NearPoints, HasTheBitsOfAPlainLoopOnEveryInstructionSet) {
-  const PointCloud cloud = scenes::random_cloud(20000, 0.03, 21);
-  std::size_t count = 0;
-  for (const Kernels* kernels : supported_kernels()) {
-    Query query(cloud, *kernels);
-    std::size_t before = 0;
-    for (const double reach_m : {1e-4, 1e-3, 2e-3, 5e-3}) {
-      EXPECT_TRUE(query.is_right(kPose, reach_m, count)) << kernels->isa << " " << reach_m;
-      EXPECT_GT(count, before);
-      before = count;
-    }
-  }
-}
-
-// Small motions, for which the groups are kept, and large ones. The reach rises and falls.
-TEST(NearPoints, AreFoundAtEveryPoseOfAMotion) {
-  const PointCloud cloud = scenes::random_cloud(20000, 0.03, 22);
-  Query query(cloud, scenes::kernels());
-  std::size_t count = 0, most = 0;
-  for (int i = 0; i < 200; ++i) {
-    const double step_m = i % 50 == 49 ? 5e-3 : 3e-5;
-    ToolPose pose = kPose;
-    pose.p_W += Vec3(i * 3e-5, i % 50 == 49 ? step_m : 0, -i * 2e-5);
-    pose.q_WT = rotation({1 + i * 1e-3, 2, -0.5});
-    ASSERT_TRUE(query.is_right(pose, i % 7 == 0 ? 2e-3 : 3e-4, count)) << i;
-    most = std::max(most, count);
-  }
-  EXPECT_GT(most, 100u);
-}
-
-TEST(NearPoints, ANewCloudReplacesTheOldOne) {
-  Query query(scenes::random_cloud(20000, 0.03, 23), scenes::kernels());
-  std::size_t count = 0;
-  ASSERT_TRUE(query.is_right(kPose, 1e-3, count));
-  query.show(scenes::random_cloud(5000, 0.03, 24));
-  EXPECT_TRUE(query.is_right(kPose, 1e-3, count));
-  EXPECT_GT(count, 0u);
-}
-
-TEST(NearPoints, PlacesALittleOutsideTheGridAreMeasuredToo) {
-  const VoxelGrid& grid = kTool->grid;
-  const PointCloud cloud = scenes::points_outside(grid);
-  Query query(cloud, scenes::kernels());
-  const ToolPose at_home{Vec3::Zero(), Eigen::Quaterniond::Identity()};
-  std::size_t count = 0;
-  EXPECT_TRUE(query.is_right(at_home, kFieldMargin_m + 3 * grid.size_m, count));
-  EXPECT_EQ(count, cloud.size());
-}
-
-// --- packed clouds, whose groups have slabs ---
-
 constexpr double kCube_m = 0.002;
 
 PointCloud wavy_plane() {
@@ -169,20 +119,42 @@ class Walk {
   const Vec3 start_W_ = pose_.p_W;
 };
 
-TEST(NearPoints, OfPackedCloudsAreThoseOfAPlainLoopAtEveryPose) {
-  for (const auto& [cloud, start_W] : dense_clouds())
+// Clouds without slabs, and dense ones whose groups have them. Another cloud comes in the middle of a walk of
+// mostly short steps, for which the groups are kept. The reach rises and falls.
+TEST(NearPoints, AreThoseOfAPlainLoopAtEveryPoseOnEveryInstructionSet) {
+  std::vector<std::pair<PointCloud, Vec3>> clouds = dense_clouds();
+  clouds.push_back({scenes::random_cloud(20000, 0.03, 21), Vec3(0.001, -0.002, 0.003)});
+  for (const auto& [cloud, start_W] : clouds)
     for (const Kernels* kernels : supported_kernels()) {
-      Query query(cloud, *kernels, kCube_m);
-      ASSERT_TRUE(query.finder.cloud().packed().has_slabs());
+      const double cube_m = cloud.x == clouds.back().first.x ? 0 : kCube_m;
+      Query query(cloud, *kernels, cube_m);
+      ASSERT_EQ(query.finder.cloud().packed().has_slabs(), cube_m > 0);
       Walk walk(start_W);
       std::size_t count = 0, most = 0;
-      for (int i = 0; i < 60; ++i) {
-        const double reach_m = i % 4 == 3 ? 2e-3 : i % 4 == 2 ? 0 : 2e-4;
+      for (int i = 0; i < 80; ++i) {
+        if (i == 40) query.show(clouds[1].first, cube_m);
+        const double reach_m = i % 4 == 3 ? 2e-3 : i % 4 == 2 ? 0 : i % 20 == 0 ? 5e-3 : 2e-4;
         ASSERT_TRUE(query.is_right(walk.step(i), reach_m, count)) << kernels->isa << " " << i;
         most = std::max(most, count);
       }
       EXPECT_GT(most, 500u);
+      EXPECT_TRUE(query.is_right({{0.5, 0, 0}, Eigen::Quaterniond::Identity()}, 1e-3, count));
+      EXPECT_EQ(count, 0u) << "of a tool far away";
     }
+}
+
+TEST(NearPoints, PlacesALittleOutsideTheGridAreMeasuredToo) {
+  const VoxelGrid& grid = kTool->grid;
+  PointCloud dense;
+  for (int i = 0; i < 50; ++i)
+    dense.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-4 * i, 0), Vec3::UnitX());
+  for (const PointCloud& cloud : {scenes::points_outside(grid), dense}) {
+    Query query(cloud, scenes::kernels(), cloud.size() == 50 ? kCube_m : 0);
+    ASSERT_EQ(query.finder.cloud().packed().has_slabs(), cloud.size() == 50);
+    std::size_t count = 0;
+    EXPECT_TRUE(query.is_right({}, kFieldMargin_m + 3 * grid.size_m, count));
+    EXPECT_EQ(count, cloud.size());
+  }
 }
 
 // No point that the motion can bring into the tool is left out, and most others are.
@@ -267,33 +239,8 @@ TEST(NearPoints, KnowsWhetherOneIsBelowAValue) {
     }
 }
 
-TEST(NearPoints, OfAPackedCloudOutsideTheGridAreMeasuredToo) {
-  const VoxelGrid& grid = kTool->grid;
-  PointCloud cloud;
-  for (int i = 0; i < 50; ++i)
-    cloud.append(Vec3(grid.origin_T.x() - 0.3 * grid.size_m, 1e-4 * i, 0), Vec3::UnitX());
-  Query query(cloud, scenes::kernels(), kCube_m);
-  ASSERT_TRUE(query.finder.cloud().packed().has_slabs());
-  std::size_t count = 0;
-  EXPECT_TRUE(query.is_right({}, kFieldMargin_m + 3 * grid.size_m, count));
-  EXPECT_EQ(count, cloud.size());
-}
+// --- what is touched ---
 
-TEST(NearPoints, NoneAreFoundForAToolFarAway) {
-  Query query(scenes::random_cloud(2000, 0.03, 25), scenes::kernels());
-  std::size_t count = 1;
-  EXPECT_TRUE(query.is_right({{0.5, 0, 0}, Eigen::Quaterniond::Identity()}, 1e-3, count));
-  EXPECT_EQ(count, 0u);
-}
-
-}  // namespace
-}  // namespace remote_touch::near_points_test
-
-namespace remote_touch::touched_points_test {
-namespace {
-
-const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
-const ToolPose kPose{{0.001, -0.002, 0.003}, rotation({1, 2, -0.5})};
 constexpr double kReach_m = 0.002, kRatio = 0.75, kInfinite = std::numeric_limits<double>::infinity();
 
 PointCloud cloud_of(std::size_t count, unsigned seed) {
@@ -384,6 +331,7 @@ TEST(TouchedPoints, AContactListCountsEveryTouchedPoint) {
       int some = 0, none = 0;
       for (int step = 0; step < 110; ++step) {
         const ToolPose pose{kPose.p_W + Vec3(6e-4 * step, 0, 0), kPose.q_WT};
+        if (with_disks && step % 2 == 1) list.near(pose, 0);  // a detection changes nothing
         const auto plain = [&](double reach_m) {
           return plain_touched(list.finder(), pose, std::min(reach_m, kFieldMargin_m - 2e-4), voxels_m,
                                with_disks);
@@ -414,4 +362,4 @@ TEST(TouchedPoints, PlacesOutsideTheGridAreMeasuredToo) {
 }
 
 }  // namespace
-}  // namespace remote_touch::touched_points_test
+}  // namespace remote_touch::near_points_test

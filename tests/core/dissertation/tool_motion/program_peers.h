@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "core/dissertation/tool_motion/motion_program.h"
@@ -37,42 +36,6 @@ struct Problem {
     return made;
   }
 };
-
-// Solves every set of at most N rows as equations. The answer is the nearest of the solutions that fulfil all
-// rows. Returns nullopt if none does. slack: the violation of a row that is still accepted.
-template <int N>
-std::optional<Vector<N>> nearest_of_all_subsets(const Problem<N>& problem, double slack = 1e-10) {
-  std::optional<Vector<N>> best;
-  std::vector<int> chosen;
-  const auto visit = [&](const auto& self, int next) -> void {
-    const auto k = static_cast<Eigen::Index>(chosen.size());
-    Eigen::Matrix<double, Eigen::Dynamic, N> a(k, N);
-    Eigen::VectorXd missing(k);
-    for (Eigen::Index j = 0; j < k; ++j) {
-      const auto i = static_cast<std::size_t>(chosen[static_cast<std::size_t>(j)]);
-      const double length = problem.rows[i].norm();
-      a.row(j) = problem.rows[i].transpose() / length;
-      missing[j] = problem.bounds[i] / length - a.row(j).dot(problem.target);
-    }
-    Vector<N> y = problem.target;
-    if (k > 0) {
-      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a * a.transpose());
-      if (qr.rank() < k) return;  // larger sets that contain this one add nothing either
-      y += a.transpose() * qr.solve(missing);
-    }
-    if (problem.violation(y) <= slack &&
-        (!best || (y - problem.target).norm() < (*best - problem.target).norm()))
-      best = y;
-    if (k == N) return;
-    for (int i = next; i < problem.size(); ++i) {
-      chosen.push_back(i);
-      self(self, i + 1);
-      chosen.pop_back();
-    }
-  };
-  visit(visit, 0);
-  return best;
-}
 
 // Nearest point of a cone, and what happened to the cone's generators.
 struct ConePoint {

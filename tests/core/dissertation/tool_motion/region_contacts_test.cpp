@@ -1,3 +1,5 @@
+// The choice of contacts with regions, the motion that they allow, what is touched, and the renderer of
+// chapter 7.
 #include "core/dissertation/tool_motion/sphere_tree_renderer.h"
 
 #include <gtest/gtest.h>
@@ -178,42 +180,26 @@ std::shared_ptr<const SphereTree> spheres_of_box() {
   return spheres;
 }
 
-// A ball against one region stops where the line from the region to the device leaves it, (7.4).
-TEST(RegionContacts, ABallStopsAtTheNearestPlaceOfARegion) {
-  Held held(kBox, one_leaf(0.01));
-  held.frame(regions_at({{0, 0, 0}}));
-  held.pose.p_W = {0, 0.1, 0};
-  held.move_to(at({0.005, 0.01, 0.002}));
-  const Vec3 expected = Vec3(0.005, 0.01, 0.002).normalized();
-  EXPECT_NEAR(held.pose.p_W.norm(), 0.05, kSettled_m);
-  EXPECT_NEAR((held.pose.p_W.normalized() - expected).norm(), 0, 0.004);  // a fifth of a millimetre
-}
-
-// The ball comes to rest in the crease of two regions: its distance to both is the sum of the radii.
-TEST(RegionContacts, ABallLiesInTheCreaseOfTwoRegions) {
-  Held held(kBox, one_leaf(0.01));
-  held.frame(regions_at({{-0.03, 0, 0}, {0.03, 0, 0}}));
-  held.pose.p_W = {0.01, 0.1, 0};
-  held.move_to(at({0.002, 0, 0}));
-  EXPECT_NEAR(held.pose.p_W.y(), 0.04, 1e-4);  // a triangle of 30, 40 and 50 mm
-  EXPECT_NEAR(held.pose.p_W.x(), 0, 1e-4);
-}
-
-// The same in a more obtuse crease. Neither of the two contacts may hide the other.
-TEST(RegionContacts, ABallLiesInAnObtuseCrease) {
-  Held held(kBox, one_leaf(0.01));
-  const Vec3 a = Vec3(1, 0.05, 0.05).normalized(), b = Vec3(1, 0.85, 0.85).normalized();
-  held.frame(regions_at({-0.05 * a, -0.05 * b}));  // the ball touches both with its centre at the origin
-  held.pose.p_W = 0.05 * (a + b);
-  held.move_to(at(-0.005 * (a + b)));
-  EXPECT_NEAR(held.pose.p_W.norm(), 0, 2e-4);
-}
-
-TEST(RegionContacts, TheToolFollowsTheDeviceIfThereAreNoRegions) {
-  Held held(kBox, spheres_of_box());
-  const ToolPose device{{0.3, 0.2, 0.1}, rotation({1, 0.5, 0})};
-  held.move_to(device);
-  EXPECT_EQ(held.pose, device);
+// A ball against one region stops where the line from the region to the device leaves it, (7.4). In the
+// crease of two regions its distance to both is the sum of the radii, a triangle of 30, 40 and 50 mm. In a
+// more obtuse crease, neither of the two contacts may hide the other.
+TEST(RegionContacts, ABallStopsAtTheNearestPlaceOfRegionsAndInTheirCrease) {
+  const Vec3 device = Vec3(0.005, 0.01, 0.002), a = Vec3(1, 0.05, 0.05).normalized(),
+             b = Vec3(1, 0.85, 0.85).normalized();
+  const struct {
+    std::vector<Vec3> regions;
+    Vec3 start, device, expected;
+    double tolerance_m;
+  } cases[] = {{{{0, 0, 0}}, {0, 0.1, 0}, device, 0.05 * device.normalized(), 2.25e-4},
+               {{{-0.03, 0, 0}, {0.03, 0, 0}}, {0.01, 0.1, 0}, {0.002, 0, 0}, {0, 0.04, 0}, 1e-4},
+               {{-0.05 * a, -0.05 * b}, 0.05 * (a + b), -0.005 * (a + b), {0, 0, 0}, 2e-4}};
+  for (const auto& c : cases) {
+    Held held(kBox, one_leaf(0.01));
+    held.frame(regions_at(c.regions));
+    held.pose.p_W = c.start;
+    held.move_to(at(c.device));
+    EXPECT_LT((held.pose.p_W - c.expected).norm(), c.tolerance_m) << c.expected.transpose();
+  }
 }
 
 // No leaf ends a tick inside a region, wherever the device goes. The depth is computed over all pairs, one by
@@ -410,6 +396,68 @@ TEST(RegionTouch, IsThatOfAllPairs) {
   }
   EXPECT_GT(touching, 20);
   EXPECT_GT(clear, 10);
+}
+
+// --- the renderer ---
+
+struct Rendered {
+  SphereTreeRenderer renderer;
+  explicit Rendered(const ToolParameters& p = {}) : renderer(p, kBox, one_leaf(0.01), scenes::kernels()) {}
+  // Returns the output after enough ticks for the tool to rest.
+  RenderOutput held(const DeviceState& device) {
+    RenderOutput out;
+    for (int i = 0; i < 20; ++i) out = renderer.step(device, 0.001 * i);
+    return out;
+  }
+};
+
+TEST(SphereTreeRenderer, ABallIsKeptOutByASpringOfTheStiffnessOfTheRegion) {
+  for (const double stiffness : {600.0, 150.0}) {
+    Rendered r;
+    PointCloud cloud = regions_at({{0, 0, 0}});
+    cloud.stiffness_N_per_m = {stiffness == 600 ? std::nan("") : stiffness};  // 600: that of the renderer
+    r.renderer.on_frame(scenes::frame(cloud));
+    r.held({Vec3(0, 0.2, 0)});
+    const RenderOutput out = r.held({Vec3(0, 0.03, 0)});
+    EXPECT_NEAR(out.proxy_W.y(), 0.05, kSettled_m);
+    EXPECT_NEAR(out.force_N.y(), stiffness * (out.proxy_W.y() - 0.03), 1e-9);
+    EXPECT_EQ(out.state, ContactState::contact);
+    EXPECT_EQ(out.contact_count, 1);
+    EXPECT_EQ(out.tool->contact_clusters, 1);
+    EXPECT_EQ(out.tool->active_constraints, 1);
+    EXPECT_LT(out.tool->tool_penetration_m, kSettled_m);
+    EXPECT_NEAR((out.normal_W - Vec3::UnitY()).norm(), 0, 1e-6);
+    EXPECT_TRUE(out.converged);
+  }
+}
+
+TEST(SphereTreeRenderer, FollowsTheDeviceAndReportsTheGapWithinTheLookAhead) {
+  Rendered r;
+  r.renderer.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
+  const DeviceState device{{0, 0.0521, 0}, rotation({0.3, -0.2, 0.9})};
+  RenderOutput out = r.held(device);
+  EXPECT_EQ(out.proxy_W, device.position_W);
+  EXPECT_EQ(out.tool->orientation_W.coeffs(), device.orientation_W.normalized().coeffs());
+  EXPECT_TRUE(out.force_N.isZero(0) && out.tool->torque_Nm.isZero(0));
+  EXPECT_TRUE(std::isinf(out.nearest_distance_m));
+  EXPECT_EQ(out.state, ContactState::free);
+  out = r.held({Vec3(0, 0.051, 0)});
+  EXPECT_NEAR(out.nearest_distance_m, 0.001, 1e-12);
+  EXPECT_EQ(out.contact_count, 0);
+  EXPECT_EQ(out.tool->tool_penetration_m, 0);
+}
+
+TEST(SphereTreeRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
+  const Vec3 lost = Vec3::Constant(std::nan("")), away(0, 0.2, 0);
+  for (const SlaveCommand command : {SlaveCommand::rendered, SlaveCommand::hip}) {
+    ToolParameters p;
+    p.slave_command = command;
+    Rendered r(p);
+    r.renderer.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
+    EXPECT_TRUE(r.renderer.step({lost}, 0).slave_W.array().isNaN().all());
+    EXPECT_EQ(r.renderer.step({away}, 0.001).slave_W, away);
+    EXPECT_EQ(r.renderer.step({lost}, 0.002).slave_W, away);
+  }
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+// Poses of a rigid tool, the wrench of its coupling, and the motions that contacts allow it: small cases
+// worked out by hand.
 #include "core/dissertation/tool_motion/rigid_tool.h"
 #include "core/dissertation/tool_motion/tool_parameters.h"
 
@@ -6,8 +8,12 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <vector>
 
-namespace remote_touch::tool_pose_test {
+#include "core/dissertation/tool_motion/motion_program.h"
+#include "tests/support/box_tool.h"
+
+namespace remote_touch::rigid_tool_test {
 namespace {
 
 Vec3 draw(std::mt19937& random, double half_width) {
@@ -35,21 +41,6 @@ TEST(ToolPose, MovingByTheDisplacementReachesTheTarget) {
   }
 }
 
-// Rotation into the tool's axes and back keeps lengths, so a bound of the displacement holds in either frame.
-TEST(ToolPose, ATurnedDisplacementIsTheSameInOtherAxes) {
-  std::mt19937 random(4);
-  for (int i = 0; i < 2000; ++i) {
-    const Eigen::Quaterniond q = rotation(draw(random, 3));
-    Vector6 a_g;
-    a_g << draw(random, 0.1), draw(random, 1);
-    const Vector6 other = rotated(q, a_g);
-    EXPECT_LT((other.head<3>() - q.toRotationMatrix() * a_g.head<3>()).norm(), 1e-15);
-    EXPECT_LT((other.tail<3>() - q.toRotationMatrix() * a_g.tail<3>()).norm(), 1e-14);
-    EXPECT_LT((rotated(q.conjugate(), other) - a_g).norm(), 1e-14);
-    EXPECT_NEAR(max_point_displacement_m(other, 0.05), max_point_displacement_m(a_g, 0.05), 1e-15);
-  }
-}
-
 // No point of the tool moves farther than max_point_displacement_m() returns.
 TEST(ToolPose, TheWayBoundsTheWayOfEveryPoint) {
   std::mt19937 random(3);
@@ -69,11 +60,7 @@ TEST(ToolPose, TheWayBoundsTheWayOfEveryPoint) {
   EXPECT_EQ(capped(small, 0.05, 0.001), small);
 }
 
-}  // namespace
-}  // namespace remote_touch::tool_pose_test
-
-namespace remote_touch::wrench_coupling_test {
-namespace {
+// --- the wrench of the coupling ---
 
 Eigen::Matrix3d uneven_inertia() {
   return Vec3(1e-4, 9e-4, 4e-4).asDiagonal();
@@ -132,52 +119,21 @@ double relative_loop_work(const ToolParameters& p, const ToolPose& tool, int ste
   }
   return work / peak;
 }
-double relative_loop_work(const ToolParameters& p, const ToolPose& tool, int steps) {
-  return relative_loop_work(p, tool, steps, [&](const ToolPose& at, const ToolPose& device) {
-    return wrench_of(p, uneven_inertia(), at, device);
-  });
-}
 
-TEST(WrenchCoupling, PullsTheHandTowardsTheTool) {
-  const ToolParameters p = without_limits();
-  const Wrench w = wrench_of(p, uneven_inertia(), {}, {{0.001, 0, 0}, rotation({0, 0.1, 0})});
-  EXPECT_LT((w.force_N - Vec3(-0.6, 0, 0)).norm(), 1e-12);
-  EXPECT_LT((w.torque_Nm - Vec3(0, -0.1 * 600 * 9e-4, 0)).norm(), 1e-12);
-}
-
-void expect_the_derivative_of_the_energy(const ToolParameters& p) {
-  const ToolPose tool{{0.01, 0, 0}, rotation({0.2, -0.4, 0.9})};
-  for (int i = 0; i < 20; ++i) {
-    const ToolPose device = on_loop(i / 20.0);
-    const Wrench w = wrench_of(p, uneven_inertia(), tool, device);
-    for (int axis = 0; axis < 6; ++axis) {
-      Vector6 nudge = Vector6::Zero();
-      nudge[axis] = 1e-6;
-      const double slope =
-          (energy(p, tool, moved(device, nudge)) - energy(p, tool, moved(device, -nudge))) / 2e-6;
-      EXPECT_NEAR(axis < 3 ? w.force_N[axis] : w.torque_Nm[axis - 3], -slope, 1e-7);
+TEST(WrenchCoupling, IsMinusTheDerivativeOfTheEnergyAlsoForADiagonalK) {
+  for (const ToolParameters& p : {without_limits(), with_uneven_K()}) {
+    const ToolPose tool{{0.01, 0, 0}, rotation({0.2, -0.4, 0.9})};
+    for (int i = 0; i < 20; ++i) {
+      const ToolPose device = on_loop(i / 20.0);
+      const Wrench w = wrench_of(p, uneven_inertia(), tool, device);
+      for (int axis = 0; axis < 6; ++axis) {
+        Vector6 nudge = Vector6::Zero();
+        nudge[axis] = 1e-6;
+        const double slope =
+            (energy(p, tool, moved(device, nudge)) - energy(p, tool, moved(device, -nudge))) / 2e-6;
+        EXPECT_NEAR(axis < 3 ? w.force_N[axis] : w.torque_Nm[axis - 3], -slope, 1e-7);
+      }
     }
-  }
-}
-
-TEST(WrenchCoupling, IsMinusTheDerivativeOfTheEnergy) {
-  expect_the_derivative_of_the_energy(without_limits());
-}
-
-TEST(WrenchCoupling, IsMinusTheDerivativeOfTheEnergyForADiagonalK) {
-  expect_the_derivative_of_the_energy(with_uneven_K());
-}
-
-TEST(WrenchCoupling, HasAnotherStiffnessAlongAndAboutEachAxisOfTheWorld) {
-  const ToolParameters p = with_uneven_K();
-  // The tool is turned: the axes are the world's, not its own.
-  const ToolPose tool{Vec3::Zero(), rotation({0, 0, 1})};
-  for (int axis = 0; axis < 3; ++axis) {
-    const ToolPose device{0.001 * Vec3::Unit(axis), rotation(0.01 * Vec3::Unit(axis)) * tool.q_WT};
-    const Wrench w = wrench_of(p, uneven_inertia(), tool, device);
-    EXPECT_LT((w.force_N + 600 * p.stiffness_ratio[axis] * 0.001 * Vec3::Unit(axis)).norm(), 1e-12);
-    const double torque_Nm = 600 * 9e-4 * p.rotational_stiffness_ratio[axis] * 0.01;
-    EXPECT_LT((w.torque_Nm + torque_Nm * Vec3::Unit(axis)).norm(), 1e-12);
   }
 }
 
@@ -194,37 +150,27 @@ TEST(WrenchCoupling, JacobianIsThatOfTheLogarithm) {
   EXPECT_LT((inverse_left_jacobian({0.99e-4, 0, 0}) - inverse_left_jacobian({1.01e-4, 0, 0})).norm(), 1e-5);
 }
 
-TEST(WrenchCoupling, DoesNoWorkAroundAClosedLoop) {
-  const ToolPose tool{{0.002, 0, -0.01}, rotation({0.2, -0.4, 0.3})};
-  EXPECT_LT(std::abs(relative_loop_work(without_limits(), tool, 4000)), 1e-9);
-  EXPECT_LT(std::abs(relative_loop_work(with_uneven_K(), tool, 4000)), 1e-9);
-}
-
 // If K is the same about all axes, J^-T phi = phi and the Jacobian has no effect. The torque of a diagonal K
-// derives from an energy only with the Jacobian.
-TEST(WrenchCoupling, ADiagonalKDoesWorkIfTheJacobianIsLeftOut) {
+// derives from an energy only with the Jacobian. The printed torque of an uneven inertia derives from none:
+// the loop does work of more than 1 % of the peak energy.
+TEST(WrenchCoupling, DoesNoWorkAroundAClosedLoopUnlikeThePrintedTorque) {
   const ToolPose tool{{0.002, 0, -0.01}, rotation({0.2, -0.4, 0.3})};
-  const auto without_jacobian = [](const ToolParameters& p) {
-    return [&p](const ToolPose& at, const ToolPose& device) {
+  const ToolParameters even = without_limits(), uneven = with_uneven_K();
+  ToolParameters printed = without_limits();
+  printed.torque_rule = TorqueRule::printed;
+  const auto work = [&](const ToolParameters& p, int steps, bool has_jacobian) {
+    return std::abs(relative_loop_work(p, tool, steps, [&](const ToolPose& at, const ToolPose& device) {
       Wrench w = wrench_of(p, uneven_inertia(), at, device);
       const double rotational = p.stiffness_N_per_m * std::pow(p.gyration_radius_m, 2);
       const Vec3 phi = displacement(at, device).tail<3>();
-      w.torque_Nm = -rotational * p.rotational_stiffness_ratio.cwiseProduct(phi);
+      if (!has_jacobian) w.torque_Nm = -rotational * p.rotational_stiffness_ratio.cwiseProduct(phi);
       return w;
-    };
+    }));
   };
-  const ToolParameters even = without_limits(), uneven = with_uneven_K();
-  EXPECT_LT(std::abs(relative_loop_work(even, tool, 4000, without_jacobian(even))), 1e-9);
-  EXPECT_GT(std::abs(relative_loop_work(uneven, tool, 400, without_jacobian(uneven))), 0.01);
-}
-
-// The printed torque of an uneven inertia derives from no energy: the loop does work of more than 1 % of the
-// peak energy.
-TEST(WrenchCoupling, ThePrintedTorqueDoesWork) {
-  ToolParameters p = without_limits();
-  p.torque_rule = TorqueRule::printed;
-  const ToolPose tool{{0.002, 0, -0.01}, rotation({0.2, -0.4, 0.3})};
-  EXPECT_GT(std::abs(relative_loop_work(p, tool, 400)), 0.01);
+  for (const ToolParameters& p : {even, uneven}) EXPECT_LT(work(p, 4000, true), 1e-9);
+  EXPECT_LT(work(even, 4000, false), 1e-9);
+  EXPECT_GT(work(uneven, 400, false), 0.01);
+  EXPECT_GT(work(printed, 400, true), 0.01);
 }
 
 TEST(WrenchCoupling, IsCutToItsLimits) {
@@ -236,5 +182,110 @@ TEST(WrenchCoupling, IsCutToItsLimits) {
   EXPECT_LT(w.force_N.normalized().dot(Vec3(1, 2, 0).normalized()), -1 + 1e-12);
 }
 
+// --- the motions that contacts allow ---
+
+const auto kTool = scenes::box_tool({0.02, 0.005, 0.01});
+
+Vector6 desired(const Vec3& a, const Vec3& alpha = Vec3::Zero()) {
+  Vector6 both;
+  both << a, alpha;
+  return both;
+}
+
+double gap_speed(const ToolContact& c, const Vector6& a_g) {  // the left side of (6.3)
+  return c.n_T.dot(a_g.head<3>()) + c.r_T.cross(c.n_T).dot(a_g.tail<3>());
+}
+
+// A contact below the centre stops the downward motion and leaves the rest of the motion.
+TEST(MotionProgram, ACentralContactTakesOnlyTheFall) {
+  MotionProgram program({}, *kTool);
+  const std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
+  const ConstrainedMotion motion = program.solve(desired({1e-3, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - desired({1e-3, 0, 0})).norm(), 1e-12);
+  EXPECT_EQ(motion.active_count, 1);
+  EXPECT_NEAR(motion.push_T.y(), 2e-3, 1e-12);
+  EXPECT_GT(motion.side, 0);
+}
+
+// The tool tips over an off-centre point: Gauss' principle by hand. The row is (n, r x n), M = diag(1, I),
+// and a = wish + M^-1 row^T lambda, lambda = -row.wish / (row M^-1 row^T).
+TEST(MotionProgram, AnOffCentreContactTipsTheTool) {
+  MotionProgram program({}, *kTool);
+  const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0}, Vec3::UnitY(), 0, 1}};
+  const Vec3 lever = contacts[0].r_T.cross(contacts[0].n_T);
+  const Vec3 rotated = kTool->inertia_m2.inverse() * lever;
+  const double lambda = 2e-3 / (1 + lever.dot(rotated));
+  const ConstrainedMotion motion = program.solve(desired({0, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - desired({0, -2e-3 + lambda, 0}, lambda * rotated)).norm(), 1e-12);
+  EXPECT_NEAR(gap_speed(contacts[0], motion.a_g), 0, 1e-14);
+}
+
+TEST(MotionProgram, PenetrationIsResolvedByItsDepth) {
+  MotionProgram program({}, *kTool);
+  const std::vector<ToolContact> contacts = {{{-0.02, -0.005, 0}, Vec3::UnitY(), 3e-4, 1},
+                                             {{0.02, -0.005, 0}, Vec3::UnitY(), 3e-4, 1},
+                                             {{0, 0.005, 0}, -Vec3::UnitY(), -1e-3, 1}};
+  const ConstrainedMotion motion = program.solve(Vector6::Zero(), contacts);
+  EXPECT_LT((motion.a_g - desired({0, 3e-4, 0})).norm(), 1e-12);
+  EXPECT_FALSE(motion.is_relaxed);
+}
+
+// Two walls close in by 0.4 mm each. No motion resolves both, so each is loosened by as much, and the tool
+// still follows the device along the wedge.
+TEST(MotionProgram, AWedgeIsLoosenedAndTheToolFollowsAlongIt) {
+  MotionProgram program({}, *kTool);
+  const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0}, Vec3::UnitY(), 4e-4, 1},
+                                             {{-0.02, -0.005, 0}, Vec3::UnitY(), 4e-4, 1},
+                                             {{0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1},
+                                             {{-0.02, 0.005, 0}, -Vec3::UnitY(), 4e-4, 1}};
+  const ConstrainedMotion motion = program.solve(desired({1e-3, -2e-3, 5e-4}), contacts);
+  EXPECT_TRUE(motion.is_relaxed);
+  EXPECT_FALSE(motion.failed);
+  EXPECT_NEAR(motion.a_g[0], 1e-3, 1e-9);
+  EXPECT_NEAR(motion.a_g[2], 5e-4, 1e-9);
+  EXPECT_NEAR(motion.a_g[1], 0, 1e-6);
+}
+
+// A desired motion too long for the program has no result.
+TEST(MotionProgram, AProgramWithoutAResultHasFailedAndMovesNothing) {
+  MotionProgram program({}, *kTool);
+  const std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
+  const ConstrainedMotion motion = program.solve(desired({0, -1e200, 0}), contacts);
+  EXPECT_TRUE(motion.failed);
+  EXPECT_TRUE(motion.a_g.isZero(0));
+  EXPECT_FALSE(program.solve(desired({0, -2e-3, 0}), contacts).failed);
+}
+
+TEST(MotionProgram, NanContactsAreLeftOut) {
+  MotionProgram program({}, *kTool);
+  std::vector<ToolContact> contacts = {{{0, -0.005, 0}, Vec3::Constant(std::nan("")), 0, 1},
+                                       {{0, -0.005, 0}, Vec3::UnitY(), std::nan(""), 1},
+                                       {{0, -0.005, 0}, Vec3::UnitY(), 0, 1}};
+  const ConstrainedMotion motion = program.solve(desired({1e-3, -2e-3, 0}), contacts);
+  EXPECT_LT((motion.a_g - desired({1e-3, 0, 0})).norm(), 1e-12);
+  EXPECT_NEAR(motion.push_T.y(), 2e-3, 1e-12);  // the multiplier belongs to the last of the three
+}
+
+// The coupling turns the blocked part of the desired motion into a wrench. A single contact can exert this
+// wrench: a force f n and the torque f r x n. It cannot if the metric is the inertia of the tool.
+TEST(MotionProgram, CouplingWrenchOnACornerIsThatOfTheContact) {
+  const std::vector<ToolContact> contacts = {{{0.02, -0.005, 0.004}, Vec3(0.1, 1, 0.2).normalized(), 0, 1}};
+  const Vector6 wish = desired({1e-4, -2e-3, 0}, {0.01, 0, -0.02});
+  const auto torque_error = [&](MotionMetric metric) {
+    ToolParameters p;
+    p.motion_metric = metric;
+    MotionProgram program(p, *kTool);
+    const Vector6 left = program.solve(wish, contacts).a_g - wish;
+    const double squared_m2 = p.gyration_radius_m * p.gyration_radius_m,
+                 force = left.head<3>().dot(contacts[0].n_T);
+    const Vec3 of_contact = force * contacts[0].r_T.cross(contacts[0].n_T);
+    EXPECT_GT(force, 1e-4);
+    EXPECT_LT((left.head<3>() - force * contacts[0].n_T).norm(), 1e-12);
+    return (squared_m2 * left.tail<3>() - of_contact).norm() / of_contact.norm();
+  };
+  EXPECT_LT(torque_error(MotionMetric::coupling), 1e-9);
+  EXPECT_GT(torque_error(MotionMetric::tool), 0.5);
+}
+
 }  // namespace
-}  // namespace remote_touch::wrench_coupling_test
+}  // namespace remote_touch::rigid_tool_test

@@ -1,181 +1,22 @@
-#include "core/dissertation/tool_motion/sphere_tree_renderer.h"
+// Trees of spheres, their collision compared with all pairs of leaves, and the spheres that cover a tool.
+#include "core/dissertation/tool_motion/sphere_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/dissertation/tool_motion/look_ahead_motion.h"
-#include "core/dissertation/tool_motion/sphere_tree.h"
+#include "core/dissertation/tool_motion/sphere_tree_renderer.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/parameters/parameter.h"
 #include "core/points/vector.h"
-#include "runners/evaluation/contract/allocation_counter.h"
 #include "tests/support/box_tool.h"
-#include "tests/support/cloud_form.h"
 #include "tests/support/leaf_pairs.h"
 #include "tests/support/scenes.h"
-
-namespace remote_touch::sphere_tree_renderer_test {
-namespace {
-
-// The renderer of chapter 7 against closed forms: a tool of one ball among few regions.
-
-constexpr double kRegion_m = 0.04, kBall_m = 0.01;
-constexpr double kSettled_m = 1e-4;
-const Vec3 kAway(0, 0.2, 0);
-
-std::shared_ptr<const SphereTree> leaves_at(const std::vector<Vec3>& places) {
-  std::vector<Sphere> leaves;
-  for (const Vec3& place : places) leaves.push_back({place, kBall_m});
-  auto tree = std::make_shared<SphereTree>();
-  tree->add(leaves);
-  tree->finish();
-  return tree;
-}
-
-SphereTreeRenderer renderer(const std::vector<Vec3>& leaves = {Vec3::Zero()}, const ToolParameters& p = {}) {
-  return {p, scenes::box_tool({0.02, 0.005, 0.01}), leaves_at(leaves), scenes::kernels()};
-}
-
-PointCloud regions_at(const std::vector<Vec3>& places) {
-  PointCloud cloud = scenes::cloud_of(places);
-  cloud.fixture_radius_m.assign(cloud.size(), kRegion_m);
-  return cloud;
-}
-
-// Returns the output after enough ticks for the tool to rest.
-RenderOutput held(SphereTreeRenderer& r, const DeviceState& device, int ticks = 20) {
-  RenderOutput out;
-  for (int i = 0; i < ticks; ++i) out = r.step(device, 0.001 * i);
-  return out;
-}
-
-TEST(SphereTreeRenderer, ABallIsKeptOutByASpringOfItsDepth) {
-  SphereTreeRenderer r = renderer();
-  r.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
-  held(r, {kAway});
-  const RenderOutput out = held(r, {{0, 0.03, 0}});
-  EXPECT_NEAR(out.proxy_W.y(), 0.05, kSettled_m);
-  EXPECT_NEAR(out.force_N.y(), 600 * (out.proxy_W.y() - 0.03), 1e-9);
-  EXPECT_EQ(out.state, ContactState::contact);
-  EXPECT_EQ(out.contact_count, 1);
-  EXPECT_EQ(out.tool->contact_clusters, 1);
-  EXPECT_EQ(out.tool->active_constraints, 1);
-  EXPECT_LT(out.tool->tool_penetration_m, kSettled_m);
-  EXPECT_NEAR((out.normal_W - Vec3::UnitY()).norm(), 0, 1e-6);
-  EXPECT_TRUE(out.converged);
-}
-
-TEST(SphereTreeRenderer, ReportsNoDistanceBeyondTheLookAhead) {
-  SphereTreeRenderer r = renderer();
-  r.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
-  const DeviceState device{{0, 0.0521, 0}, rotation({0.3, -0.2, 0.9})};
-  const RenderOutput out = held(r, device);
-  EXPECT_EQ(out.proxy_W, device.position_W);
-  EXPECT_EQ(out.tool->orientation_W.coeffs(), device.orientation_W.normalized().coeffs());
-  EXPECT_TRUE(out.force_N.isZero(0) && out.tool->torque_Nm.isZero(0));
-  EXPECT_TRUE(std::isinf(out.nearest_distance_m));
-  EXPECT_EQ(out.state, ContactState::free);
-}
-
-TEST(SphereTreeRenderer, ReportsTheGapWithinTheLookAhead) {
-  SphereTreeRenderer r = renderer();
-  r.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
-  const RenderOutput out = held(r, {{0, 0.051, 0}});
-  EXPECT_NEAR(out.nearest_distance_m, 0.001, 1e-12);
-  EXPECT_EQ(out.contact_count, 0);
-  EXPECT_EQ(out.tool->tool_penetration_m, 0);
-}
-
-// Points without r_f have no region, so the tool passes through them.
-TEST(SphereTreeRenderer, PointsWithoutARadiusHoldNothing) {
-  SphereTreeRenderer r = renderer();
-  PointCloud cloud = regions_at({{0, 0, 0}});
-  cloud.fixture_radius_m[0] = 0;
-  r.on_frame(scenes::frame(cloud));
-  held(r, {kAway});
-  EXPECT_TRUE(held(r, {{0, 0, 0}}).force_N.isZero(0));
-}
-
-TEST(SphereTreeRenderer, TheStiffnessOfTheRegionIsThatOfTheCoupling) {
-  SphereTreeRenderer r = renderer();
-  PointCloud cloud = regions_at({{-0.3, 0, 0}, {0.3, 0, 0}});
-  cloud.stiffness_N_per_m = {150, std::numeric_limits<double>::quiet_NaN()};
-  r.on_frame(scenes::frame(cloud));
-  for (const auto& [x, stiffness] : {std::pair(-0.3, 150.0), std::pair(0.3, 600.0)}) {
-    held(r, {Vec3(x, 0.2, 0)}, 400);
-    const RenderOutput out = held(r, {Vec3(x, 0.04, 0)});
-    EXPECT_NEAR(out.force_N.y(), stiffness * (out.proxy_W.y() - 0.04), 1e-9) << x;
-  }
-}
-
-// Two balls on a rod. A region holds one of them, so the rod turns when it is pushed down, and the hand feels
-// it.
-TEST(SphereTreeRenderer, ARodHeldAtOneEndTurns) {
-  SphereTreeRenderer r = renderer({{-0.03, 0, 0}, {0.03, 0, 0}});
-  r.on_frame(scenes::frame(regions_at({{0.03, -0.05, 0}})));
-  held(r, {kAway}, 5);
-  const RenderOutput out = held(r, {{0, -0.01, 0}}, 100);
-  EXPECT_GT(rotation_vector(out.tool->orientation_W).z(), 0.02);  // the free end moves further down
-  EXPECT_GT(out.tool->torque_Nm.z(), 0.001);
-  EXPECT_GT(out.force_N.y(), 0.5);
-  EXPECT_LT(out.tool->tool_penetration_m, kSettled_m);
-}
-
-TEST(SphereTreeRenderer, AFrameThatSwallowsTheToolPushesItOut) {
-  SphereTreeRenderer r = renderer();
-  r.on_frame(scenes::frame(regions_at({{0, -1, 0}}), 0));
-  held(r, {{0, 0.02, 0}});
-  r.on_frame(scenes::frame(regions_at({{0, 0, 0}}), 1));
-  const RenderOutput out = r.step({{0, 0.02, 0}}, 1);
-  EXPECT_LT(out.tool->tool_penetration_m, kSettled_m);
-  EXPECT_NEAR(out.proxy_W.y(), 0.05, 2e-4);
-}
-
-TEST(SphereTreeRenderer, AnOldFrameIsDroppedAndReportedOnce) {
-  SphereTreeRenderer r = renderer();
-  r.on_frame(scenes::frame(regions_at({{0, 0, 0}}), 5));
-  r.on_frame(scenes::frame(regions_at({{0, 0.1, 0}}), 4));
-  EXPECT_EQ(r.step({kAway}, 0).status, RenderStatus::stale_frame_dropped);
-  const RenderOutput out = r.step({kAway}, 0.001);
-  EXPECT_EQ(out.status, RenderStatus::ok);
-  EXPECT_EQ(out.frame_index, 5);
-}
-
-TEST(SphereTreeRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
-  const Vec3 lost = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  for (const SlaveCommand command : {SlaveCommand::rendered, SlaveCommand::hip}) {
-    ToolParameters p;
-    p.slave_command = command;
-    SphereTreeRenderer r = renderer({Vec3::Zero()}, p);
-    r.on_frame(scenes::frame(regions_at({{0, 0, 0}})));
-    EXPECT_TRUE(r.step({lost}, 0).slave_W.array().isNaN().all());
-    EXPECT_EQ(r.step({kAway}, 0.001).slave_W, kAway);
-    EXPECT_EQ(r.step({lost}, 0.002).slave_W, kAway);
-  }
-}
-
-TEST(SphereTreeRenderer, RegionParametersAreTheToolParametersThatApply) {
-  ToolParameters p;
-  std::set<std::string> all, kept;
-  for (const Parameter& parameter : parameters(p)) all.insert(parameter.name);
-  for (const Parameter& parameter : region_parameters(p)) kept.insert(parameter.name);
-  for (const char* other :
-       {"contact_rule", "free_accuracy_m", "exit_accuracy_m", "disk_radius_ratio", "merged_disk_m",
-        "frame_reach_m", "velocity_estimate", "max_prediction_s", "velocity_force"}) {
-    EXPECT_TRUE(all.erase(other)) << other;
-  }
-  EXPECT_EQ(kept, all);
-}
-
-}  // namespace
-}  // namespace remote_touch::sphere_tree_renderer_test
 
 namespace remote_touch::sphere_tree_test {
 namespace {
@@ -222,14 +63,6 @@ TEST(SphereTree, EveryNodeEnclosesItsChildrenAndEveryLeafHasOne) {
     EXPECT_EQ(next, level == 0 ? leaves.size() : tree.level(level - 1).size());
   }
   EXPECT_LE(tree.top().size(), SphereTree::kBranching);
-}
-
-TEST(SphereTree, IsEmptyIfThereAreNoSpheres) {
-  SphereTree tree;
-  tree.add({});
-  tree.finish();
-  EXPECT_TRUE(tree.empty());
-  EXPECT_EQ(tree.level_count(), 0u);
 }
 
 // --- the regions of a frame ---
@@ -279,32 +112,6 @@ TEST(RegionTree, HasAPatchForEverySquareOfTheImageWithARegion) {
   EXPECT_EQ(tree.spheres().level(0)[0].count, 2u);
 }
 
-TEST(RegionTree, KeepsTheStiffnessOfItsPoints) {
-  PointCloud cloud = scenes::random_cloud(500, 0.1, 5);
-  cloud.fixture_radius_m.assign(cloud.size(), 0.01);
-  RegionTree tree;
-  tree.assign(cloud);
-  EXPECT_TRUE(std::isnan(tree.stiffness_N_per_m(0)));
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    cloud.stiffness_N_per_m.push_back(10.0 * static_cast<double>(i));
-  tree.assign(cloud);
-  for (std::uint32_t leaf = 0; leaf < tree.points().size(); ++leaf)
-    EXPECT_EQ(tree.stiffness_N_per_m(leaf), 10.0 * tree.points()[leaf]);
-}
-
-// Frames of one size: the memory that the first one needed serves the next.
-TEST(RegionTree, KeepsItsMemoryFromFrameToFrame) {
-  PointCloud cloud = image_of(200, 200);
-  cloud.fixture_radius_m.assign(cloud.size(), 0.01);
-  RegionTree tree;
-  tree.assign(cloud);
-  std::fill_n(cloud.fixture_radius_m.begin(), 5000, 0.0);
-  const std::size_t before = allocation_count();
-  tree.assign(cloud);
-  EXPECT_EQ(allocation_count(), before);
-  EXPECT_EQ(tree.points().size(), cloud.size() - 5000);
-}
-
 TEST(RegionTree, IsEmptyIfThereAreNoRegions) {
   PointCloud cloud = scenes::random_cloud(100, 0.1, 5);
   RegionTree tree;
@@ -338,7 +145,12 @@ TEST(TreeCollision, FindsWhatBruteForceFinds) {
 }
 
 TEST(TreeCollision, FindsNothingNearAnEmptyTreeOrANanPose) {
-  const SphereTree tool = tree_of(random_spheres(20, 0.03, 1), 8), nothing;
+  const SphereTree tool = tree_of(random_spheres(20, 0.03, 1), 8);
+  SphereTree nothing;
+  nothing.add({});
+  nothing.finish();
+  EXPECT_TRUE(nothing.empty());
+  EXPECT_EQ(nothing.level_count(), 0u);
   const auto count = [&](const SphereTree& of, const SphereTree& regions, const ToolPose& pose) {
     TreeCollision collision(of, scenes::kernels());
     collision.on_frame(regions);
@@ -350,6 +162,171 @@ TEST(TreeCollision, FindsNothingNearAnEmptyTreeOrANanPose) {
   ToolPose pose;
   pose.p_W.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(count(tool, tool, pose), 0u);
+}
+
+// --- the spheres of a tool ---
+
+// Its longest side is the second.
+const TriangleMesh kTriangle{{{0.01, 0, 0}, {0, 0, 0.03}, {0, 0.04, 0}}, {{0, 1, 2}}};
+
+double distance(const Vec3& place, const std::vector<Vec3>& samples) {
+  double min = 1;
+  for (const Vec3& sample : samples) min = std::min(min, (place - sample).norm());
+  return min;
+}
+
+TEST(SurfaceSamples, AreOfATriangleAndLeaveNoPlaceOut) {
+  const auto& v = kTriangle.vertices;
+  const Vec3 normal = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
+  for (const double spacing_m : {0.001, 0.004, 0.0101, 1.0}) {
+    const std::vector<Vec3> samples = surface_samples(kTriangle, spacing_m);
+    for (const Vec3& corner : v) EXPECT_LT(distance(corner, samples), 1e-12) << spacing_m;
+    for (int i = 0; i <= 60; ++i)
+      for (int j = 0; i + j <= 60; ++j)
+        EXPECT_LT(distance(v[0] + (i * (v[1] - v[0]) + j * (v[2] - v[0])) / 60, samples),
+                  std::min(spacing_m, 0.03));
+    for (const Vec3& sample : samples) {
+      EXPECT_NEAR(normal.dot(sample - v[0]), 0, 1e-15);
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_GT(normal.cross(v[(i + 1) % 3] - v[i]).dot(sample - v[i]), -1e-15);
+    }
+  }
+}
+
+TEST(SurfaceSamples, OnePlaceOfACubeIsKept) {
+  const std::vector<Vec3> kept =
+      thinned({{0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}, {1.1, 0.1, 0.1}, {0.2, 0.2, 0.2}}, 1);
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0], Vec3(0.1, 0.1, 0.1));
+  EXPECT_EQ(kept[1], Vec3(1.1, 0.1, 0.1));
+}
+
+TEST(SurfaceSamples, HaveTheAreaOfABox) {
+  EXPECT_NEAR(surface_area_m2(scenes::box_mesh({0.01, 0.02, 0.03})), 8 * (1 * 2 + 1 * 3 + 2 * 3) * 1e-4,
+              1e-12);
+}
+
+VoxelTool tool_of(const std::string& name) {
+  ToolReport report;
+  return make_voxel_tool(find_generated_tool(name)->make(), {}, report);
+}
+
+constexpr double kRounding_m = 1e-9;
+
+// Greedy search: it adds one sphere after the other, each time the one that covers most of the remaining
+// points.
+std::vector<Sphere> plain_cover(const std::vector<Vec3>& points, const std::vector<Sphere>& choice,
+                                double inflation_m, std::size_t max) {
+  std::vector<Vec3> left = points;
+  std::vector<Sphere> taken;
+  while (!left.empty() && taken.size() <= max) {
+    std::size_t best = 0, best_count = 0;
+    const auto covers = [&](const Sphere& sphere, const Vec3& p) {
+      return (p - sphere.centre).norm() <= sphere.radius_m + inflation_m;
+    };
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+      const auto count = static_cast<std::size_t>(
+          std::count_if(left.begin(), left.end(), [&](const Vec3& p) { return covers(choice[i], p); }));
+      if (count > best_count) best = i, best_count = count;
+    }
+    if (best_count == 0) break;
+    taken.push_back({choice[best].centre, choice[best].radius_m + inflation_m});
+    std::erase_if(left, [&](const Vec3& p) { return covers(choice[best], p); });
+  }
+  return taken;
+}
+
+TEST(SphereCover, TakesWhatAPlainSearchTakes) {
+  const PointCloud points = scenes::random_cloud(2000, 0.05, 1), centres = scenes::random_cloud(300, 0.06, 2);
+  std::vector<Vec3> places;
+  std::vector<Sphere> choice;
+  for (std::size_t i = 0; i < points.size(); ++i) places.push_back(points.point(i));
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    choice.push_back({centres.point(i), 0.005 + 1e-5 * static_cast<double>(i % 700)});
+  const SphereCover cover(places, choice, 0.004);
+  for (const double inflation_m : {0.0, 0.004, 0.02}) {
+    const SphereCover::Result result = cover.cover(inflation_m, 60);
+    const std::vector<Sphere> expected = plain_cover(places, choice, inflation_m, 60);
+    ASSERT_EQ(result.spheres.size(), expected.size()) << inflation_m;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_EQ(result.spheres[i].centre, expected[i].centre) << inflation_m << ", sphere " << i;
+  }
+}
+
+// A box of ten metres would need 1e12 cells of a millimetre, although it holds few points.
+TEST(SphereCover, TakesFewPointsFarApartWithoutACellForEveryMillimetre) {
+  const Vec3 far = Vec3::Constant(5);
+  const std::vector<Sphere> choice{{far, 0.001}, {-far, 0.001}, {Vec3::Zero(), 0.001}};
+  for (const Vec3& middle : {Vec3(0, 0, 0), Vec3(7, -7, 7)}) {
+    std::vector<Sphere> there = choice;
+    for (Sphere& sphere : there) sphere.centre += middle;
+    const SphereCover cover({middle - far, middle + far}, there, 0.001);
+    const SphereCover::Result result = cover.cover(0, 10);
+    EXPECT_EQ(result.spheres.size(), 2u);
+    EXPECT_EQ(result.uncovered_count, 0u);
+  }
+}
+
+// Checks that the surface lies inside the union of spheres and that the union stays close to the tool.
+double outside_of_cover_m(const VoxelTool& tool, int leaves) {
+  const ToolSpheres made = make_tool_spheres(tool, leaves);
+  EXPECT_LE(made.spheres.leaves().size(), static_cast<std::size_t>(leaves));
+  EXPECT_LE(made.outside_m, made.inflation_m + kRounding_m) << leaves;
+  EXPECT_LT(made.surface_outside_m, kRounding_m) << leaves;
+  return made.outside_m;
+}
+
+// Two layers of nodes lie inside a plate of a few voxels, each next to an end of the field. Balls of only one
+// layer would have to grow by a voxel to cover the other side.
+TEST(ToolSpheres, CoverAToolClosely) {
+  EXPECT_LT(outside_of_cover_m(tool_of("husky"), 16), 0.02);
+  EXPECT_LT(outside_of_cover_m(tool_of("ball"), 1), 1e-3) << "nearly one sphere";
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 half_m(0.53, 0.53, 0.53);
+    half_m[axis] = 0.13;
+    ToolReport report;
+    const VoxelTool plate = make_voxel_tool(scenes::box_mesh(half_m), {.voxel_m = 0.1}, report);
+    ASSERT_EQ(plate.grid.cells[static_cast<std::size_t>(axis)], 3);
+    EXPECT_LT(outside_of_cover_m(plate, 400), 0.07) << axis;
+  }
+}
+
+// Both errors are computed in another way: the distance to a box has a closed form, and its surface is easy
+// to sample.
+TEST(ToolSpheres, ReportedErrorsOfABoxAreTrue) {
+  const Vec3 half_m(0.02, 0.005, 0.01);
+  const ToolSpheres made = make_tool_spheres(*scenes::box_tool(half_m), 60);
+  const PointCloud directions = scenes::random_cloud(3000, 1, 8);
+  double outside_m = 0, surface_outside_m = 0;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    for (const Sphere& leaf : made.spheres.leaves())
+      outside_m = std::max(
+          outside_m,
+          scenes::box_distance(half_m, leaf.centre + leaf.radius_m * directions.point(i).normalized()));
+    const Vec3 on_cube =
+        directions.point(i) / directions.point(i).cwiseAbs().maxCoeff();  // a point on a side of the box
+    double min_m = 1;
+    for (const Sphere& leaf : made.spheres.leaves())
+      min_m = std::min(min_m, (half_m.cwiseProduct(on_cube) - leaf.centre).norm() - leaf.radius_m);
+    surface_outside_m = std::max(surface_outside_m, min_m);
+  }
+  EXPECT_GT(made.inflation_m, 1e-3);  // otherwise there would be no error to compare
+  EXPECT_NEAR(made.outside_m, outside_m, 0.1 * outside_m);
+  EXPECT_LT(outside_m, made.inflation_m + 1e-6);
+  EXPECT_LT(surface_outside_m, 5e-5);
+}
+
+TEST(ToolSpheres, RoundsTheReportedErrorUp) {
+  ToolSpheres made;
+  made.outside_m = 0.001291;
+  EXPECT_EQ(text(made),
+            "0 spheres, at most 1.30 mm outside the mesh; its surface is at most 0.00 mm outside them");
+}
+
+TEST(ToolSpheres, AToolWithoutInsideIsRefused) {
+  VoxelTool tool = *scenes::box_tool({0.002, 0.002, 0.002});
+  for (float& distance : tool.distance_m) distance = std::abs(distance) + 1e-6f;
+  EXPECT_THROW(make_tool_spheres(tool, 10), InputError);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// The tiles of a cloud, their spheres, slabs and cones of normals, and its merged and packed forms.
 #include "core/dissertation/tool_motion/touch_finder.h"
 
 #include <gtest/gtest.h>
@@ -17,6 +18,9 @@
 
 namespace remote_touch::tiled_cloud_test {
 namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const Vec3 kMissing = Vec3::Constant(kNaN);
 
 void expect_holds(const GroupSlab& slab, const std::vector<Vec3>& points) {
   for (const Vec3& p : points) {
@@ -61,19 +65,15 @@ TEST(GroupSlab, PointsOnALineHaveABall) {
 }
 
 TEST(NormalCone, HoldsTheFiniteNormals) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Vec3> normals{Vec3::UnitX(), Vec3::Constant(nan), Vec3(1, 1, 0).normalized(),
-                                  Vec3::UnitX()};
+  const std::vector<Vec3> normals{Vec3::UnitX(), kMissing, Vec3(1, 1, 0).normalized(), Vec3::UnitX()};
   const NormalCone cone = normal_cone(normals);
   for (const std::size_t i : {0u, 2u, 3u}) EXPECT_LE((normals[i] - cone.middle_W).norm(), cone.deviation);
   EXPECT_LT(cone.deviation, 0.6);
-  for (const auto& none : {std::vector<Vec3>{}, {Vec3::Constant(nan)}}) {
+  for (const auto& none : {std::vector<Vec3>{}, {kMissing}}) {
     EXPECT_TRUE(normal_cone(none).middle_W.isZero(0));
     EXPECT_EQ(normal_cone(none).deviation, 0);
   }
 }
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 PointCloud image_cloud(int width, int height) {
   DepthImage depth{width, height, {}};
@@ -93,9 +93,15 @@ bool holds(const SphereColumns& spheres, std::size_t i, const Vec3& p) {
 void expect_tiled(const PointCloud& cloud) {
   TiledCloud tiled;
   tiled.assign(cloud);
-  std::multiset<std::array<double, 3>> expected, found;
+  using Row = std::array<double, 6>;  // a point and its normal, 0 for none
+  const auto row = [](const Vec3& p, const Vec3& n) {
+    const bool is_known = n.allFinite();
+    return Row{p.x(), p.y(), p.z(), is_known ? n.x() : 0, is_known ? n.y() : 0, is_known ? n.z() : 0};
+  };
+  std::multiset<Row> expected, found;
   for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.point(i).allFinite()) expected.insert({cloud.x[i], cloud.y[i], cloud.z[i]});
+    if (cloud.point(i).allFinite())
+      expected.insert(row(cloud.point(i), cloud.nx.empty() ? kMissing : cloud.normal(i)));
   std::uint32_t next = 0;
   for (const TileBlock& block : tiled.blocks())
     for (const Tile& tile : tiled.tiles(block)) {
@@ -106,7 +112,7 @@ void expect_tiled(const PointCloud& cloud) {
                 block.sphere.radius_m);
       for (std::uint32_t i = tile.first; i < next; ++i) {
         if (tiled.point(i).x() == kFarAway) continue;
-        found.insert({tiled.point(i).x(), tiled.point(i).y(), tiled.point(i).z()});
+        found.insert(row(tiled.point(i), tiled.normal(i)));
         EXPECT_LE((tiled.point(i) - tile.sphere.centre_W).norm(), tile.sphere.radius_m);
         EXPECT_TRUE(holds(tiled.tile_spheres(), i / kTilePoints, tiled.point(i)));
         EXPECT_TRUE(holds(tiled.group_spheres(), i / kLanes, tiled.point(i)));
@@ -114,6 +120,8 @@ void expect_tiled(const PointCloud& cloud) {
     }
   EXPECT_EQ(next, tiled.padded_size());
   EXPECT_EQ(found, expected);
+  EXPECT_EQ(tiled.count_without_normal(),
+            std::ranges::count_if(found, [](const Row& r) { return r[3] == 0 && r[4] == 0 && r[5] == 0; }));
 }
 
 TEST(TiledCloud, HoldsEveryMeasuredPointOnce) {
@@ -122,6 +130,7 @@ TEST(TiledCloud, HoldsEveryMeasuredPointOnce) {
   expect_tiled(image_cloud(1, 1));
   expect_tiled(scenes::flat_grid(33));
   expect_tiled(scenes::random_cloud(5000, 0.3, 4));
+  expect_tiled(scenes::cloud_with_normals(500, 0.3, 7));
   PointCloud holes = scenes::random_cloud(100, 0.3, 5);
   holes.y[3] = kNaN, holes.z[50] = std::numeric_limits<double>::infinity();
   expect_tiled(holes);
@@ -132,21 +141,6 @@ TEST(TiledCloud, HoldsEveryMeasuredPointOnce) {
   PointCloud same;
   for (int i = 0; i < 200; ++i) same.append({1, 2, 3});
   expect_tiled(same);
-}
-
-TEST(TiledCloud, NormalsFollowTheirPoints) {
-  PointCloud cloud;
-  for (int i = 0; i < 500; ++i)
-    cloud.append(Vec3((i * 37) % 500, i % 7, 0) * 1e-3, Vec3(i, 0, 1).normalized());
-  cloud.nx[9] = cloud.ny[9] = cloud.nz[9] = kNaN;
-  TiledCloud tiled;
-  tiled.assign(cloud);
-  EXPECT_EQ(tiled.count_without_normal(), 1);
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    for (std::uint32_t j = 0; j < tiled.padded_size(); ++j)
-      if (i != 9 && tiled.point(j) == cloud.point(i)) {
-        EXPECT_EQ(tiled.normal(j), cloud.normal(i));
-      }
 }
 
 TEST(TiledCloud, KnowsTheSpacing) {

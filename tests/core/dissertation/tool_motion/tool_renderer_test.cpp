@@ -1,3 +1,4 @@
+// The 6-DOF renderer at its edges: odd clouds, odd devices, odd frames.
 #include "core/dissertation/tool_motion/tool_renderer.h"
 
 #include <gtest/gtest.h>
@@ -5,59 +6,22 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "core/points/vector.h"
 #include "tests/core/dissertation/tool_motion/free_space.h"
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch::tool_motion_test {
-namespace {
-
-TEST(MotionProgress, HasNotEndedWhileTheToolComesNearer) {
-  MotionProgress progress(0.125, 2);
-  for (double left = 10; left > 0; left -= 0.25) {
-    progress.update(left);
-    EXPECT_FALSE(progress.has_ended()) << left;
-  }
-}
-
-TEST(MotionProgress, EndsAfterTheGivenNumberOfStepsWithoutProgress) {
-  MotionProgress progress(0.125, 2);
-  progress.update(10);
-  progress.update(10 - 0.125);  // equal to the minimum, which counts as no progress
-  EXPECT_FALSE(progress.has_ended());
-  progress.update(11);
-  EXPECT_TRUE(progress.has_ended());
-}
-
-TEST(MotionProgress, CountsAgainFromTheNearestWay) {
-  MotionProgress progress(0, 2);
-  progress.update(10);
-  progress.update(12);
-  progress.update(9);
-  EXPECT_FALSE(progress.has_ended());
-  progress.update(11);
-  progress.update(9.5);  // nearer than one step before, but not than the nearest
-  EXPECT_TRUE(progress.has_ended());
-}
-
-}  // namespace
-}  // namespace remote_touch::tool_motion_test
-
-// The 6-DOF renderer at its edges: odd clouds, odd devices, odd frames.
 namespace remote_touch::tool_renderer_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const Vec3 kHalf_m(0.02, 0.005, 0.01);
 
-PointCloud sheet(int n = 60, double spacing_m = 0.002, const Vec3& normal = Vec3::UnitY()) {
-  PointCloud cloud;
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i)
-      cloud.append({(i - 0.5 * (n - 1)) * spacing_m, 0, (j - 0.5 * (n - 1)) * spacing_m}, normal);
-  return cloud;
+PointCloud sheet(double spacing_m = 0.002) {
+  return sheet_of({.columns = 60, .rows = 60, .spacing_m = spacing_m});
 }
 
 ToolRenderer renderer(ContactRule rule = ContactRule::look_ahead, ToolParameters p = {}) {
@@ -69,6 +33,22 @@ ToolRenderer renderer(ContactRule rule = ContactRule::look_ahead, ToolParameters
 
 DeviceState device(const Vec3& p_W, const Vec3& turn = Vec3::Zero()) {
   return {p_W, rotation(turn)};
+}
+
+// Motions end after the given number of successive steps that come no nearer than the nearest one, by more
+// than the threshold.
+TEST(MotionProgress, EndsAfterTheGivenNumberOfStepsWithoutProgress) {
+  const auto ended_after = [](double threshold, const std::vector<double>& left) {
+    MotionProgress progress(threshold, 2);
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      progress.update(left[i]);
+      if (progress.has_ended()) return static_cast<int>(i) + 1;
+    }
+    return 0;
+  };
+  EXPECT_EQ(ended_after(0.125, {10, 9.75, 9.5, 9.25, 9, 8.75}), 0) << "it comes nearer";
+  EXPECT_EQ(ended_after(0.125, {10, 9.875, 11, 12}), 3) << "by the threshold is no progress";
+  EXPECT_EQ(ended_after(0, {10, 12, 9, 11, 9.5, 20}), 5) << "nearer than the step before, not the nearest";
 }
 
 class EveryRule : public testing::TestWithParam<ContactRule> {};
@@ -84,7 +64,14 @@ TEST_P(EveryRule, ToolIsTheDeviceInFreeSpace) {
   expect_free(r);
 }
 
-TEST_P(EveryRule, CloudsWithoutUsablePointsHoldNothing) {
+// Output after 100 ticks in which the device goes down from 0.02 m.
+RenderOutput lowered(ToolRenderer& r, double by_m) {
+  RenderOutput out;
+  for (int i = 0; i <= 100; ++i) out = r.step(device({0, 0.02 - by_m * (0.01 * i), 0}), 0.001 * i);
+  return out;
+}
+
+TEST_P(EveryRule, OnePointHoldsTheToolAndACloudWithoutUsablePointsDoesNot) {
   PointCloud none, unmeasured, one;
   for (int i = 0; i < 50; ++i) unmeasured.append(Vec3::Constant(kNaN), Vec3::Constant(kNaN));
   one.append({0, 0, 0}, Vec3::UnitY());
@@ -92,16 +79,7 @@ TEST_P(EveryRule, CloudsWithoutUsablePointsHoldNothing) {
     ToolRenderer r = renderer(GetParam());
     r.on_frame(scenes::frame(cloud));
     const bool holds = cloud.size() == 1;
-    for (int i = 0; i <= 100; ++i) {
-      const RenderOutput out = r.step(device({0, 0.02 - 4e-4 * i, 0}), 0.001 * i);
-      EXPECT_TRUE(out.proxy_W.allFinite());
-      if (!holds) {
-        EXPECT_EQ(out.proxy_W.y(), 0.02 - 4e-4 * i);
-      }
-      if (holds && i == 100) {
-        EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 6e-4);
-      }
-    }
+    EXPECT_NEAR(lowered(r, 0.04).proxy_W.y(), holds ? kHalf_m.y() : -0.02, holds ? 6e-4 : 1e-16);
   }
 }
 
@@ -112,40 +90,26 @@ TEST_P(EveryRule, PointsWithoutANormalAreCounted) {
   for (std::size_t i = 0; i < cloud.size(); ++i) cloud.nx[i] = cloud.ny[i] = cloud.nz[i] = kNaN;
   ToolRenderer r = renderer(GetParam());
   r.on_frame(scenes::frame(cloud));
-  RenderOutput out;
-  for (int i = 0; i <= 100; ++i) out = r.step(device({0, 0.02 - 3e-4 * i, 0}), 0.001 * i);
+  const RenderOutput out = lowered(r, 0.03);
   EXPECT_EQ(out.tool->disabled_points, 3600);
   if (GetParam() == ContactRule::voxels) {
-    EXPECT_EQ(out.proxy_W.y(), 0.02 - 0.03);
+    EXPECT_NEAR(out.proxy_W.y(), -0.01, 1e-16);
   } else {
     EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 2e-4);
   }
 }
 
-TEST_P(EveryRule, ALeapAcrossTheCloudEndsAtItsSurface) {
-  ToolRenderer r = renderer(GetParam());
-  r.on_frame(scenes::frame(sheet()));
-  r.step(device({0, 0.05, 0}), 0);
-  RenderOutput out;
-  for (int i = 1; i <= 200; ++i) out = r.step(device({0.02, -0.05, 0}), 0.001 * i);
-  EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 6e-4);
-  EXPECT_NEAR(out.proxy_W.x(), 0.02, 1e-3);
-}
-
-TEST_P(EveryRule, AToolThatStartsInsideComesOutOnTheSideOfTheSensor) {
-  ToolRenderer r = renderer(GetParam());
-  r.on_frame(scenes::frame(sheet()));
-  RenderOutput out;
-  for (int i = 0; i < 50; ++i) out = r.step(device({0, 0.001, 0}), 0.001 * i);
-  EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 6e-4);
-}
-
-TEST_P(EveryRule, AToolLargerThanTheCloudRestsOnIt) {
-  ToolRenderer r = renderer(GetParam());
-  r.on_frame(scenes::frame(sheet(4)));  // 6 x 6 mm under 40 x 20 mm
-  RenderOutput out;
-  for (int i = 0; i <= 300; ++i) out = r.step(device({0, 0.02 - 1e-4 * i, 0}), 0.001 * i);
-  EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 6e-4);
+// The device leaps across the cloud, or begins inside.
+TEST_P(EveryRule, AToolEndsOnTheSideOfTheSensor) {
+  for (const auto& [start_m, end_W] : {std::pair(0.05, Vec3(0.02, -0.05, 0)), {0.001, Vec3(0, 0.001, 0)}}) {
+    ToolRenderer r = renderer(GetParam());
+    r.on_frame(scenes::frame(sheet()));
+    r.step(device({0, start_m, 0}), 0);
+    RenderOutput out;
+    for (int i = 1; i <= 200; ++i) out = r.step(device(end_W), 0.001 * i);
+    EXPECT_NEAR(out.proxy_W.y(), kHalf_m.y(), 6e-4);
+    EXPECT_NEAR(out.proxy_W.x(), end_W.x(), 1e-3);
+  }
 }
 
 TEST_P(EveryRule, ANonFiniteDeviceGivesNoForceAndAFiniteProxy) {
@@ -167,45 +131,34 @@ TEST_P(EveryRule, ANonFiniteDeviceGivesNoForceAndAFiniteProxy) {
   EXPECT_EQ(r.step(device({0, 0.002, 0}), 0.07).force_N, held.force_N);
 }
 
-TEST_P(EveryRule, StaleFramesAreDroppedAndReported) {
-  ToolRenderer r = renderer(GetParam());
-  EXPECT_EQ(r.step(device({0, 0.05, 0}), 0).status, RenderStatus::no_frame);
-  r.on_frame(scenes::frame(sheet(), 3));
-  EXPECT_EQ(r.step(device({0, 0.05, 0}), 0.1).status, RenderStatus::ok);
-  r.on_frame(scenes::frame({}, 2));
-  RenderOutput out = r.step(device({0, 0.05, 0}), 0.101);
-  EXPECT_EQ(out.status, RenderStatus::stale_frame_dropped);
-  EXPECT_EQ(out.frame_index, 3);
-}
-
 // 5.2 for a tool: a hard constraint on the slave robot, or a soft one.
 TEST_P(EveryRule, TheSlaveFollowsTheToolOrTheDevice) {
   ToolParameters p;
   for (const SlaveCommand command : {SlaveCommand::rendered, SlaveCommand::hip}) {
     p.slave_command = command;
     ToolRenderer r = renderer(GetParam(), p);
+    const DeviceState lost = device(Vec3::Constant(kNaN));
+    EXPECT_TRUE(r.step(lost, 0).slave_W.array().isNaN().all()) << "no device is known";
     r.on_frame(scenes::frame(sheet()));
-    RenderOutput out;
-    for (int i = 0; i < 300; ++i) out = r.step(device({0, 0.02 - 1e-4 * i, 0}), 0.001 * i);
-    const Vec3 device_W(0, 0.02 - 1e-4 * 299, 0);
+    EXPECT_TRUE(r.step(lost, 0).slave_W.array().isNaN().all());
+    RenderOutput out = lowered(r, 0.03);
+    const Vec3 device_W(0, 0.02 - 0.03, 0);
     ASSERT_GT((out.proxy_W - device_W).norm(), 0.01);  // the points hold it
     const Vec3 expected = command == SlaveCommand::rendered ? out.proxy_W : device_W;
     EXPECT_EQ(out.slave_W, expected);
-    out = r.step(device(Vec3::Constant(kNaN)), 0.3);
+    out = r.step(lost, 0.3);
     EXPECT_EQ(out.slave_W, expected);  // the last command is repeated
   }
 }
 
-TEST(ToolRenderer, SlaveIsNotSentAnywhereBeforeTheDeviceIsKnown) {
-  for (const SlaveCommand command : {SlaveCommand::rendered, SlaveCommand::hip}) {
-    ToolParameters p;
-    p.slave_command = command;
-    ToolRenderer r = renderer(ContactRule::look_ahead, p);
-    EXPECT_TRUE(r.step(device(Vec3::Constant(kNaN)), 0).slave_W.array().isNaN().all());
-    r.on_frame(scenes::frame(sheet()));
-    EXPECT_TRUE(r.step(device(Vec3::Constant(kNaN)), 0.001).slave_W.array().isNaN().all());
-    EXPECT_EQ(r.step(device({0, 0.05, 0}), 0.002).slave_W, Vec3(0, 0.05, 0));
-  }
+TEST(ToolRenderer, StaleFramesAreDroppedAndReported) {
+  ToolRenderer r = renderer();
+  r.on_frame(scenes::frame(sheet(), 3));
+  r.on_frame(scenes::frame({}, 2));
+  const RenderOutput out = r.step(device({0, 0.05, 0}), 0.101);
+  EXPECT_EQ(out.status, RenderStatus::stale_frame_dropped);
+  EXPECT_EQ(out.frame_index, 3);
+  EXPECT_EQ(r.step(device({0, 0.05, 0}), 0.102).status, RenderStatus::ok);
 }
 
 // Scene and device, turned and moved as one, give the same run, turned and moved, up to the length of a step
@@ -231,7 +184,7 @@ TEST(ToolRenderer, TheWorldFrameDoesNotMatter) {
 // its height within 0.2 mm while the device moves on.
 TEST(ToolRenderer, SlidesWithoutRipple) {
   ToolRenderer r = renderer();
-  r.on_frame(scenes::frame(sheet(60, 0.003)));
+  r.on_frame(scenes::frame(sheet(0.003)));
   double low = 1, high = -1;
   for (int i = 0; i < 1500; ++i) {
     const RenderOutput out = r.step(device({2e-5 * i, 0.004, 1e-5 * i}, {0.35, 0.2, 0.5}), 0.001 * i);
