@@ -1,3 +1,4 @@
+// Depth and colour images: PNG and NumPy files are read exactly, in each format; damaged ones are refused.
 #include "scenarios/files/depth_images.h"
 
 #include <gtest/gtest.h>
@@ -35,40 +36,18 @@ class DepthPng : public ::testing::Test {
   const TestFolder folder_{"depth_png_test"};
 };
 
+// No measurement is 0; the limit itself is kept.
 TEST_F(DepthPng, KeepsEverySampleAndScalesIt) {
-  const std::uint16_t samples[6] = {1, 255, 256, 1000, 32768, 65535};
-  const DepthImage depth =
-      read_depth_png(folder_.write_png("d.png", 3, 2, PNG_FORMAT_LINEAR_Y, samples), 0.0002, kNoLimit);
+  const std::uint16_t samples[6] = {0, 255, 256, 1000, 32768, 65535};
+  const fs::path file = folder_.write_png("d.png", 3, 2, PNG_FORMAT_LINEAR_Y, samples);
+  const DepthImage depth = read_depth_png(file, 0.0002, kNoLimit), near = read_depth_png(file, 0.001, 1.0);
   ASSERT_EQ(depth.width, 3);
   ASSERT_EQ(depth.height, 2);
   ASSERT_EQ(depth.z_m.size(), 6u);
-  for (int i = 0; i < 6; ++i) EXPECT_EQ(depth.z_m[i], samples[i] * 0.0002) << i;
-}
-
-TEST_F(DepthPng, NoMeasurementAndTooFarAreNaN) {
-  const std::uint16_t samples[4] = {0, 2000, 3000, 3001};
-  const DepthImage depth =
-      read_depth_png(folder_.write_png("d.png", 4, 1, PNG_FORMAT_LINEAR_Y, samples), 0.001, 3.0);
   EXPECT_TRUE(std::isnan(depth.z_m[0]));
-  EXPECT_EQ(depth.z_m[1], 2.0);
-  EXPECT_EQ(depth.z_m[2], 3.0);  // the limit itself is kept
-  EXPECT_TRUE(std::isnan(depth.z_m[3]));
-}
-
-TEST_F(DepthPng, RefusesOtherPixelFormats) {
-  const std::uint8_t grey[1] = {7}, rgb[3] = {1, 2, 3};
-  const std::uint16_t rgb16[3] = {1, 2, 3};
-  const fs::path grey_file = folder_.write_png("grey.png", 1, 1, PNG_FORMAT_GRAY, grey);
-  const std::string text = error(grey_file);
-  EXPECT_HAS(text, grey_file.string());
-  EXPECT_HAS(text, "8-bit grey: expected 16-bit grey (one channel)");
-  const fs::path rgb_file = folder_.write_png("rgb.png", 1, 1, PNG_FORMAT_RGB, rgb);
-  EXPECT_HAS(error(rgb_file), "8-bit RGB");
-  const fs::path rgb16_file = folder_.write_png("rgb16.png", 1, 1, PNG_FORMAT_LINEAR_RGB, rgb16);
-  EXPECT_HAS(error(rgb16_file), "16-bit RGB");
-  int width = 0, height = 0;
-  EXPECT_HAS(refusal([&] { read_colour_png(rgb16_file, width, height); }),
-             "16-bit RGB: expected up to 8 bits");
+  for (int i = 1; i < 6; ++i) EXPECT_EQ(depth.z_m[i], samples[i] * 0.0002) << i;
+  EXPECT_EQ(near.z_m[3], 1.0);
+  EXPECT_TRUE(std::isnan(near.z_m[4]));
 }
 
 TEST_F(DepthPng, RefusesEveryTruncation) {
@@ -79,13 +58,9 @@ TEST_F(DepthPng, RefusesEveryTruncation) {
     const fs::path cut = folder_.write("cut.png", bytes.substr(0, length));
     EXPECT_HAS(error(cut), cut.string() + ": is not a whole PNG file: ") << "cut to " << length;
   }
-}
-
-TEST_F(DepthPng, RefusesDamagedPixels) {
-  std::uint16_t samples[64] = {1, 2, 3};
-  std::string bytes = bytes_of(folder_.write_png("d.png", 8, 8, PNG_FORMAT_LINEAR_Y, samples));
-  bytes[bytes.find("IDAT") + 8] ^= 0x55;
-  EXPECT_HAS(error(folder_.write("d.png", bytes)), "not a whole PNG");
+  std::string damaged = bytes;
+  damaged[damaged.find("IDAT") + 8] ^= 0x55;
+  EXPECT_HAS(error(folder_.write("d.png", damaged)), "not a whole PNG");
 }
 
 std::string big_endian(std::uint32_t value) {
@@ -110,22 +85,31 @@ std::string png_header(std::uint32_t width, std::uint32_t height) {
          chunk("IHDR", big_endian(width) + big_endian(height) + std::string("\x10\0\0\0\0", 5));
 }
 
-TEST_F(DepthPng, RefusesAClaimedSizeThatTheFileCannotHold) {
-  const std::string rest = chunk("IDAT", "x") + chunk("IEND", "");
-  const fs::path file = folder_.write("d.png", png_header(8000, 8000) + rest);
-  EXPECT_HAS(error(file), file.string() + ": claims 8000 x 8000 pixels: more than its 58 bytes can hold");
-}
-
 // A deflate stream of 0.8 MB could expand to that many zeros, which would take 4 GB in memory.
-TEST_F(DepthPng, RefusesMorePixelsThanAnyCameraHas) {
-  const std::string rest = chunk("IDAT", std::string(800'000, 'x')) + chunk("IEND", "");
-  for (const auto& [width, height] :
-       {std::pair(20000u, 20000u), std::pair(100000u, 1000u), std::pair(1000u, 100000u)}) {
-    const fs::path file = folder_.write("d.png", png_header(width, height) + rest);
-    const std::string text = error(file);
-    EXPECT_HAS(text, file.string() + ": ");
-    EXPECT_HAS(text, "expected up to");
+TEST_F(DepthPng, RefusesOtherFormatsAndSizesThatCannotBe) {
+  const std::uint8_t samples[3] = {1, 2, 3};
+  const std::uint16_t deep[3] = {1, 2, 3};
+  const std::string end = chunk("IEND", ""), much = chunk("IDAT", std::string(800'000, 'x')) + end;
+  const fs::path rgb16 = folder_.write_png("rgb16.png", 1, 1, PNG_FORMAT_LINEAR_RGB, deep);
+  const std::pair<fs::path, std::string> rows[] = {
+      {folder_.write_png("grey.png", 1, 1, PNG_FORMAT_GRAY, samples),
+       "8-bit grey: expected 16-bit grey (one channel)"},
+      {folder_.write_png("rgb.png", 1, 1, PNG_FORMAT_RGB, samples), "8-bit RGB"},
+      {rgb16, "16-bit RGB"},
+      {folder_.write("claim.png", png_header(8000, 8000) + chunk("IDAT", "x") + end),
+       ": claims 8000 x 8000 pixels: more than its 58 bytes can hold"},
+      {folder_.write("square.png", png_header(20000, 20000) + much), "expected up to"},
+      {folder_.write("wide.png", png_header(100000, 1000) + much), "expected up to"},
+      {folder_.write("tall.png", png_header(1000, 100000) + much), "expected up to"},
+      {folder_ / "missing.png", ": cannot be read"},
+      {folder_.path(), ": cannot be read"},
+  };
+  for (const auto& [file, text] : rows) {
+    EXPECT_HAS(error(file), file.string() + ": ");
+    EXPECT_HAS(error(file), text);
   }
+  int width = 0, height = 0;
+  EXPECT_HAS(refusal([&] { read_colour_png(rgb16, width, height); }), "16-bit RGB: expected up to 8 bits");
 }
 
 TEST_F(DepthPng, RefusesAChunkLongerThanTheFile) {
@@ -150,36 +134,24 @@ TEST_F(DepthPng, LeavesOutTexts) {
   EXPECT_EQ(read_depth_png(folder_.write("d.png", bytes), 0.001, kNoLimit).z_m, std::vector<double>{0.005});
 }
 
-TEST_F(DepthPng, RefusesMissingFilesAndFolders) {
-  const fs::path missing = folder_ / "missing.png";
-  EXPECT_HAS(error(missing), missing.string() + ": cannot be read");
-  EXPECT_HAS(error(folder_.path()), folder_.path().string() + ": cannot be read");
-}
-
+// RGB and grey with alpha, and a palette whose colours have alpha, can be transparent: such a pixel has no
+// colour.
 TEST_F(DepthPng, ReadsColoursOfEveryFormat) {
-  const std::vector<std::uint32_t> expected = {0x102030, 0xFFEE00};
-  const std::uint8_t rgb[6] = {0x10, 0x20, 0x30, 0xFF, 0xEE, 0x00};
-  expect_colours(folder_.write_png("rgb.png", 2, 1, PNG_FORMAT_RGB, rgb), expected);
-  const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x01, 0xFF, 0xEE, 0x00, 0x80};  // the alpha changes nothing
-  expect_colours(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), expected);
-  const std::uint8_t grey[2] = {0x00, 0xA7};
+  const std::vector<std::uint32_t> two = {0x102030, 0xFFEE00}, half = {kNoColour, 0xFFEE00};
+  const std::uint8_t rgb[6] = {0x10, 0x20, 0x30, 0xFF, 0xEE, 0x00}, grey[2] = {0x00, 0xA7};
+  const std::uint8_t palette[6] = {0xFF, 0xEE, 0x00, 0x10, 0x20, 0x30}, swapped[2] = {1, 0},
+                     indices[2] = {0, 1};
+  const std::uint8_t faint[8] = {0x10, 0x20, 0x30, 0x01,
+                                 0xFF, 0xEE, 0x00, 0x80};  // the alpha changes nothing
+  const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x00, 0xFF, 0xEE, 0x00, 0xFF},
+                     grey_alpha[4] = {0x40, 0x00, 0xA7, 0xFF};
+  expect_colours(folder_.write_png("rgb.png", 2, 1, PNG_FORMAT_RGB, rgb), two);
+  expect_colours(folder_.write_png("faint.png", 2, 1, PNG_FORMAT_RGBA, faint), two);
   expect_colours(folder_.write_png("grey.png", 1, 2, PNG_FORMAT_GRAY, grey), {0x000000, 0xA7A7A7}, true);
-  const std::uint8_t indices[2] = {1, 0};
-  const std::uint8_t palette[6] = {0xFF, 0xEE, 0x00, 0x10, 0x20, 0x30};
-  expect_colours(folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGB_COLORMAP, indices, palette, 2),
-                 expected);
-}
-
-// The formats that can be transparent: RGB and grey with alpha, and a palette whose colours have alpha.
-TEST_F(DepthPng, ATransparentPixelHasNoColour) {
-  const std::uint8_t rgba[8] = {0x10, 0x20, 0x30, 0x00, 0xFF, 0xEE, 0x00, 0xFF};
-  const std::vector<std::uint32_t> expected = {kNoColour, 0xFFEE00};
-  expect_colours(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), expected);
-  const std::uint8_t grey[4] = {0x40, 0x00, 0xA7, 0xFF};
-  expect_colours(folder_.write_png("grey.png", 2, 1, PNG_FORMAT_GA, grey), {kNoColour, 0xA7A7A7});
-  const std::uint8_t indices[2] = {0, 1};
-  expect_colours(folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGBA_COLORMAP, indices, rgba, 2),
-                 expected);
+  expect_colours(folder_.write_png("palette.png", 2, 1, PNG_FORMAT_RGB_COLORMAP, swapped, palette, 2), two);
+  expect_colours(folder_.write_png("rgba.png", 2, 1, PNG_FORMAT_RGBA, rgba), half);
+  expect_colours(folder_.write_png("ga.png", 2, 1, PNG_FORMAT_GA, grey_alpha), {kNoColour, 0xA7A7A7});
+  expect_colours(folder_.write_png("clear.png", 2, 1, PNG_FORMAT_RGBA_COLORMAP, indices, rgba, 2), half);
 }
 
 }  // namespace
@@ -187,8 +159,6 @@ TEST_F(DepthPng, ATransparentPixelHasNoColour) {
 
 namespace remote_touch::depth_npy_test {
 namespace {
-
-// NumPy files are read exactly, in each type and order; damaged ones are refused.
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
@@ -256,18 +226,20 @@ TEST_F(DepthNpy, NoMeasurementAndTooFarAreNaN) {
 }
 
 TEST_F(DepthNpy, RefusesWhatIsNoDepthImage) {
-  const std::string four = data<float>({1, 1, 1, 1});
-  EXPECT_HAS(refused("P5 2 2"), "d.npy: does not begin as a NumPy file");
-  EXPECT_HAS(refused(npy(header("<f4", "(4,)"), four)), "has the shape \"(4,)\": expected (height, width)");
-  EXPECT_HAS(refused(npy(header("<f4", "(2, 2, 1)"), four)), "has the shape \"(2,2,1)\"");
-  EXPECT_HAS(refused(npy(header("<f4", "(0, 2)"), "")), "has the shape \"(0,2)\"");
-  EXPECT_HAS(refused(npy(header("<f2", "(2, 2)"), four)), "has values of type \"<f2\": expected float32");
-  EXPECT_HAS(refused(npy(header("|O", "(2, 2)"), four)), "has values of type");
-  EXPECT_HAS(refused(npy(header("<f4", "(2, 2)"), four.substr(1))), "has 15 bytes of data: expected 16");
-  EXPECT_HAS(refused(npy(header("<f4", "(2, 2)"), four + "x")), "has 17 bytes of data: expected 16");
-  EXPECT_HAS(refused(npy(header("<f4", "(65535, 65535)"), four)), "pixels: expected at most");
-  EXPECT_HAS(refused(npy(header("<f4", "(1, 2)"), data<float>({1, -2}))), "pixel 1, 0 has the depth -2");
-  const std::string whole = npy(header("<f4", "(2, 2)"), four);
+  const std::string four = data<float>({1, 1, 1, 1}), whole = npy(header("<f4", "(2, 2)"), four);
+  const std::pair<std::string, std::string> rows[] = {
+      {"P5 2 2", "d.npy: does not begin as a NumPy file"},
+      {npy(header("<f4", "(4,)"), four), "has the shape \"(4,)\": expected (height, width)"},
+      {npy(header("<f4", "(2, 2, 1)"), four), "has the shape \"(2,2,1)\""},
+      {npy(header("<f4", "(0, 2)"), ""), "has the shape \"(0,2)\""},
+      {npy(header("<f2", "(2, 2)"), four), "has values of type \"<f2\": expected float32"},
+      {npy(header("|O", "(2, 2)"), four), "has values of type"},
+      {npy(header("<f4", "(2, 2)"), four.substr(1)), "has 15 bytes of data: expected 16"},
+      {npy(header("<f4", "(2, 2)"), four + "x"), "has 17 bytes of data: expected 16"},
+      {npy(header("<f4", "(65535, 65535)"), four), "pixels: expected at most"},
+      {npy(header("<f4", "(1, 2)"), data<float>({1, -2})), "pixel 1, 0 has the depth -2"},
+  };
+  for (const auto& [bytes, text] : rows) EXPECT_HAS(refused(bytes), text);
   for (std::size_t size = 0; size < whole.size(); ++size)
     EXPECT_HAS(refused(whole.substr(0, size)), "d.npy: ");
 }

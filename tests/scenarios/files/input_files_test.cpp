@@ -1,3 +1,4 @@
+// Texts, JSON and the order of files: what is read, what is refused, and which file comes first.
 #include "scenarios/files/input_files.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "tests/support/test_files.h"
 
@@ -29,6 +32,8 @@ TEST(TextFile, IsReadWhole) {
   }
   EXPECT_EQ(read_text_file(folder.write("x", std::string("\0\r\n\xff", 4)), ""),
             std::string("\0\r\n\xff", 4));
+  EXPECT_EQ(without_byte_order_mark("\xEF\xBB\xBF# x"), "# x");
+  for (const char* text : {"", "\xEF\xBB", "x\xEF\xBB\xBF"}) EXPECT_EQ(without_byte_order_mark(text), text);
 }
 
 TEST(TextFile, IsRefusedIfItIsTooLongOrNoFile) {
@@ -62,11 +67,6 @@ TEST(TextFile, AnInputIsNeitherPipeNorDeviceNorFolder) {
   EXPECT_EQ(read_input_text(folder / "link", ""), "a list");
   require_file(folder / "none");
   EXPECT_HAS(refusal([&] { read_input_text(folder / "none", "expected a list"); }), "No such file");
-}
-
-TEST(TextFile, AMarkOfTheOrderOfBytesIsNoText) {
-  EXPECT_EQ(without_byte_order_mark("\xEF\xBB\xBF# x"), "# x");
-  for (const char* text : {"", "\xEF\xBB", "x\xEF\xBB\xBF"}) EXPECT_EQ(without_byte_order_mark(text), text);
 }
 
 TEST(TextFile, APipeIsReadToItsEnd) {
@@ -110,46 +110,37 @@ TEST(JsonText, KeepsTheOrderOfItsKeys) {
             R"({"b":1,"a":{"b":[2,{"b":3}]}})");
 }
 
-TEST(JsonText, ReportsWhereItIsNotJson) {
-  for (const char* text : {"", "{", "[1,]", "{\"a\": NaN}", "{\"a\" 1}", "\xff", "1e999", "nul"}) {
-    const std::string message = refused(text);
-    EXPECT_HAS(message, "x.json: ");
-    EXPECT_HAS(message, ": expected JSON with finite numbers");
-    EXPECT_FALSE(contains(message, "json.exception")) << message;
-  }
-  EXPECT_HAS(refused("{\"a\":\n nul}"), "line 2, column 5");
-}
-
-// Otherwise all that follows the byte would be ignored.
-TEST(JsonText, TheByteZeroIsRefused) {
-  const std::string zero(1, '\0');
-  for (const std::string& text :
-       {"{}" + zero, "{}" + zero + "{\"a\": 1}", zero + "{}", "{\"a\": \"" + zero + "\"}"}) {
-    EXPECT_HAS(refused(text), "x.json: has the byte 0 at byte ");
-    EXPECT_FALSE(json_or_none(text, "x"));
-  }
-}
-
-TEST(JsonText, AKeyTwiceIsRefused) {
-  EXPECT_HAS(refused(R"({"seed": 1, "seed": 2})"), R"(x.json: the key "seed" appears twice in one object)");
-  EXPECT_HAS(refused(R"([{"a": {"b": 1, "c": [{"b": 2}], "b": 3}}])"), R"(the key "b" appears twice)");
-  EXPECT_HAS(refused(R"({"\u0061": 1, "a": 2})"), R"(the key "a" appears twice)");
-  EXPECT_EQ(refused(R"([{"a": 1, "b": {"a": {"a": 2}}}, {"a": 3}])"), "no InputError");
-}
-
-TEST(JsonText, IsRefusedIfItNestsTooDeep) {
-  const auto nested = [](int levels, const std::string& open, const std::string& close) {
+// One row for each refusal.
+TEST(JsonText, IsRefusedWithTheReason) {
+  const std::string zero(1, '\0'), no_json = ": expected JSON with finite numbers";
+  const std::string deep = "x.json: nested too deep: expected at most 64 levels";
+  const auto nested = [](int levels, const std::string& open, char close) {
     std::string text;
     for (int i = 0; i < levels; ++i) text += open;
-    text += "1";
-    for (int i = 0; i < levels; ++i) text += close;
-    return refused(text);
+    return text + "1" + std::string(static_cast<std::size_t>(levels), close);
   };
-  EXPECT_EQ(nested(kMaxJsonDepth, "[", "]"), "no InputError");
-  for (const int levels : {kMaxJsonDepth + 1, 100'000}) {
-    EXPECT_HAS(nested(levels, "[", "]"), "x.json: nested too deep: expected at most 64 levels");
-    EXPECT_HAS(nested(levels, "{\"a\":", "}"), "x.json: nested too deep: expected at most 64 levels");
+  std::vector<std::pair<std::string, std::string>> rows = {
+      {"{\"a\":\n nul}", "line 2, column 5"},
+      {R"({"seed": 1, "seed": 2})", R"(x.json: the key "seed" appears twice in one object)"},
+      {R"([{"a": {"b": 1, "c": [{"b": 2}], "b": 3}}])", R"(the key "b" appears twice)"},
+      {R"({"\u0061": 1, "a": 2})", R"(the key "a" appears twice)"},
+      {R"([{"a": 1, "b": {"a": {"a": 2}}}, {"a": 3}])", "no InputError"},
+      {nested(kMaxJsonDepth, "[", ']'), "no InputError"},
+      {nested(kMaxJsonDepth + 1, "[", ']'), deep},
+      {nested(100'000, "[", ']'), deep},
+      {nested(100'000, "{\"a\":", '}'), deep},
+  };
+  for (const char* text : {"", "{", "[1,]", "{\"a\": NaN}", "{\"a\" 1}", "\xff", "1e999", "nul"}) {
+    rows.push_back({text, no_json});
+    EXPECT_FALSE(contains(refused(text), "json.exception")) << text;
   }
+  // Otherwise all that follows the byte would be ignored.
+  for (const std::string& text :
+       {"{}" + zero, "{}" + zero + "{\"a\": 1}", zero + "{}", "{\"a\": \"" + zero + "\"}"}) {
+    rows.push_back({text, "x.json: has the byte 0 at byte "});
+    EXPECT_FALSE(json_or_none(text, "x"));
+  }
+  for (const auto& [text, why] : rows) EXPECT_HAS(refused(text), why);
 }
 
 TEST(JsonText, IsDistinguishedFromPlainText) {
@@ -192,16 +183,16 @@ void expect_order(const Files& expected) {
   } while (std::next_permutation(files.begin(), files.end()));
 }
 
+// Equal numbers are in the order of their texts; times of a clock have decimals.
 TEST(FileOrder, NumbersInNamesAreNumbers) {
-  expect_order({"9.png", "10.png", "0100.png"});
   expect_order({"1b.png", "9.png", "10.png", "0100.png"});
   expect_order({"a_1_10.pcd", "a_2_9.pcd", "a_2_10.pcd", "b_1_1.pcd"});
   expect_order({"x", "x1", "x" + std::string(39, '9'), "x1" + std::string(39, '0')});
   expect_order({"a/2.png", "a/10.png"});
-}
-
-TEST(FileOrder, EqualNumbersAreInTheOrderOfTheirTexts) {
   expect_order({"a0", "a00", "a001", "a01", "a1", "a01b", "a1b"});
+  expect_order({"1305031102.16.png", "1305031102.160407.png", "1305031102.5.png", "1305031103.1.png"});
+  expect_order({"2.5.png", "2.16.png"});
+  expect_order({"1305031102_5.png", "1305031102_16.png"});
 }
 
 TEST(FileOrder, NamesWithEqualNumbersAreFound) {
@@ -219,12 +210,6 @@ TEST(FileOrder, NamesWithEqualNumbersAreFound) {
         {"a1.png", "b1.png", "1.png"},
         {"1305031102.5.png", "1305031102.05.png", "1305031102.50.png"}})
     EXPECT_EQ(found(files), "");
-}
-
-TEST(FileOrder, TimesOfAClockHaveDecimals) {
-  expect_order({"1305031102.16.png", "1305031102.160407.png", "1305031102.5.png", "1305031103.1.png"});
-  expect_order({"2.5.png", "2.16.png"});
-  expect_order({"1305031102_5.png", "1305031102_16.png"});
 }
 
 // The order is transitive for all names: if a is before b and b is before c, then a is before c.
