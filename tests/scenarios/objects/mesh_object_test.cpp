@@ -1,3 +1,5 @@
+// Poses between given times against the spherical interpolation of Eigen, and the nearest of several posed
+// meshes against the closed form of the distance to a box.
 #include "scenarios/objects/mesh_object.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +16,6 @@
 
 namespace remote_touch::mesh_object_test {
 namespace {
-
-// Poses at and between the given times, compared with Eigen's spherical interpolation.
 
 const double kPi = std::acos(-1.0);
 
@@ -42,21 +42,21 @@ std::vector<StampedPose> random_poses(int count) {
   return poses;
 }
 
-TEST(PosePath, PassesThroughItsPoses) {
+TEST(PosePath, PassesThroughItsPosesAndRestsBeforeAndAfterThem) {
   const std::vector<StampedPose> poses = random_poses(20);
   const PosePath path(poses);
   for (const StampedPose& pose : poses)
     EXPECT_TRUE((path.at(pose.time_s).matrix().array() == pose.X.matrix().array()).all()) << pose.time_s;
   EXPECT_EQ(path.duration_s(), poses.back().time_s);
-}
-
-TEST(PosePath, RestsBeforeTheFirstPoseAndAfterTheLast) {
-  const std::vector<StampedPose> poses = random_poses(3);
-  const PosePath path(poses);
-  for (const double time_s : {-std::numeric_limits<double>::infinity(), -5.0, -0.71})
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double time_s : {-infinity, -5.0, -0.71})
     EXPECT_TRUE((path.at(time_s).matrix().array() == poses.front().X.matrix().array()).all()) << time_s;
-  for (const double time_s : {path.duration_s() + 1e-9, 1e9, std::numeric_limits<double>::infinity()})
+  for (const double time_s : {path.duration_s() + 1e-9, 1e9, infinity})
     EXPECT_TRUE((path.at(time_s).matrix().array() == poses.back().X.matrix().array()).all()) << time_s;
+  const PosePath one(poses.back().X);
+  EXPECT_EQ(one.duration_s(), 0);
+  for (const double time_s : {-1.0, 0.0, 7.0})
+    EXPECT_TRUE((one.at(time_s).matrix().array() == poses.back().X.matrix().array()).all()) << time_s;
 }
 
 TEST(PosePath, MovesStraightAndTurnsAboutOneAxis) {
@@ -84,14 +84,6 @@ TEST(PosePath, TurnsTheShorterWay) {
   EXPECT_LT((X.matrix() - about_z(-0.25 * kPi, {2, 0, 1}).matrix()).cwiseAbs().maxCoeff(), 1e-15);
 }
 
-TEST(PosePath, OfOnePoseRests) {
-  const RigidTransform X = about_z(1, {1, 2, 3});
-  const PosePath path(X);
-  EXPECT_EQ(path.duration_s(), 0);
-  for (const double time_s : {-1.0, 0.0, 7.0})
-    EXPECT_TRUE((path.at(time_s).matrix().array() == X.matrix().array()).all()) << time_s;
-}
-
 TEST(PosePath, RejectsTimesThatDoNotIncrease) {
   const RigidTransform X = RigidTransform::Identity();
   const auto make = [](const std::vector<StampedPose>& poses) { return PosePath(poses); };
@@ -102,8 +94,6 @@ TEST(PosePath, RejectsTimesThatDoNotIncrease) {
   EXPECT_THROW(make({{0, X}, {std::nan(""), X}}), std::invalid_argument);
   EXPECT_THROW(make({{0, X}, {std::numeric_limits<double>::infinity(), X}}), std::invalid_argument);
 }
-
-// The nearest of several posed meshes, compared with the closed form of the distance to a box.
 
 constexpr double kFar_m = 100;
 using Poses = std::vector<std::optional<RigidTransform>>;
@@ -155,72 +145,51 @@ TEST(NearestOnObjects, IsTheSmallestDistanceToPosedBoxes) {
   EXPECT_GT(negative, 100);
 }
 
-TEST(NearestOnObjects, NormalIsInTheFrameOfThePosition) {
-  const std::vector<MeshObject> objects = {box()};
-  const double quarter_turn = std::acos(0.0);
-  const Poses X_PO = {pose({1, 2, 3}, {0, 0, quarter_turn})};  // x of the object is y of the parent
-  const NearestOnObjects above = nearest_on_objects(objects, X_PO, {1, 2.15, 3}, kFar_m);
-  EXPECT_NEAR(above.distance_m, 0.05, 1e-15);
-  EXPECT_TRUE(above.normal.isApprox(Vec3::UnitY(), 1e-15)) << above.normal.transpose();
-  const NearestOnObjects inside = nearest_on_objects(objects, X_PO, {1, 1.91, 3}, kFar_m);
-  EXPECT_NEAR(inside.distance_m, -0.01, 1e-15);
-  EXPECT_TRUE(inside.normal.isApprox(-Vec3::UnitY(), 1e-15)) << inside.normal.transpose();
-}
-
-void expect_unknown(const NearestOnObjects& nearest) {
-  EXPECT_TRUE(std::isnan(nearest.distance_m));
-  EXPECT_TRUE(nearest.normal.array().isNaN().all());
-  EXPECT_EQ(nearest.object, -1);
-}
-
-TEST(NearestOnObjects, IsUnknownWithoutAPose) {
-  const std::vector<MeshObject> objects = {box(), box()};
-  expect_unknown(nearest_on_objects(objects, Poses{{}, {}}, Vec3::Zero(), kFar_m));
-  const NearestOnObjects second =
-      nearest_on_objects(objects, Poses{{}, pose({0, 0, -0.3})}, Vec3::Zero(), kFar_m);
-  EXPECT_EQ(second.object, 1);
-  EXPECT_NEAR(second.distance_m, 0.1, 1e-15);
-  expect_unknown(nearest_on_objects({}, {}, Vec3::Zero(), kFar_m));
-}
-
-TEST(NearestOnObjects, IsUnknownBeyondTheReach) {
-  const std::vector<MeshObject> objects = {box()};
-  const Poses at_origin = {RigidTransform::Identity()};
-  EXPECT_NEAR(nearest_on_objects(objects, at_origin, {0, 0, 0.229}, 0.03).distance_m, 0.029, 1e-15);
-  expect_unknown(nearest_on_objects(objects, at_origin, {0, 0, 0.231}, 0.03));
-  EXPECT_NEAR(nearest_on_objects(objects, at_origin, {0.071, 0, 0}, 0.03).distance_m, -0.029, 1e-15);
-  expect_unknown(nearest_on_objects(objects, at_origin, {0.069, 0, 0}, 0.03));
-}
-
-TEST(NearestOnObjects, IsUnknownForPositionsThatAreNotFinite) {
-  const std::vector<MeshObject> objects = {box()};
-  const Poses at_origin = {RigidTransform::Identity()};
-  expect_unknown(nearest_on_objects(objects, at_origin, Vec3::Constant(std::nan("")), kFar_m));
-  expect_unknown(nearest_on_objects(objects, at_origin, {0, INFINITY, 0}, kFar_m));
-}
-
-TEST(NearestOnObjects, OpenSheetEndsAtItsBorder) {
-  const std::vector<MeshObject> objects = {sheet()};
-  const Poses at_origin = {RigidTransform::Identity()};
-  EXPECT_NEAR(nearest_on_objects(objects, at_origin, {0.4, 0.1, 0.2}, kFar_m).distance_m, 0.2, 1e-15);
-  EXPECT_NEAR(nearest_on_objects(objects, at_origin, {0.4, 0.1, -0.2}, kFar_m).distance_m, -0.2, 1e-15);
-  expect_unknown(nearest_on_objects(objects, at_origin, {0.51, 0.1, 0.2}, kFar_m));
-  expect_unknown(nearest_on_objects(objects, at_origin, {0.6, 0.7, -0.2}, kFar_m));
-}
-
-// The sheet is nearer than the box, but ends before the position.
-TEST(NearestOnObjects, BorderOfASheetDoesNotHideAnotherObject) {
-  const std::vector<MeshObject> objects = {sheet(), box()};
-  const Poses X_PO = {RigidTransform::Identity(), pose({1, 0, 0})};
-  const NearestOnObjects nearest = nearest_on_objects(objects, X_PO, {0.6, 0, 0}, kFar_m);
-  EXPECT_EQ(nearest.object, 1);
-  EXPECT_NEAR(nearest.distance_m, 0.3, 1e-15);
-}
-
-TEST(NearestOnObjects, FirstOfEqualObjectsIsChosen) {
-  const std::vector<MeshObject> objects = {box(), box(), box()};
-  const Poses X_PO = {pose({5, 0, 0}), RigidTransform::Identity(), RigidTransform::Identity()};
-  EXPECT_EQ(nearest_on_objects(objects, X_PO, {0.2, 0, 0}, kFar_m).object, 1);
+// A row: objects, their poses, position, reach, and the expected distance (NaN: not known), normal and
+// object.
+TEST(NearestOnObjects, IsKnownOrNotAtSpecialPositions) {
+  struct Row {
+    std::vector<MeshObject> objects;
+    Poses X_PO;
+    Vec3 p_P;
+    double reach_m, distance_m;
+    Vec3 normal = Vec3::Zero();
+    int object = 0;
+  };
+  const double nothing = std::nan(""), quarter_turn = std::acos(0.0);
+  const RigidTransform here = RigidTransform::Identity(), turned = pose({1, 2, 3}, {0, 0, quarter_turn});
+  const Row rows[] = {
+      {{box()}, {turned}, {1, 2.15, 3}, kFar_m, 0.05, Vec3::UnitY()},  // x of the object is y of the parent
+      {{box()}, {turned}, {1, 1.91, 3}, kFar_m, -0.01, -Vec3::UnitY()},
+      {{}, {}, {0, 0, 0}, kFar_m, nothing},
+      {{box(), box()}, {{}, {}}, {0, 0, 0}, kFar_m, nothing},  // no pose
+      {{box(), box()}, {{}, pose({0, 0, -0.3})}, {0, 0, 0}, kFar_m, 0.1, Vec3::UnitZ(), 1},
+      {{box()}, {here}, {0, 0, 0.229}, 0.03, 0.029, Vec3::UnitZ()},
+      {{box()}, {here}, {0, 0, 0.231}, 0.03, nothing},  // beyond the reach
+      {{box()}, {here}, {0.071, 0, 0}, 0.03, -0.029, Vec3::UnitX()},
+      {{box()}, {here}, {0.069, 0, 0}, 0.03, nothing},
+      {{box()}, {here}, {nothing, nothing, nothing}, kFar_m, nothing},
+      {{box()}, {here}, {0, INFINITY, 0}, kFar_m, nothing},
+      {{sheet()}, {here}, {0.4, 0.1, 0.2}, kFar_m, 0.2, Vec3::UnitZ()},
+      {{sheet()}, {here}, {0.4, 0.1, -0.2}, kFar_m, -0.2, Vec3::UnitZ()},
+      {{sheet()}, {here}, {0.51, 0.1, 0.2}, kFar_m, nothing},  // beyond its border
+      {{sheet()}, {here}, {0.6, 0.7, -0.2}, kFar_m, nothing},
+      {{sheet(), box()}, {here, pose({1, 0, 0})}, {0.6, 0, 0}, kFar_m, 0.3, -Vec3::UnitX(), 1},  // farther
+      {{box(), box(), box()}, {pose({5, 0, 0}), here, here}, {0.2, 0, 0}, kFar_m, 0.1, Vec3::UnitX(), 1},
+  };
+  for (const Row& row : rows) {
+    const NearestOnObjects nearest = nearest_on_objects(row.objects, row.X_PO, row.p_P, row.reach_m);
+    SCOPED_TRACE(testing::Message() << row.p_P.transpose() << ", reach " << row.reach_m);
+    const bool is_known = !std::isnan(row.distance_m);
+    EXPECT_EQ(nearest.object, is_known ? row.object : -1);
+    EXPECT_EQ(std::isnan(nearest.distance_m), !is_known);
+    if (is_known) {
+      EXPECT_NEAR(nearest.distance_m, row.distance_m, 1e-15);
+      EXPECT_TRUE(nearest.normal.isApprox(row.normal, 1e-15)) << nearest.normal.transpose();
+    } else {
+      EXPECT_TRUE(nearest.normal.array().isNaN().all());
+    }
+  }
 }
 
 TEST(PosedMeshes, AreTheObjectsAtTheirPoses) {

@@ -1,3 +1,5 @@
+// Scenes of meshes, whose points lie on the true surface; and the depth image of meshes against a plain ray
+// cast over all triangles.
 #include "scenarios/objects/mesh_scene.h"
 
 #include <gtest/gtest.h>
@@ -23,16 +25,10 @@
 namespace remote_touch::mesh_scene_test {
 namespace {
 
-// Scenes of meshes: what the cameras see lies on the true surface, objects and camera move along their paths,
-// and frames are pure functions.
-
 constexpr double kTopHeight_m = 0.05, kSpeed_m_per_s = 0.1;
 
 RigidTransform at(const Vec3& position, const Vec3& turn = Vec3::Zero()) {
-  RigidTransform X = RigidTransform::Identity();
-  X.linear() = rotation(turn).toRotationMatrix();
-  X.translation() = position;
-  return X;
+  return Eigen::Translation3d(position) * rotation(turn);
 }
 SceneMesh object(const TriangleMesh& mesh, PosePath path, bool is_closed = true,
                  std::optional<std::uint32_t> colour = {}) {
@@ -64,8 +60,8 @@ MeshScene::Settings ideal() {
   return s;
 }
 MeshScene made(const MeshScene::Settings& s, std::vector<SceneMesh> meshes,
-               std::optional<PosePath> camera = {}, std::uint64_t seed = 1) {
-  return MeshScene(s, std::move(meshes), std::move(camera), NoiseKey{seed}, scenes::kernels());
+               std::optional<PosePath> camera = {}) {
+  return MeshScene(s, std::move(meshes), std::move(camera), NoiseKey{1}, scenes::kernels());
 }
 
 // Every measured point of the frames is on the true surface. Returns the number of points.
@@ -181,82 +177,12 @@ TEST(MeshScene, ACameraThatMovesSeesTheSameSurface) {
   }
 }
 
-TEST(MeshScene, TheMiddleOfTheImageIsWhereTheCameraLooks) {
-  MeshScene::Settings s = ideal();
-  s.sensor.camera.width = 97, s.sensor.camera.height = 73;
-  s.sensor.camera.target_position_m = {0.02, kTopHeight_m, 0.01};
-  const PointCloud cloud = made(s, {object(box(), PosePath(at({0, 0, 0}))), table()}).cloud(0);
-  EXPECT_LT((cloud.point(36 * 97 + 48) - s.sensor.camera.target_position_m).norm(), 1e-12);
-}
-
-TEST(MeshScene, MeasuredPointsAreNearTheSurface) {
-  for (const DepthSensorKind kind : {DepthSensorKind::structured_light, DepthSensorKind::active_stereo}) {
-    MeshScene::Settings s;
-    s.sensor.camera.width = 240, s.sensor.camera.height = 180, s.sensor.camera.focal_px = 250;
-    s.sensor.sensor = kind;
-    const MeshScene scene = made(s, {object(box(), rise()), table()});
-    EXPECT_EQ(scene.frame_count(), std::numeric_limits<int>::max());
-    double squares = 0;
-    int measured = 0, lost = 0;
-    for (const int frame : {0, 30}) {
-      const PointCloud cloud = scene.cloud(frame);
-      for (std::size_t i = 0; i < cloud.size(); ++i) {
-        const double distance = scene.signed_distance(cloud.point(i), scene.captured_s(frame));
-        if (!cloud.is_measured(i)) ++lost;
-        if (std::isnan(distance)) continue;
-        squares += distance * distance, ++measured;
-      }
-    }
-    EXPECT_GT(measured, 50000);
-    EXPECT_GT(lost, 200);
-    // The noise of the disparity is 0.3 to 8 mm of depth between 0.5 and 1.1 m.
-    EXPECT_LT(std::sqrt(squares / measured), 0.008);
-    EXPECT_GT(std::sqrt(squares / measured), 0.0003);
-  }
-}
-
-TEST(MeshScene, FramesArePureFunctions) {
-  for (const DepthSensorKind kind : {DepthSensorKind::simple, DepthSensorKind::active_stereo}) {
-    MeshScene::Settings s = small();
-    s.sensor.sensor = kind;
-    const auto fresh = [&](std::uint64_t seed) {
-      return made(s, {object(box(), rise(), true, 0x10A020), table()}, {}, seed);
-    };
-    const MeshScene scene = fresh(1);
-    const PointCloud seventh = scene.cloud(7), third = scene.cloud(3);
-    const int threads = omp_get_max_threads();
-    omp_set_num_threads(threads == 1 ? 3 : 1);
-    const MeshScene again = fresh(1);
-    EXPECT_TRUE(scenes::same_clouds(again.cloud(3), third));
-    EXPECT_TRUE(scenes::same_clouds(again.cloud(7), seventh));
-    omp_set_num_threads(threads);
-    EXPECT_FALSE(scenes::same_clouds(scene.cloud(8), seventh));
-    EXPECT_FALSE(scenes::same_clouds(fresh(2).cloud(7), seventh));
-  }
-}
-
-}  // namespace
-}  // namespace remote_touch::mesh_scene_test
-
-namespace remote_touch::depth_raster_test {
-namespace {
-
-// The depth image of meshes against a plain ray cast over all triangles, closed forms, and its promises: no
-// gaps, and the same bits with every number of threads.
-
 CameraIntrinsics small_camera() {
   return {90, 70, 80, 82, 44.3, 34.9};
 }
 
 RasterMesh before(const TriangleMesh& mesh, const RigidTransform& X_CO, bool is_closed) {
   return {mesh.vertices, mesh.triangles, X_CO, is_closed};
-}
-
-RigidTransform at(const Vec3& position, const Vec3& turn = Vec3::Zero()) {
-  RigidTransform X = RigidTransform::Identity();
-  X.linear() = rotation(turn).toRotationMatrix();
-  X.translation() = position;
-  return X;
 }
 
 struct Hit {
@@ -337,6 +263,7 @@ TriangleMesh ring_ball(double radius, int rings, int columns) {
   return ball;
 }
 
+// Of triangles that begin behind the camera, only the part before it is drawn.
 TEST(DepthRaster, IsThatOfRayCastingOverTrianglesWithoutOrder) {
   for (const unsigned seed : {1u, 2u}) {
     const TriangleMesh soup = triangle_soup(60, 0.7, {0, 0, 1.5}, seed);
@@ -344,6 +271,9 @@ TEST(DepthRaster, IsThatOfRayCastingOverTrianglesWithoutOrder) {
     const int closed = expect_that_of_ray_casting(small_camera(), {before(soup, at(Vec3::Zero()), true)});
     EXPECT_GT(open, closed);
     EXPECT_GT(closed, 1000);
+    const TriangleMesh around = triangle_soup(8, 2, {0.3, 0.2, 0}, 10 + seed);
+    EXPECT_GT(expect_that_of_ray_casting(small_camera(), {before(around, at(Vec3::Zero()), false)}), 500);
+    expect_that_of_ray_casting(small_camera(), {before(around, at(Vec3::Zero()), true)});
   }
 }
 
@@ -356,32 +286,6 @@ TEST(DepthRaster, IsThatOfRayCastingOverSeveralBodiesAtPoses) {
         before(body, at({0.02, -0.05, 0.5}, {turn, 0, 0.5 * turn}), false)};
     EXPECT_GT(expect_that_of_ray_casting(small_camera(), seen), 300);
   }
-}
-
-TEST(DepthRaster, DrawsTrianglesThroughTheImagePlane) {
-  for (const unsigned seed : {11u, 12u}) {
-    const TriangleMesh soup = triangle_soup(8, 2, {0.3, 0.2, 0}, seed);
-    EXPECT_GT(expect_that_of_ray_casting(small_camera(), {before(soup, at(Vec3::Zero()), false)}), 500);
-    expect_that_of_ray_casting(small_camera(), {before(soup, at(Vec3::Zero()), true)});
-  }
-}
-
-TEST(DepthRaster, AFloorThatBeginsBehindTheCameraHasItsDepth) {
-  constexpr double kHeight_m = 0.5, kLength_m = 5;
-  const TriangleMesh floor = {
-      {{-40, kHeight_m, -3}, {40, kHeight_m, -3}, {40, kHeight_m, kLength_m}, {-40, kHeight_m, kLength_m}},
-      {{0, 1, 2}, {0, 2, 3}}};
-  const CameraIntrinsics camera = small_camera();
-  const RasterImage image = depth_raster(camera, std::vector{before(floor, at(Vec3::Zero()), false)});
-  for (int v = 0; v < camera.height; ++v)
-    for (int u = 0; u < camera.width; ++u) {
-      const double z = image.depth.z_m[static_cast<std::size_t>(v) * camera.width + u];
-      const double depth = kHeight_m / scenes::ray(camera, u, v).y();
-      if (depth > 0 && depth < kLength_m)
-        EXPECT_NEAR(z, depth, 1e-12) << u << " " << v;
-      else
-        EXPECT_TRUE(std::isnan(z)) << u << " " << v;
-    }
 }
 
 TEST(DepthRaster, ACameraInsideABoxSeesItsWallsEverywhere) {
@@ -426,26 +330,21 @@ TEST(DepthRaster, RaysThroughVerticesMeetTheMesh) {
     ASSERT_NEAR(image.depth.z_m[i], mesh.vertices[i].z(), 1e-12) << i;
 }
 
-TEST(DepthRaster, OfEqualDepthsTheFirstIsSeen) {
+// Of equal depths the first is seen; a triangle in the plane of the rays of a column is not.
+TEST(DepthRaster, EqualEdgeOnAndMissingTrianglesHaveAnAnswer) {
   const TriangleMesh plate = {{{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}, {{0, 1, 2}, {0, 2, 3}}};
   const RasterMesh seen = before(plate, at(Vec3::Zero()), false);
   for (const int mesh : depth_raster(small_camera(), std::vector{seen, seen}).mesh) EXPECT_EQ(mesh, 0);
-}
-
-TEST(DepthRaster, ATriangleSeenEdgeOnIsNotDrawn) {
   const TriangleMesh wall = {{{0, -1, 0.5}, {0, 1, 0.5}, {0, 0, 2}}, {{0, 1, 2}}};
   const CameraIntrinsics camera{21, 21, 20, 20, 10, 10};  // the middle column is in the wall's plane
-  for (const double z : depth_raster(camera, std::vector{before(wall, at(Vec3::Zero()), false)}).depth.z_m)
-    EXPECT_TRUE(std::isnan(z));
-}
-
-TEST(DepthRaster, WithoutMeshesNothingIsSeen) {
-  const RasterImage image = depth_raster(small_camera(), {});
-  EXPECT_EQ(image.depth.z_m.size(), small_camera().pixels());
-  for (std::size_t i = 0; i < image.mesh.size(); ++i) {
-    EXPECT_TRUE(std::isnan(image.depth.z_m[i]));
-    EXPECT_EQ(image.mesh[i], -1);
-    EXPECT_EQ(image.triangle[i], -1);
+  for (const auto& meshes : {std::vector{before(wall, at(Vec3::Zero()), false)}, std::vector<RasterMesh>()}) {
+    const RasterImage image = depth_raster(camera, meshes);
+    ASSERT_EQ(image.depth.z_m.size(), camera.pixels());
+    for (std::size_t i = 0; i < image.mesh.size(); ++i) {
+      EXPECT_TRUE(std::isnan(image.depth.z_m[i]));
+      EXPECT_EQ(image.mesh[i], -1);
+      EXPECT_EQ(image.triangle[i], -1);
+    }
   }
 }
 
@@ -467,4 +366,4 @@ TEST(DepthRaster, TheBitsDoNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace remote_touch::depth_raster_test
+}  // namespace remote_touch::mesh_scene_test

@@ -47,55 +47,35 @@ double error_of(const Eigen::Matrix3d& R) {
   return (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
 }
 
-class PoseMatrices : public testing::Test {
+class PoseFiles : public testing::Test {
  protected:
   std::vector<std::optional<RigidTransform>> read(const std::string& bytes) const {
     return read_poses(folder_.write("poses.txt", bytes), PoseLines::of_frames).poses;
   }
-  void expect_refused(const std::string& bytes, int line, const std::string& part) const {
-    const std::string text = refusal([&] { read(bytes); });
-    EXPECT_HAS(text, (folder_ / "poses.txt").string() + ":" + std::to_string(line) + ": ");
-    EXPECT_HAS(text, part);
+  PosePath read_path(const std::string& bytes) const {
+    const PoseFile poses = read_poses(folder_.write("path.txt", bytes), PoseLines::stamped);
+    return path_of(poses, poses.stamps_s.front());
   }
 
-  const TestFolder folder_{"pose_matrices_test"};
+  const TestFolder folder_{"pose_file_test"};
 };
 
-TEST_F(PoseMatrices, AreReadRowByRow) {
-  const auto poses = read(kIdentity + "\n" + kQuarterTurn + "\n");
-  ASSERT_EQ(poses.size(), 2u);
+TEST_F(PoseFiles, OfFramesAreReadRowByRow) {
+  const auto poses = read("\xEF\xBB\xBF# r00 r01\r\n" + kIdentity + "\r\n  # more\r\n\t" + kQuarterTurn +
+                          " \r\n" + kUnknown + "\n+1 0.0 -0 1e-2 0 1.0E0 0 +2.5e-1 0 0 1 -.5 0 0 0 1.");
+  ASSERT_EQ(poses.size(), 4u);
   EXPECT_TRUE(poses[0]->matrix().isIdentity(0));
   EXPECT_LT((*poses[1] * Vec3(1, 0, 0) - Vec3(0.1, 1.2, 0.3)).norm(), 1e-15);
   EXPECT_LT((*poses[1] * Vec3(0, 1, 0) - Vec3(-0.9, 0.2, 0.3)).norm(), 1e-15);
   EXPECT_EQ(poses[1]->translation(), Vec3(0.1, 0.2, 0.3));
   EXPECT_EQ(poses[1]->matrix().row(3), Eigen::RowVector4d(0, 0, 0, 1));
-}
-
-TEST_F(PoseMatrices, AreUnknownInALineOfNan) {
-  const auto poses = read(kUnknown + "\n" + kIdentity + "\n" + kUnknown);
-  ASSERT_EQ(poses.size(), 3u);
-  EXPECT_FALSE(poses[0]);
-  EXPECT_TRUE(poses[1]);
-  EXPECT_FALSE(poses[2]);
-}
-
-TEST_F(PoseMatrices, MayHaveCommentsAndAnyLineEnds) {
-  const auto poses =
-      read("\xEF\xBB\xBF# r00 r01\r\n" + kIdentity + "\r\n  # more\r\n\t" + kQuarterTurn + " \r\n");
-  ASSERT_EQ(poses.size(), 2u);
-  EXPECT_EQ(poses[1]->translation().z(), 0.3);
-  EXPECT_EQ(read("# nothing\n").size(), 0u);
-  EXPECT_EQ(read("").size(), 0u);
-}
-
-TEST_F(PoseMatrices, MayHaveSignsAndExponents) {
-  const auto poses = read("+1 0.0 -0 1e-2 0 1.0E0 0 +2.5e-1 0 0 1 -.5 0 0 0 1.");
-  ASSERT_EQ(poses.size(), 1u);
-  EXPECT_EQ(poses[0]->translation(), Vec3(0.01, 0.25, -0.5));
+  EXPECT_FALSE(poses[2]) << "not known";
+  EXPECT_EQ(poses[3]->translation(), Vec3(0.01, 0.25, -0.5));
+  for (const char* nothing : {"", "# nothing\n"}) EXPECT_EQ(read(nothing).size(), 0u);
 }
 
 // The digits of a file are few. The result is the nearest rotation, which the singular values give.
-TEST_F(PoseMatrices, BecomeTheNearestRotation) {
+TEST_F(PoseFiles, BecomeTheNearestRotation) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> off(-2e-4, 2e-4);
   for (int i = 0; i < 100; ++i) {
@@ -112,64 +92,7 @@ TEST_F(PoseMatrices, BecomeTheNearestRotation) {
   }
 }
 
-TEST_F(PoseMatrices, AreRefusedIfTheyAreNotRigid) {
-  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
-  EXPECT_TRUE(read(line_of(1.0004 * I, Vec3::Zero(), "%.17g"))[0]);  // 1.0004^2 - 1 = 0.0008
-  expect_refused(kIdentity + "\n" + line_of(1.001 * I, Vec3::Zero(), "%.17g"), 2, "expected a rigid pose");
-  expect_refused(line_of(1000 * I, Vec3::Zero(), "%.17g"), 1, "expected a rigid pose");
-  expect_refused(line_of(1e200 * I, Vec3::Zero(), "%.17g"), 1, "expected a rigid pose");
-  expect_refused(line_of(0 * I, Vec3::Zero(), "%.17g"), 1, "expected a rigid pose");
-  Eigen::Matrix3d sheared = I;
-  sheared(0, 1) = 0.0011;
-  expect_refused(line_of(sheared, Vec3::Zero(), "%.17g"), 1, "expected a rigid pose");
-  Eigen::Matrix3d mirror = I;
-  mirror(2, 2) = -1;
-  expect_refused(line_of(mirror, Vec3::Zero(), "%.17g"), 1, "mirrors");
-}
-
-TEST_F(PoseMatrices, AreRefusedIfTheLastRowIsAnother) {
-  const std::string rows = "1 0 0 0 0 1 0 0 0 0 1 0 ";
-  EXPECT_TRUE(read(rows + "0 0 0 1.0000009")[0]);
-  for (const char* last : {"0 0 0 1.000002", "0 0 0 0", "0.000002 0 0 1", "0 0 -0.5 1"})
-    expect_refused(rows + last, 1, "the last row is not 0 0 0 1");
-  // A matrix column by column has its translation there.
-  expect_refused("1 0 0 0 0 1 0 0 0 0 1 0 0.1 0.2 0.3 1", 1, "row by row");
-}
-
-TEST_F(PoseMatrices, AreRefusedWithAnotherCountOfNumbers) {
-  expect_refused(kIdentity + "\n" + kIdentity + " 0\n", 2, "has 17 words: expected 16 numbers");
-  expect_refused("# comment\n1 0 0 0 0 1 0 0 0 0 1 0\n", 2, "has 12 words");
-  expect_refused(kIdentity + "\n\n" + kIdentity + "\n", 2, "is empty");
-  expect_refused("\n" + kIdentity + "\n", 1, "is empty");
-  EXPECT_EQ(read(kIdentity + "\n \t\r\n\n").size(), 1u);
-}
-
-TEST_F(PoseMatrices, AreRefusedWithWordsThatAreNotNumbers) {
-  for (const char* word : {"0x1", "1,0", "1.0f", "one", "--1", "+-1", "+", "1e999"}) {
-    expect_refused(word + kIdentity.substr(1), 1, "': expected a number");
-    expect_refused(word + kIdentity.substr(1), 1, word);
-  }
-}
-
-TEST_F(PoseMatrices, AreRefusedWithNumbersThatAreNotFinite) {
-  expect_refused("nan" + kIdentity.substr(1), 1, "has nan beside numbers");
-  expect_refused("inf" + kIdentity.substr(1), 1, "has a number that is not finite");
-  expect_refused("1 0 0 -inf 0 1 0 0 0 0 1 0 0 0 0 1", 1, "has a number that is not finite");
-}
-
-TEST_F(PoseMatrices, AreRefusedFarFromTheOrigin) {
-  EXPECT_TRUE(read("1 0 0 1000 0 1 0 0 0 0 1 0 0 0 0 1")[0]);
-  expect_refused("1 0 0 0 0 1 0 -1001 0 0 1 0 0 0 0 1", 1, "more than 1000 m from the origin");
-  expect_refused("1 0 0 0 0 1 0 -2000 0 0 1 0 0 0 0 1", 1,
-                 "; positions may be millimetres instead of metres");
-}
-
-TEST_F(PoseMatrices, AreRefusedWithoutTheirFile) {
-  EXPECT_HAS(refusal([&] { read_poses(folder_ / "none.txt", PoseLines::of_frames); }),
-             (folder_ / "none.txt").string() + ": cannot be read");
-}
-
-TEST_F(PoseMatrices, MayNameTheirColumnsInTheFirstComment) {
+TEST_F(PoseFiles, MayNameTheirColumnsInTheFirstComment) {
   const std::string names = "# frame r00 r01 r02 tx r10 r11 r12 ty r20 r21 r22 tz error\n";
   const auto poses = read(names + "0 0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3 0.4\n# a break\n" +
                           "1 nan nan nan nan nan nan nan nan nan nan nan nan 0.4\n");
@@ -177,30 +100,94 @@ TEST_F(PoseMatrices, MayNameTheirColumnsInTheFirstComment) {
   ASSERT_TRUE(poses[0]);
   EXPECT_EQ(poses[0]->matrix(), read(kQuarterTurn)[0]->matrix());
   EXPECT_FALSE(poses[1]);
-  expect_refused(names + "1 0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3 0.4\n", 2, "is for frame 1: expected frame 0");
-  expect_refused(names + "0 0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3\n", 2, "has 13 words: expected 14");
 }
 
-class StampedPoses : public testing::Test {
- protected:
-  PosePath read(const std::string& bytes) const {
-    const PoseFile poses = read_poses(folder_.write("path.txt", bytes), PoseLines::stamped);
-    return path_of(poses, poses.stamps_s.front());
+// One row for each refusal: the line, and what is wrong in it.
+TEST_F(PoseFiles, OfFramesAreRefused) {
+  struct Row {
+    std::string bytes, line, text;
+  };
+  const Eigen::Matrix3d I = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d sheared = I, mirror = I;
+  sheared(0, 1) = 0.0011, mirror(2, 2) = -1;
+  const auto of = [](const Eigen::Matrix3d& R) { return line_of(R, Vec3::Zero(), "%.17g"); };
+  const std::string rows_of_pose = "1 0 0 0 0 1 0 0 0 0 1 0 ", rest = kIdentity.substr(1),
+                    rigid = "expected a rigid pose";
+  const std::string frame_names = "# frame r00 r01 r02 tx r10 r11 r12 ty r20 r21 r22 tz error\n";
+  const std::string stamped_names = "# t tx ty tz qx qy qz qw\n";
+  std::vector<Row> rows = {
+      {kIdentity + "\n" + of(1.001 * I), "2", rigid},
+      {of(1e200 * I), "1", rigid},
+      {of(0 * I), "1", rigid},
+      {of(sheared), "1", rigid},
+      {of(mirror), "1", "mirrors"},
+      {rows_of_pose + "0 0 0 1.000002", "1", "the last row is not 0 0 0 1"},
+      {rows_of_pose + "0 0 -0.5 1", "1", "the last row is not 0 0 0 1"},
+      {rows_of_pose + "0.1 0.2 0.3 1", "1", "row by row"},  // column by column: the translation is there
+      {rows_of_pose + "0 0 0 inf", "1", "has a number that is not finite"},
+      {kIdentity + "\n" + kIdentity + " 0\n", "2", "has 17 words: expected 16 numbers"},
+      {"# comment\n1 0 0 0 0 1 0 0 0 0 1 0\n", "2", "has 12 words"},
+      {kIdentity + "\n\n" + kIdentity + "\n", "2", "is empty"},
+      {"\n" + kIdentity + "\n", "1", "is empty"},
+      {"nan" + rest, "1", "has nan beside numbers"},
+      {"inf" + rest, "1", "has a number that is not finite"},
+      {"1 0 0 0 0 1 0 -1001 0 0 1 0 0 0 0 1", "1", "more than 1000 m from the origin"},
+      {"1 0 0 0 0 1 0 -2000 0 0 1 0 0 0 0 1", "1", "; positions may be millimetres instead of metres"},
+      {frame_names + "1 0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3 0.4\n", "2", "is for frame 1: expected frame 0"},
+      {frame_names + "0 0 -1 0 0.1 1 0 0 0.2 0 0 1 0.3\n", "2", "has 13 words: expected 14"},
+      {stamped_names + "0 0 0 0 0 0 0 1\n", "2", "has a time: expected one pose for each frame"},
+  };
+  for (const char* word : {"0x1", "1,0", "1.0f", "one", "--1", "+-1", "+", "1e999"})
+    rows.push_back({word + rest, "1", std::string("'") + word + "': expected a number"});
+  for (const Row& row : rows) {
+    const std::string text = refusal([&] { read(row.bytes); });
+    EXPECT_EQ(text.rfind((folder_ / "poses.txt").string() + ":" + row.line + ": ", 0), 0u) << text;
+    EXPECT_HAS(text, row.text);
   }
-  void expect_refused(const std::string& bytes, int line, const std::string& part) const {
-    const std::string text = refusal([&] { read(bytes); });
-    EXPECT_HAS(text, (folder_ / "path.txt").string() + ":" + std::to_string(line) + ": ");
-    EXPECT_HAS(text, part);
-  }
+  EXPECT_TRUE(read(of(1.0004 * I))[0]) << "1.0004^2 - 1 = 0.0008";
+  EXPECT_TRUE(read(rows_of_pose + "0 0 0 1.0000009")[0]);
+  EXPECT_TRUE(read("1 0 0 1000 0 1 0 0 0 0 1 0 0 0 0 1")[0]);
+  EXPECT_EQ(read(kIdentity + "\n \t\r\n\n").size(), 1u);
+}
 
-  const TestFolder folder_{"stamped_poses_test"};
-};
+TEST_F(PoseFiles, WithStampsAreRefused) {
+  struct Row {
+    std::string bytes, line, text;
+  };
+  const std::string good = "0 0 0 0 0 0 0 1\n", rest = " 0 0 0 0 0 0 1\n";
+  const Row rows[] = {
+      {"1" + rest + "# comment\n2" + rest + "1.5" + rest, "4", "below that of the line before"},
+      {"-1e13" + rest, "1", "its time is above 1e12"},
+      {"inf" + rest, "1", "has a number that is not finite"},
+      {good + "1 0 0 0 0 0 0\n", "2", "has 7 words: expected lines 't tx ty tz qx qy qz qw'"},
+      {good + "1 0 0 0 0 0 0 1 0\n", "2", "has 9 words"},
+      {good + "1,0 0 0 0 0 0 0 1\n", "2", "'1,0' in column t: expected a number"},
+      {good + "1 0 nan 0 0 0 0 1\n", "2", "has a number that is not finite"},
+      {good + "1 0 0 1001 0 0 0 1\n", "2", "more than 1000 m from the origin"},
+      {"0 0 0 0 0 0 0 0.98\n", "1", "its quaternion has the norm 0.98"},
+      {"0 0 0 0 0 0 0 1.02\n", "1", "expected 1, within 0.01"},
+      {"# t tx ty qx qy qz qw\n", "1", "names some columns of a pose: expected tx ty tz"},
+      {"# t tx ty tz qx qy qz\n", "1", "names some columns of a pose"},
+      {"# t tx ty tz qx qy qz qw x_mm\n", "1", "column x_mm: expected one column of tx"},
+      {"# tx ty tz qx qy qz qw\n0 0 0 0 0 0 1\n", "2", "has no time"},
+  };
+  const std::string file = (folder_ / "path.txt").string();
+  for (const Row& row : rows) {
+    const std::string text = refusal([&] { read_path(row.bytes); });
+    EXPECT_EQ(text.rfind(file + ":" + row.line + ": ", 0), 0u) << text;
+    EXPECT_HAS(text, row.text);
+  }
+  for (const char* bytes : {"", "# nothing\n", "\n\n"})
+    EXPECT_HAS(refusal([&] { read_path(bytes); }), file + ": has no pose");
+  for (const PoseLines lines : {PoseLines::stamped, PoseLines::of_frames})
+    EXPECT_HAS(refusal([&] { read_poses(folder_ / "none.txt", lines); }), "none.txt: cannot be read");
+}
 
 // The quaternion's real part is the last number. (0, 0, s, s) is a quarter turn about z.
-TEST_F(StampedPoses, AreReadInTheFormatOfTum) {
+TEST_F(PoseFiles, AreReadInTheFormatOfTum) {
   const PosePath path =
-      read("\xEF\xBB\xBF# timestamp tx ty tz qx qy qz qw\r\n1305031102.25 1 2 3 0 0 0 1\r\n\r\n" +
-           std::string("1305031102.75 2 2 3 0 0 0.7071067811865476 0.7071067811865476\r\n"));
+      read_path("\xEF\xBB\xBF# timestamp tx ty tz qx qy qz qw\r\n1305031102.25 1 2 3 0 0 0 1\r\n\r\n" +
+                std::string("1305031102.75 2 2 3 0 0 0.7071067811865476 0.7071067811865476\r\n"));
   ASSERT_EQ(path.poses().size(), 2u);
   EXPECT_EQ(path.poses()[0].time_s, 0);
   EXPECT_EQ(path.duration_s(), 0.5);
@@ -211,40 +198,14 @@ TEST_F(StampedPoses, AreReadInTheFormatOfTum) {
   EXPECT_LT((path.at(0.25) * Vec3(1, 0, 0) - Vec3(1.5 + half, 2 + half, 3)).norm(), 4e-15);
 }
 
-TEST_F(StampedPoses, HaveTheirQuaternionsNormalised) {
-  const Eigen::Matrix3d R = read("0 0 0 0 0.6 0 0 0.806").at(0).linear();
+TEST_F(PoseFiles, HaveTheirQuaternionsNormalised) {
+  const Eigen::Matrix3d R = read_path("0 0 0 0 0.6 0 0 0.806").at(0).linear();
   EXPECT_LT(error_of(R), 1e-15);
   const Eigen::Matrix3d expected = Eigen::Quaterniond(0.806, 0.6, 0, 0).normalized().toRotationMatrix();
   EXPECT_LT((R - expected).norm(), 1e-15);
-  expect_refused("0 0 0 0 0 0 0 0.98\n", 1, "its quaternion has the norm 0.98");
-  expect_refused("0 0 0 0 0 0 0 1.02\n", 1, "expected 1, within 0.01");
-  expect_refused("0 0 0 0 0 0 0 0\n", 1, "its quaternion has the norm 0.0");
 }
 
-TEST_F(StampedPoses, AreRefusedIfTheirTimesDoNotIncrease) {
-  const std::string rest = " 0 0 0 0 0 0 1\n";
-  expect_refused("1" + rest + "# comment\n2" + rest + "1.5" + rest, 4, "below that of the line before");
-  expect_refused("-1e13" + rest, 1, "its time is above 1e12");
-}
-
-TEST_F(StampedPoses, AreRefusedInLinesOfOtherWords) {
-  const std::string good = "0 0 0 0 0 0 0 1\n";
-  expect_refused(good + "1 0 0 0 0 0 0\n", 2, "has 7 words: expected lines 't tx ty tz qx qy qz qw'");
-  expect_refused(good + "1 0 0 0 0 0 0 1 0\n", 2, "has 9 words");
-  expect_refused(good + "1,0 0 0 0 0 0 0 1\n", 2, "'1,0' in column t: expected a number");
-  expect_refused(good + "1 0 nan 0 0 0 0 1\n", 2, "has a number that is not finite");
-  expect_refused(good + "1 0 0 0 0 0 inf 1\n", 2, "has a number that is not finite");
-  expect_refused(good + "1 0 0 1001 0 0 0 1\n", 2, "more than 1000 m from the origin");
-}
-
-TEST_F(StampedPoses, AreRefusedWithoutAnyPose) {
-  for (const char* bytes : {"", "# nothing\n", "\n\n"})
-    EXPECT_HAS(refusal([&] { read(bytes); }), (folder_ / "path.txt").string() + ": has no pose");
-  EXPECT_HAS(refusal([&] { read_poses(folder_ / "none.txt", PoseLines::stamped); }),
-             (folder_ / "none.txt").string() + ": cannot be read");
-}
-
-TEST_F(StampedPoses, OfEqualTimesAreReadOnceWithANote) {
+TEST_F(PoseFiles, OfEqualTimesAreReadOnceWithANote) {
   const fs::path file = folder_.write("path.txt", "1 0 0 0 0 0 0 1\n1 5 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
   const PoseFile poses = read_poses(file, PoseLines::stamped);
   ASSERT_EQ(poses.poses.size(), 2u);
@@ -252,8 +213,6 @@ TEST_F(StampedPoses, OfEqualTimesAreReadOnceWithANote) {
   ASSERT_EQ(kinds_of(poses.notes), Kinds{"unusual poses"});
   EXPECT_HAS(poses.notes[0].text, "1 line(s) have the time of the line before");
 }
-
-// --- columns ---
 
 // The numbers of some poses by the names of their columns.
 struct Table {
@@ -300,17 +259,17 @@ Table random_table(bool has_quaternions, std::mt19937& random) {
 }
 
 // The same columns in any order, with their names, are the same poses to the last bit.
-TEST_F(StampedPoses, AreReadByTheNamesOfTheirColumnsInAnyOrder) {
+TEST_F(PoseFiles, AreReadByTheNamesOfTheirColumnsInAnyOrder) {
   std::mt19937 random(11);
   for (const bool has_quaternions : {true, false}) {
     const Table table = random_table(has_quaternions, random);
     std::vector<std::size_t> order(table.names.size());
     std::iota(order.begin(), order.end(), 0u);
-    const PosePath expected = read(table.text(order, true));
+    const PosePath expected = read_path(table.text(order, true));
     ASSERT_EQ(expected.poses().size(), 5u);
     for (int i = 0; i < 50; ++i) {
       std::shuffle(order.begin(), order.end(), random);
-      const PosePath path = read(table.text(order, i % 2 == 0));
+      const PosePath path = read_path(table.text(order, i % 2 == 0));
       for (std::size_t k = 0; k < 5; ++k) {
         EXPECT_EQ(path.poses()[k].time_s, expected.poses()[k].time_s);
         EXPECT_EQ(path.poses()[k].X.matrix(), expected.poses()[k].X.matrix());
@@ -319,24 +278,18 @@ TEST_F(StampedPoses, AreReadByTheNamesOfTheirColumnsInAnyOrder) {
   }
 }
 
-TEST_F(StampedPoses, HaveTheUnitsOfTheirColumns) {
+TEST_F(PoseFiles, HaveTheUnitsOfTheirColumns) {
   for (const char* names :
        {"# t_ms tx_mm ty_mm tz_mm qx qy qz qw", "#Time\t[ms], P_X [mm], py_mm, z (mm), qx [], qy, qz, qw"}) {
-    const PosePath path = read(std::string(names) + "\n500 250 -750 1000 0 0 0 1\n1500 0 0 0 0 0 0 1\n");
+    const PosePath path = read_path(std::string(names) + "\n500 250 -750 1000 0 0 0 1\n1500 0 0 0 0 0 0 1\n");
     EXPECT_EQ(path.poses()[0].X.translation(), Vec3(0.25, -0.75, 1));
     EXPECT_DOUBLE_EQ(path.duration_s(), 1);
   }
-  expect_refused("# t tx ty qx qy qz qw\n", 1, "names some columns of a pose: expected tx ty tz");
-  expect_refused("# t tx ty tz qx qy qz\n", 1, "names some columns of a pose");
-  expect_refused("# t tx ty tz qx qy qz qw x_mm\n", 1, "column x_mm: expected one column of tx");
-  expect_refused("# tx ty tz qx qy qz qw\n0 0 0 0 0 0 1\n", 2, "has no time");
   const fs::path file = folder_.write("path.txt", "# camera poses in mm.\n0 0 0 0 0 0 0 1\n");
   const PoseFile poses = read_poses(file, PoseLines::stamped);
   ASSERT_EQ(kinds_of(poses.notes), Kinds{"unusual poses"});
   EXPECT_HAS(poses.notes[0].text, "path.txt:1: the comment says 'mm', which is not read");
 }
-
-// --- improbable poses ---
 
 std::vector<Note> notes_on(const std::vector<double>& times_s, const Vec3& step_m,
                            const Eigen::Quaterniond& turn) {

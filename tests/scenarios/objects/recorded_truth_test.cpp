@@ -1,3 +1,5 @@
+// The true surface in the frames of a recording, from meshes that a test provides, and what is refused; and
+// the truth of recordings that are kept outside of the repository.
 #include "scenarios/objects/recorded_truth.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +20,6 @@
 #include "tests/support/recorded_data.h"
 #include "tests/support/test_files.h"
 
-// The true surface in the frames of a recording, from meshes that a test provides, and what is refused.
 namespace remote_touch::recorded_truth_test {
 namespace {
 
@@ -75,51 +76,32 @@ void expect_unknown(const NearestOnObjects& nearest) {
 }
 
 // The front of the box is at z = 0.9 in frame 0, and at z = 0.8 and x from 0.4 to 0.6 in frame 1.
-TEST_F(Truths, FollowThePosesOfTheirFrames) {
-  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + at(0.5, 0, 0.9));
-  const RecordedTruth truth = read(2);
-  const NearestOnObjects first = truth.at(0, {0.05, 0.02, 0.88});
-  EXPECT_NEAR(first.distance_m, 0.02, 1e-15);
-  EXPECT_TRUE(first.normal.isApprox(-Vec3::UnitZ(), 1e-15));
-  EXPECT_EQ(first.object, 0);
-  EXPECT_NEAR(truth.at(0, {0.05, 0.02, 0.91}).distance_m, -0.01, 1e-15);
-  expect_unknown(truth.at(1, {0.05, 0.02, 0.88}));
-  EXPECT_NEAR(truth.at(1, {0.55, 0.02, 0.79}).distance_m, 0.01, 1e-15);
-}
-
-TEST_F(Truths, KeepTheirObjectsApart) {
-  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + kUnknown + at(0, 0, 1));
-  add("table", sheet(), kUnknown + at(0, 0, 0.86) + at(0, 0, 0.89));
-  const RecordedTruth truth = read(3);
-  ASSERT_EQ(truth.objects().size(), 2u);
-  EXPECT_EQ(truth.objects()[1].name, "table");
-  EXPECT_TRUE(truth.poses(0)[0] && !truth.poses(0)[1] && !truth.poses(1)[0] && truth.poses(1)[1]);
-  EXPECT_EQ(truth.poses(2)[1]->translation(), Vec3(0, 0, 0.89));
+TEST_F(Truths, FollowTheirPosesAndStayApart) {
+  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + at(0.5, 0, 0.9) + kUnknown + at(0, 0, 1));
+  add("table", sheet(), kUnknown + kUnknown + at(0, 0, 0.86) + at(0, 0, 0.89));
+  const RecordedTruth truth = read(4);
+  EXPECT_EQ(truth.objects().at(1).name, "table");
+  EXPECT_TRUE(truth.poses(0)[0] && !truth.poses(0)[1] && !truth.poses(2)[0] && truth.poses(2)[1]);
+  EXPECT_EQ(truth.poses(3)[1]->translation(), Vec3(0, 0, 0.89));
   const Vec3 p_C(0.05, 0.02, 0.88);
-  EXPECT_EQ(truth.at(0, p_C).object, 0);
-  EXPECT_NEAR(truth.at(0, p_C).distance_m, 0.02, 1e-15);
-  EXPECT_EQ(truth.at(1, p_C).object, 1);
-  EXPECT_NEAR(truth.at(1, p_C).distance_m, -0.02, 1e-15);
-  EXPECT_EQ(truth.at(2, p_C).object, 1);
-  EXPECT_NEAR(truth.at(2, p_C).distance_m, 0.01, 1e-15);
-}
-
-TEST_F(Truths, AreUnknownBeyondTheReachAndWithoutAPose) {
-  add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + kUnknown);
-  const RecordedTruth truth = read(2);
-  EXPECT_NEAR(truth.at(0, {0, 0.02, 0.871}).distance_m, 0.029, 1e-15);
-  expect_unknown(truth.at(0, {0, 0.02, 0.869}));
-  expect_unknown(truth.at(1, {0, 0.02, 0.9}));
-  expect_unknown(truth.at(0, Vec3::Constant(std::nan(""))));
-}
-
-TEST_F(Truths, EndAtTheBorderOfASheet) {
-  add("table", sheet(), at(0, 0, 1));
-  const RecordedTruth truth = read(1);
-  EXPECT_FALSE(truth.objects()[0].is_closed);
-  EXPECT_NEAR(truth.at(0, {0.49, 0, 0.99}).distance_m, 0.01, 1e-15);
-  EXPECT_NEAR(truth.at(0, {0.49, 0, 1.01}).distance_m, -0.01, 1e-15);
-  expect_unknown(truth.at(0, {0.501, 0, 0.99}));
+  EXPECT_TRUE(truth.at(0, p_C).normal.isApprox(-Vec3::UnitZ(), 1e-15));
+  expect_unknown(truth.at(1, p_C));
+  expect_unknown(truth.at(0, {0, 0.02, 0.869}));  // beyond the reach
+  struct Row {
+    std::size_t frame;
+    Vec3 p_C;
+    double distance_m;
+    int object;
+  };
+  const Row rows[] = {{0, p_C, 0.02, 0},
+                      {0, {0.05, 0.02, 0.91}, -0.01, 0},
+                      {1, {0.55, 0.02, 0.79}, 0.01, 0},
+                      {2, p_C, -0.02, 1},
+                      {3, p_C, 0.01, 1}};
+  for (const Row& row : rows) {
+    EXPECT_NEAR(truth.at(row.frame, row.p_C).distance_m, row.distance_m, 1e-15) << row.frame;
+    EXPECT_EQ(truth.at(row.frame, row.p_C).object, row.object) << row.frame;
+  }
 }
 
 TEST_F(Truths, HoldInsideTheMask) {
@@ -133,13 +115,6 @@ TEST_F(Truths, HoldInsideTheMask) {
   EXPECT_NEAR(truth.at(0, unproject(kCamera, 1, 1, 0.99)).distance_m, 0.01, 1e-15);
   expect_unknown(truth.at(0, unproject(kCamera, 2, 1, 0.99)));
   expect_unknown(truth.at(1, unproject(kCamera, 1, 1, 0.99)));
-}
-
-TEST_F(Truths, StateTheirUncertainty) {
-  add("table", sheet(), at(0, 0, 1));
-  EXPECT_TRUE(std::isnan(read(1).uncertainty_m()));
-  truth_.uncertainty_m = 0.003;
-  EXPECT_EQ(read(1).uncertainty_m(), 0.003);
 }
 
 // An object is a solid if its mesh is one, unless it is stated to be a sheet.
@@ -170,6 +145,39 @@ TEST_F(Truths, AreClosedInSpiteOfASmallFin) {
   expect_mesh_refused(meshes::inside_out(box), {}, "expected triangles counter-clockwise seen from outside");
 }
 
+TEST_F(Truths, AreRefusedIfAMeshIsNoSolidInMetres) {
+  struct Row {
+    TriangleMesh mesh;
+    std::optional<bool> closed;
+    std::string text;
+  };
+  const TriangleMesh box = box_mesh({0.2, 0.2, 0.2}), inverted = meshes::inside_out(box),
+                     slab = box_mesh({0.4, 0.2, 0.4}), post = box_mesh({0.1, 0.1, 0.1}, {0, 0.1, 0});
+  TriangleMesh open = box;
+  open.triangles.pop_back();
+  const std::string order = "expected triangles counter-clockwise";
+  const Row rows[] = {
+      {{}, {}, "no triangles: expected a mesh of triangles"},
+      {{{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}, {}, "1 triangle with a corner that is not a vertex"},
+      {{{{0, 0, 0}, {1, 0, 0}, {NAN, 1, 0}}, {{0, 1, 2}}}, {}, "1 vertex that is not finite"},
+      {{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}, {}, "no triangle has an area"},
+      {box_mesh({85, 85, 85}),
+       {},
+       "its bounding box has a diagonal of 147.224319 m: metres expected, these may be millimetres"},
+      {open, true, "not closed: 3 boundary edges (1 part, 11 triangles): expected a closed mesh"},
+      {inverted, true, "inside out): " + order},
+      {inverted, {}, "inside out): " + order},
+      {meshes::together(slab, meshes::inside_out(post)), {}, "a part of the mesh is inside out: " + order},
+  };
+  for (const Row& row : rows) expect_mesh_refused(row.mesh, row.closed, row.text);
+  truth_.objects.clear();
+  add("long", box_mesh({9.99, 0.1, 0.1}), at(0, 0, 1));
+  TriangleMesh stray = box;
+  stray.vertices.emplace_back(0, 0, 5000);  // no triangle uses it
+  add("stray", stray, at(0, 0, 1));
+  EXPECT_EQ(read(1).objects().size(), 2u);
+}
+
 TEST_F(Truths, AreRefusedWithAnotherNumberOfPosesThanFrames) {
   add("box", box_mesh({0.2, 0.2, 0.2}), at(0, 0, 1) + at(0, 0, 1));
   expect_refused("box.txt", "2 poses for 1 frames");
@@ -181,40 +189,6 @@ TEST_F(Truths, AreRefusedWithAnotherNumberOfPosesThanFrames) {
   truth_.objects.clear();
   add("box", box_mesh({0.2, 0.2, 0.2}), "1 0 0\n");
   expect_refused("box.txt:1", "has 3 words");
-}
-
-TEST_F(Truths, AreRefusedWithoutASurface) {
-  expect_mesh_refused({}, {}, "no triangles: expected a mesh of triangles");
-  expect_mesh_refused({{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 2}}}, {},
-                      "1 triangle with a corner that is not a vertex");
-  expect_mesh_refused({{{0, 0, 0}, {1, 0, 0}, {NAN, 1, 0}}, {{0, 1, 2}}}, {}, "1 vertex that is not finite");
-  expect_mesh_refused({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}, {}, "no triangle has an area");
-}
-
-TEST_F(Truths, AreRefusedInMillimetres) {
-  expect_mesh_refused(
-      box_mesh({85, 85, 85}), {},
-      "its bounding box has a diagonal of 147.224319 m: metres expected, these may be millimetres");
-  truth_.objects.clear();
-  add("long", box_mesh({9.99, 0.1, 0.1}), at(0, 0, 1));
-  EXPECT_EQ(read(1).objects().size(), 1u);
-  TriangleMesh stray = box_mesh({0.1, 0.1, 0.1});
-  stray.vertices.emplace_back(0, 0, 5000);  // no triangle uses it
-  add("stray", stray, at(0, 0, 1));
-  EXPECT_EQ(read(1).objects().size(), 2u);
-}
-
-TEST_F(Truths, AreRefusedIfASolidIsOpenOrInsideOut) {
-  TriangleMesh open = box_mesh({0.2, 0.2, 0.2});
-  open.triangles.pop_back();
-  expect_mesh_refused(open, true,
-                      "not closed: 3 boundary edges (1 part, 11 triangles): expected a closed mesh");
-  const TriangleMesh inverted = meshes::inside_out(box_mesh({0.2, 0.2, 0.2}));
-  expect_mesh_refused(inverted, true, "inside out): expected triangles counter-clockwise seen from outside");
-  expect_mesh_refused(inverted, {}, "inside out): expected triangles counter-clockwise seen from outside");
-  const TriangleMesh slab = box_mesh({0.4, 0.2, 0.4}), post = box_mesh({0.1, 0.1, 0.1}, {0, 0.1, 0});
-  expect_mesh_refused(meshes::together(slab, meshes::inside_out(post)), {},
-                      "a part of the mesh is inside out: expected triangles counter-clockwise");
 }
 
 TEST_F(Truths, AreRefusedOutOfView) {
@@ -241,8 +215,7 @@ TEST_F(Truths, PassOnTheRefusalOfAReader) {
 }  // namespace
 }  // namespace remote_touch::recorded_truth_test
 
-// Truth of recordings that are kept outside of the repository, against their depth images; skipped where they
-// are missing.
+// Against the depth images of the recordings; skipped where they are missing.
 namespace remote_touch::real_truth_test {
 namespace {
 
@@ -253,9 +226,7 @@ constexpr double kReach_m = 0.03;
 #define SKIP_WITHOUT(path) \
   if (!fs::exists(path)) GTEST_SKIP() << "recorded data are missing: " << (path)
 
-TriangleMesh mesh_in(const fs::path& file) {
-  return read_mesh(file);
-}
+const MeshReader kReader = [](const fs::path& file) { return read_mesh(file); };
 
 // The points of every seventh pixel that has a depth, in the camera frame.
 std::vector<Vec3> points_of(const fs::path& recording, int frame, const CameraIntrinsics& camera,
@@ -287,7 +258,7 @@ TEST(RecordedData, RenderedBoxIsAtItsTruth) {
   const CameraIntrinsics camera = {640, 480, 600, 600, 320, 240};
   const TruthFolder folder = find_truth(recording).value();
   ASSERT_EQ(folder.objects.size(), 1u);
-  const RecordedTruth truth(folder, std::vector<std::string>(49), kReach_m, mesh_in, camera);
+  const RecordedTruth truth(folder, std::vector<std::string>(49), kReach_m, kReader, camera);
   EXPECT_TRUE(truth.objects()[0].is_closed);
   std::vector<double> distances_m, sizes_m;
   for (const int frame : {0, 20, 48})
@@ -303,29 +274,18 @@ TEST(RecordedData, RenderedBoxIsAtItsTruth) {
   EXPECT_LT(quantile(sizes_m, 1), 0.0006);
 }
 
-TEST(RecordedData, TruthOfTheCubeHasThreeObjects) {
-  const fs::path recording = data_root() / "rgbd/visp_cube_dragon";
-  SKIP_WITHOUT(recording);
-  const CameraIntrinsics camera = {640, 480, 607.178467, 607.234253, 321.391296, 241.918228};
-  const RecordedTruth truth(find_truth(recording).value(), std::vector<std::string>(70), kReach_m, mesh_in,
-                            camera);
-  ASSERT_EQ(truth.objects().size(), 3u);
-  EXPECT_EQ(truth.objects()[0].name, "cube");
-  EXPECT_EQ(truth.objects()[1].name, "dragon");
-  EXPECT_EQ(truth.objects()[2].name, "table");
-  EXPECT_TRUE(truth.objects()[0].is_closed);
-  EXPECT_TRUE(truth.objects()[1].is_closed);  // apart from three fins
-  EXPECT_FALSE(truth.objects()[2].is_closed);
-}
-
 // The README of the recording states the errors along z: a median of -3.0 and a p90 of 5.0 mm for the cube in
 // the frames in which the camera is still. They are smaller across the faces.
 TEST(RecordedData, MeasuredCubeIsMillimetresFromItsTruth) {
   const fs::path recording = data_root() / "rgbd/visp_cube_dragon";
   SKIP_WITHOUT(recording);
   const CameraIntrinsics camera = {640, 480, 607.178467, 607.234253, 321.391296, 241.918228};
-  const RecordedTruth truth(find_truth(recording).value(), std::vector<std::string>(70), kReach_m, mesh_in,
+  const RecordedTruth truth(find_truth(recording).value(), std::vector<std::string>(70), kReach_m, kReader,
                             camera);
+  ASSERT_EQ(truth.objects().size(), 3u);
+  EXPECT_TRUE(truth.objects()[0].is_closed && truth.objects()[1].is_closed) << "apart from three fins";
+  EXPECT_EQ(truth.objects()[2].name, "table");
+  EXPECT_FALSE(truth.objects()[2].is_closed);
   std::vector<double> distances_m;
   for (const Vec3& p_C : points_of(recording, 0, camera, 1e-3)) {
     const NearestOnObjects nearest = truth.at(0, p_C);

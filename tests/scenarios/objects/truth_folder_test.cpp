@@ -1,3 +1,5 @@
+// The folder truth/ of a recording and its masks: what is found in it, the pixels at which the truth holds,
+// and what is refused.
 #include "scenarios/objects/recorded_truth.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +14,6 @@
 namespace remote_touch::truth_folder_test {
 namespace {
 
-// The folder truth/ of a recording: what is found in it, and what is refused.
-
 namespace fs = std::filesystem;
 
 // Only the names of meshes, poses and masks matter here: they are not opened.
@@ -27,17 +27,6 @@ class TruthFolders : public testing::Test {
     const fs::path named = subject.empty() ? folder_ / "truth" : folder_ / ("truth/" + subject);
     EXPECT_EQ(text.rfind(named.string() + ": ", 0), 0u) << text << "\nis not about " << named;
     EXPECT_HAS(text, part);
-  }
-  void expect_json_refused(const std::string& json, const std::string& part) const {
-    folder_.write("truth/truth.json", json);
-    expect_refused("truth.json", part);
-  }
-  // truth.json with one object, in which a part is replaced.
-  void expect_object_refused(const std::string& part, const std::string& by,
-                             const std::string& message) const {
-    std::string json = R"({"objects": [{"name": "cube", "mesh": "cube.obj", "poses": "poses.txt"}]})";
-    json.replace(json.find(part), part.size(), by);
-    expect_json_refused(json, message);
   }
   std::vector<std::string> names_of(const TruthFolder& truth) const {
     std::vector<std::string> names;
@@ -97,11 +86,8 @@ TEST_F(TruthFolders, NeedNoDescription) {
   }
   EXPECT_TRUE(std::isnan(truth.uncertainty_m));
   EXPECT_TRUE(truth.description.empty());
-}
-
-TEST_F(TruthFolders, UseTheSceneIfItIsTheOnlyMesh) {
-  write("scene.obj"), write("poses.txt");
-  EXPECT_EQ(names_of(find()), Names{"scene"});
+  for (const char* name : {"b10.stl", "b9.PLY", "a.obj"}) fs::remove(in_truth(name));
+  EXPECT_EQ(names_of(find()), Names{"scene"}) << "it is the only mesh";
 }
 
 TEST_F(TruthFolders, ListTheirFilesInOneOrder) {
@@ -122,30 +108,65 @@ TEST_F(TruthFolders, ListTheirFilesInOneOrder) {
   EXPECT_EQ(files_of(truth), (Paths{in_truth("truth.json"), in_truth("b.obj"), in_truth("poses.txt")}));
 }
 
-TEST_F(TruthFolders, AreRefusedWithoutDescriptionOrPosesOfAMesh) {
-  const std::string part = "has neither truth.json nor poses.txt with a mesh";
-  write("notes.md");
-  expect_refused("", part);
-  write("poses.txt");
-  expect_refused("", part);
-  fs::remove(in_truth("poses.txt"));
-  write("cube.obj");
-  expect_refused("", part);
-  fs::create_directory(in_truth("poses.txt"));
-  expect_refused("", part);
+// The subject of each refusal is truth.json.
+TEST_F(TruthFolders, AreRefusedIfTheDescriptionIsOfAnotherForm) {
+  write("cube.obj"), write("poses.txt"), write("cube.ply"), folder_.write("outside.obj", "");
+  const std::pair<std::string, std::string> texts[] = {
+      {"", "expected JSON"},
+      {"[]", "is of type array: expected object"},
+      {"{}", "has no key 'objects'"},
+      {R"({"objects": {}})", "objects = {}: expected a list of one object or more"},
+      {R"({"objects": []})", "objects = []: expected a list of one object or more"},
+      {R"({"objects": [], "units": "m"})", R"(key "units": expected ["objects","uncertainty_m"])"},
+      {R"({"objects": [3]})", "objects[0]: is of type number: expected object"},
+      {R"({"objects": [{"name": "c", "mesh": "cube.obj", "poses": "poses.txt"},
+                       {"name": "c", "mesh": "cube.ply", "poses": "poses.txt"}]})",
+       "two objects have the name 'c'"},
+  };
+  for (const auto& [json, text] : texts)
+    folder_.write("truth/truth.json", json), expect_refused("truth.json", text);
+  struct Row {
+    std::string part, by, text;  // what is replaced in the description of one object
+  };
+  const std::string inside = "expected a file inside truth/";
+  const Row rows[] = {
+      {"\"mesh\"", "\"file\"", R"(objects[0]: key "file": expected ["name","mesh","poses","closed"])"},
+      {"\"name\": \"cube\", ", "", "objects[0]: has no key 'name'"},
+      {"\"mesh\": \"cube.obj\", ", "", "objects[0]: has no key 'mesh'"},
+      {", \"poses\": \"poses.txt\"", "", "objects[0]: has no key 'poses'"},
+      {"\"cube\"", "\"\"", "objects[0]: name = \"\": expected a text"},
+      {"\"cube.obj\"", "7", "objects[0]: mesh = 7: expected a text"},
+      {"\"poses.txt\"", "\"poses.txt\", \"closed\": 1", "objects[0]: closed = 1: expected true, false"},
+      {"cube.obj", "../outside.obj", inside},
+      {"cube.obj", "parts/../cube.obj", inside},
+      {"cube.obj", in_truth("cube.obj").string(), inside},
+      {"cube.obj", "..", inside},
+      {"cube.obj", "cube.obj\\u0000", inside},
+      {"cube.obj", "ball.obj", "objects[0]: mesh: no file " + in_truth("ball.obj").string()},
+      {"poses.txt", "none.txt", "objects[0]: poses: no file " + in_truth("none.txt").string()},
+      {"cube.obj", ".", "objects[0]: mesh: no file"},
+      {"]}", R"(], "uncertainty_m": -0.001})", "uncertainty_m = -0.001: expected a number of 0 or more"},
+      {"]}", R"(], "uncertainty_m": "3 mm"})", "uncertainty_m = \"3 mm\": expected a number of 0 or more"},
+  };
+  for (const Row& row : rows) {
+    std::string json = R"({"objects": [{"name": "cube", "mesh": "cube.obj", "poses": "poses.txt"}]})";
+    folder_.write("truth/truth.json", json.replace(json.find(row.part), row.part.size(), row.by));
+    expect_refused("truth.json", row.text);
+  }
+  fs::remove(in_truth("truth.json"));
+  fs::create_symlink("none.json", in_truth("truth.json"));
+  expect_refused("truth.json", "cannot be read");
 }
 
-TEST_F(TruthFolders, AreRefusedWithTwoObjectsOfOneName) {
-  write("cube.obj"), write("cube.ply"), write("poses.txt");
-  expect_refused("", "two objects have the name 'cube'");
-  expect_json_refused(R"({"objects": [{"name": "c", "mesh": "cube.obj", "poses": "poses.txt"},
-                                      {"name": "c", "mesh": "cube.ply", "poses": "poses.txt"}]})",
-                      "two objects have the name 'c'");
-}
-
-TEST_F(TruthFolders, AreRefusedWithAnEmptyFolderOfMasks) {
-  write("cube.obj"), write("poses.txt"), write("mask/0000.jpg");
+TEST_F(TruthFolders, AreRefusedIfAPartIsMissing) {
+  const std::string neither = "has neither truth.json nor poses.txt with a mesh";
+  write("notes.md"), expect_refused("", neither);
+  write("poses.txt"), expect_refused("", neither);
+  fs::remove(in_truth("poses.txt")), write("cube.obj"), expect_refused("", neither);
+  fs::create_directory(in_truth("poses.txt")), expect_refused("", neither);
+  fs::remove(in_truth("poses.txt")), write("poses.txt"), write("mask/0000.jpg");
   expect_refused("mask", "has no .png file");
+  write("cube.ply"), expect_refused("", "two objects have the name 'cube'");
 }
 
 // The truth would hold at all pixels without its masks.
@@ -158,59 +179,6 @@ TEST_F(TruthFolders, AreRefusedIfTheMasksAreNoFolder) {
     expect_refused("mask", "is not a folder");
   }
 }
-
-TEST_F(TruthFolders, AreRefusedIfTheDescriptionIsOfAnotherForm) {
-  write("cube.obj"), write("poses.txt");
-  expect_json_refused("", "expected JSON");
-  expect_json_refused("{", "expected JSON");
-  expect_json_refused("[]", "is of type array: expected object");
-  expect_json_refused("{}", "has no key 'objects'");
-  expect_json_refused(R"({"objects": {}})", "objects = {}: expected a list of one object or more");
-  expect_json_refused(R"({"objects": []})", "objects = []: expected a list of one object or more");
-  expect_json_refused(R"({"objects": [], "units": "m"})",
-                      R"(key "units": expected ["objects","uncertainty_m"])");
-  expect_json_refused(R"({"objects": [3]})", "objects[0]: is of type number: expected object");
-  fs::remove(in_truth("truth.json"));
-  fs::create_symlink("none.json", in_truth("truth.json"));
-  expect_refused("truth.json", "cannot be read");
-}
-
-TEST_F(TruthFolders, AreRefusedIfTheUncertaintyIsNoLength) {
-  write("cube.obj"), write("poses.txt");
-  for (const char* value : {"-0.001", "\"3 mm\"", "null", "[0.003]"})
-    expect_object_refused("]}", "], \"uncertainty_m\": " + std::string(value) + "}",
-                          "uncertainty_m = " + std::string(value) + ": expected a number of 0 or more");
-  expect_object_refused("]}", "], \"uncertainty_m\": 1e999}", "expected");
-}
-
-TEST_F(TruthFolders, AreRefusedIfAnObjectIsOfAnotherForm) {
-  write("cube.obj"), write("poses.txt");
-  expect_object_refused("\"mesh\"", "\"file\"",
-                        R"(objects[0]: key "file": expected ["name","mesh","poses","closed"])");
-  expect_object_refused("\"name\": \"cube\", ", "", "objects[0]: has no key 'name'");
-  expect_object_refused("\"mesh\": \"cube.obj\", ", "", "objects[0]: has no key 'mesh'");
-  expect_object_refused(", \"poses\": \"poses.txt\"", "", "objects[0]: has no key 'poses'");
-  expect_object_refused("\"cube\"", "\"\"", "objects[0]: name = \"\": expected a text");
-  expect_object_refused("\"cube.obj\"", "7", "objects[0]: mesh = 7: expected a text");
-  expect_object_refused("\"poses.txt\"", "[]", "objects[0]: poses = []: expected a text");
-  expect_object_refused("\"poses.txt\"", "\"poses.txt\", \"closed\": 1",
-                        "objects[0]: closed = 1: expected true, false");
-}
-
-TEST_F(TruthFolders, AreRefusedIfAFileIsElsewhere) {
-  write("cube.obj"), write("poses.txt"), folder_.write("outside.obj", "");
-  const fs::path absolute = in_truth("cube.obj");
-  for (const std::string& name : {std::string("../outside.obj"), std::string("parts/../cube.obj"),
-                                  absolute.string(), std::string("..")})
-    expect_object_refused("\"cube.obj\"", "\"" + name + "\"", "expected a file inside truth/");
-  expect_object_refused("cube.obj", "cube.obj\\u0000", "expected a file inside truth/");
-  expect_object_refused("cube.obj", "ball.obj", "objects[0]: mesh: no file " + in_truth("ball.obj").string());
-  expect_object_refused("poses.txt", "none.txt",
-                        "objects[0]: poses: no file " + in_truth("none.txt").string());
-  expect_object_refused("cube.obj", ".", "objects[0]: mesh: no file");
-}
-
-// The pixels at which the truth holds, and the masks that are refused.
 
 const CameraIntrinsics kCamera = {4, 3, 10, 20, 1.5, 1};
 const Vec3 kCentre = unproject(kCamera, 1, 1, 2);  // a position at pixel (1, 1)
@@ -241,44 +209,33 @@ class Masks : public testing::Test {
   const TestFolder folder_{"truth_masks_test"};
 };
 
-TEST_F(Masks, HoldAtTheirPixelsThatAreNotBlack) {
+// A pixel reaches half a pixel to each side of its centre.
+TEST_F(Masks, HoldAtTheirPixelsThatAreNeitherBlackNorTransparent) {
   const std::vector<std::uint8_t> grey = {0, 255, 0, 1, 7, 0, 0, 0, 0, 0, 128, 0};
   write("0000.png", grey);
-  const TruthMasks one = masks(1);
-  for (int v = 0; v < 3; ++v)
-    for (int u = 0; u < 4; ++u)
-      for (const double z_m : {0.1, 1.0, 30.0})
-        EXPECT_EQ(one.holds_at(0, unproject(kCamera, u, v, z_m)), grey[4 * v + u] != 0) << u << " " << v;
+  std::vector<std::uint8_t> rgba;
+  for (const std::uint8_t value : grey) rgba.insert(rgba.end(), {9, 9, 9, value});
+  for (const bool is_transparent : {false, true}) {
+    if (is_transparent) folder_.write_png("mask/0000.png", 4, 3, PNG_FORMAT_RGBA, rgba.data());
+    const TruthMasks one = masks(1);
+    for (int v = 0; v < 3; ++v)
+      for (int u = 0; u < 4; ++u)
+        for (const double off : {-0.49, 0.0, 0.49})
+          for (const double z_m : {0.1, 1.0, 30.0})
+            EXPECT_EQ(one.holds_at(0, unproject(kCamera, u + off, v - off, z_m)), grey[4 * v + u] != 0)
+                << u << " " << v << " " << off;
+  }
 }
 
-// A pixel reaches half a pixel to each side of its centre.
-TEST_F(Masks, RoundToTheNearestPixel) {
-  write("0000.png", {0, 0, 0, 0, 0, 255, 0, 0, 0, 0, 0, 0});
-  const TruthMasks one = masks(1);
-  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 0.51, 0.51, 1)));
-  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 1.49, 1.49, 1)));
-  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 0.49, 1, 1)));
-  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1.51, 1, 1)));
-  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 0.49, 1)));
-  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 1.51, 1)));
-}
-
-TEST_F(Masks, HoldNowhereOutsideTheImage) {
+TEST_F(Masks, HoldNowhereOutsideTheImageAndEverywhereWithoutAFolder) {
   write("0000.png", kAll);
-  const TruthMasks one = masks(1);
-  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, -0.49, -0.49, 1)));
-  EXPECT_TRUE(one.holds_at(0, unproject(kCamera, 3.49, 2.49, 1)));
+  const TruthMasks one = masks(1), none(TruthFolder{}, std::vector<std::string>(3), {});
   for (const auto& [u, v] : {std::pair(-0.51, 1.0), {3.51, 1.0}, {1.0, -0.51}, {1.0, 2.51}, {1e300, 1.0}})
     EXPECT_FALSE(one.holds_at(0, unproject(kCamera, u, v, 1))) << u << " " << v;
-  EXPECT_FALSE(one.holds_at(0, unproject(kCamera, 1, 1, -1)));
-  EXPECT_FALSE(one.holds_at(0, Vec3::Zero()));
-  EXPECT_FALSE(one.holds_at(0, Vec3::Constant(std::nan(""))));
-}
-
-TEST_F(Masks, HoldEverywhereWithoutAFolder) {
-  const TruthMasks none(TruthFolder{}, std::vector<std::string>(3), {});
-  EXPECT_TRUE(none.holds_at(2, kCentre));
-  EXPECT_TRUE(none.holds_at(2, {0, 0, -1}));
+  for (const Vec3& p_C : {unproject(kCamera, 1, 1, -1), Vec3(0, 0, 0), Vec3(NAN, NAN, NAN)}) {
+    EXPECT_FALSE(one.holds_at(0, p_C));
+    EXPECT_TRUE(none.holds_at(2, p_C));
+  }
 }
 
 // The first frame has the number 1, and a mask of every other frame is missing.
@@ -327,40 +284,26 @@ TEST_F(Masks, AreReadOnceAndNotBeforeTheyAreNeeded) {
   EXPECT_HAS(refusal([&] { two.holds_at(1, kCentre); }), "1.png: cannot be read");
 }
 
-TEST_F(Masks, AreTransparentWhereTheTruthDoesNotHold) {
-  std::vector<std::uint8_t> rgba(48, 255);
-  rgba[4 * 5 + 3] = 0;
-  folder_.write_png("mask/0.png", 4, 3, PNG_FORMAT_RGBA, rgba.data());
-  EXPECT_FALSE(masks(1).holds_at(0, unproject(kCamera, 1, 1, 1)));
-  EXPECT_TRUE(masks(1).holds_at(0, unproject(kCamera, 2, 1, 1)));
-}
-
-TEST_F(Masks, AreRefusedIfTheirFrameIsNotClear) {
-  for (const char* name : {"3.png", "mask.png", "3_1.png", "99999999999999999999.png"}) {
+TEST_F(Masks, AreRefusedIfTheyDoNotFitTheFrames) {
+  const auto why_not = [&](const std::vector<const char*>& names) {
     fs::remove_all(folder_ / "mask");
-    write(name, kAll);
-    EXPECT_HAS(why(3),
-               (folder_ / "mask" / name).string() +
-                   ": its name has the number of no frame: expected names with the numbers of the depth");
-  }
-  for (const char* more : {"01.png", "1_7.png"}) {
-    fs::remove_all(folder_ / "mask");
-    write("1.png", kAll), write(more, kAll);
-    EXPECT_HAS(why(3), "frame 1 has another mask");
-  }
+    for (const char* name : names) write(name, kAll);
+    return why(3);
+  };
+  for (const char* name : {"3.png", "mask.png", "3_1.png", "99999999999999999999.png"})
+    EXPECT_EQ(why_not({name}).rfind((folder_ / "mask" / name).string() +
+                                        ": its name has the number of no frame: expected names with the ",
+                                    0),
+              0u);
+  for (const char* more : {"01.png", "1_7.png"})
+    EXPECT_HAS(why_not({"1.png", more}), "frame 1 has another mask");
   EXPECT_HAS(refusal([&] {
-               masks({"a1.png", "b1.png"});
+               masks(Names{"a1.png", "b1.png"});
              }),
              "it is not clear which of its files belong to a1.png and which to b1.png");
-}
-
-TEST_F(Masks, AreRefusedForFramesThatAreNotImages) {
-  write("0.png", kAll);
-  EXPECT_EQ(refusal([&] { masks({"0.png"}, {}); }),
+  EXPECT_EQ(refusal([&] { masks(Names{"0.png"}, {}); }),
             (folder_ / "mask").string() + ": the frames are not images: expected no masks");
-}
-
-TEST_F(Masks, AreRefusedInAnotherSizeOrFormat) {
+  fs::remove_all(folder_ / "mask");
   write("0.png", kAll, 3);
   EXPECT_EQ(why(1), (folder_ / "mask/0.png").string() +
                         ": has 3 x 4 pixels: expected 4 x 3 pixels, as the camera has");
