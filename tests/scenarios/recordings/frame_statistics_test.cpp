@@ -1,7 +1,10 @@
+// The frames of a recording together: what they have in common, when they are shown, and the report about
+// them.
 #include "scenarios/recordings/recording.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -14,8 +17,6 @@
 
 namespace remote_touch::frame_statistics_test {
 namespace {
-
-// Properties that later frames of a recording must have in common with the first.
 
 constexpr CameraIntrinsics kCamera = {4, 3, 10, 10, 1.5, 1};
 
@@ -39,43 +40,34 @@ std::string problem(const PointCloud& first, PointCloud later) {
   });
 }
 
-TEST(FrameLayout, ImagesOfAnotherSizeAreRefused) {
-  const PointCloud first = image(kCamera, 1);
-  EXPECT_EQ(problem(first, image(kCamera, 2)), "conforms");
-  EXPECT_EQ(problem(first, image({2, 6, 10, 10, 1.5, 1}, 1)),
-            "2.pcd: has 2 x 6 points: expected 4 x 3 points, as the first frame that is used has");
-  EXPECT_HAS(problem(first, image({4, 2, 10, 10, 1.5, 1}, 1)), "has 4 x 2 points: expected 4 x 3");
-}
-
 // The corner pixel is 1.5 columns from the centre: with a focal length of 16 instead of 10 px its point is
 // 0.9 px off, with 17 px 1.05 px.
-TEST(FrameLayout, ImagesOfAnotherCameraAreRefused) {
-  const PointCloud first = image({4, 3, 16, 16, 1.5, 1}, 1);
+TEST(FrameLayout, LaterFramesAreLikeTheFirstOrRefused) {
   const auto seen_with = [](double focal_px) { return image({4, 3, focal_px, focal_px, 1.5, 1}, 1); };
-  EXPECT_EQ(problem(first, seen_with(10)), "conforms");
-  EXPECT_HAS(problem(image({4, 3, 17, 17, 1.5, 1}, 1), seen_with(10)),
-             "2.pcd: has another camera than the first");
-}
-
-TEST(FrameLayout, CloudsInNoOrderAndOrganisedOnesDoNotMix) {
-  PointCloud unorganised = grid(4, 3);
-  unorganised.grid_columns = 0;
-  EXPECT_EQ(problem(image(kCamera, 1), unorganised),
-            "2.pcd: has points in no order: expected an organised cloud, as the first frame that is used is");
-  EXPECT_HAS(problem(grid(4, 3), unorganised), "2.pcd: has points in no order");
-  EXPECT_EQ(problem(unorganised, grid(4, 3)),
-            "2.pcd: is an organised cloud: expected points in no order, as the first frame that is used has");
-  EXPECT_HAS(problem(unorganised, image(kCamera, 1)), "2.pcd: is an organised cloud");
-  EXPECT_EQ(problem(unorganised, {}), "conforms");
-}
-
-TEST(FrameLayout, CloudsWithoutACameraMayChangeTheirSize) {
-  PointCloud few = grid(5, 2), unorganised = grid(4, 3);
+  const PointCloud first = image(kCamera, 1);
+  PointCloud unorganised = grid(4, 3), few = grid(5, 2);
   unorganised.grid_columns = few.grid_columns = 0;
-  EXPECT_EQ(problem(unorganised, few), "conforms");
-  EXPECT_EQ(problem(grid(4, 3), grid(5, 2)), "conforms");
-  EXPECT_HAS(problem(image(kCamera, 1), grid(4, 3)),
-             "has another camera than the first frame that is used, or none");
+  const std::string used = ", as the first frame that is used ";
+  struct Row {
+    PointCloud first, later;
+    std::string text = "conforms";
+  };
+  const Row rows[] = {
+      {first, image(kCamera, 2)},
+      {first, image({2, 6, 10, 10, 1.5, 1}, 1),
+       "2.pcd: has 2 x 6 points: expected 4 x 3 points" + used + "has"},
+      {seen_with(16), seen_with(10)},
+      {seen_with(17), seen_with(10), "2.pcd: has another camera than the first"},
+      {first, grid(4, 3), "has another camera than the first frame that is used, or none"},
+      {first, unorganised, "2.pcd: has points in no order: expected an organised cloud" + used + "is"},
+      {grid(4, 3), unorganised, "2.pcd: has points in no order"},
+      {unorganised, grid(4, 3), "2.pcd: is an organised cloud: expected points in no order" + used + "has"},
+      {unorganised, first, "2.pcd: is an organised cloud"},
+      {unorganised, {}},
+      {unorganised, few},  // clouds without a camera may change their size
+      {grid(4, 3), grid(5, 2)},
+  };
+  for (const Row& row : rows) EXPECT_HAS(problem(row.first, row.later), row.text);
 }
 
 // All frames are images, or none is: a camera that only later frames have is not used.
@@ -158,22 +150,17 @@ TEST(FrameTimes, AreMultiplesOfThePeriodOfASteadyRecording) {
   EXPECT_FALSE(loop.follows_stamps());
 }
 
-TEST(FrameTimes, IgnoreTheStampsIfARateIsChosen) {
-  for (const Playback playback : {Playback::hold, Playback::loop, Playback::ping_pong}) {
-    const FrameTimes chosen(stamped({0, 1, 5}), {"x", 0, -1}, playback, 10);
-    EXPECT_EQ(times_of(chosen, 3), (std::vector<double>{0, 1 / 10.0, 2 / 10.0}));
-    EXPECT_EQ(chosen.rate_hz(), 10);
-    EXPECT_EQ(chosen.text(), "10 Hz (recorded at 0.4 Hz)");
-    EXPECT_FALSE(chosen.follows_stamps());
-  }
-}
-
-TEST(FrameTimes, ASingleFrameIsAtTimeZero) {
+TEST(FrameTimes, IgnoreTheStampsIfARateIsChosenOrThereIsOneFrame) {
   for (const Playback playback : {Playback::hold, Playback::loop, Playback::ping_pong}) {
     const FrameTimes single(stamped({0, 1, 5}), {"x", 1, 1}, playback, 0);
     EXPECT_EQ(single.captured_s(0), 0);
     EXPECT_EQ(single.source(0), 1u);
     EXPECT_FALSE(single.follows_stamps());
+    const FrameTimes chosen(stamped({0, 1, 5}), {"x", 0, -1}, playback, 10);
+    EXPECT_EQ(times_of(chosen, 3), (std::vector<double>{0, 1 / 10.0, 2 / 10.0}));
+    EXPECT_EQ(chosen.rate_hz(), 10);
+    EXPECT_EQ(chosen.text(), "10 Hz (recorded at 0.4 Hz)");
+    EXPECT_FALSE(chosen.follows_stamps());
   }
 }
 
@@ -186,11 +173,8 @@ TEST(FrameTimes, ReportTheRateThatIsPlayed) {
   EXPECT_EQ(text(steady(3, 30), 30), "30 Hz");
   EXPECT_EQ(text(stamped({0, 0.1, 0.2, 0.34})), "8.82353 Hz") << "uneven, but none is missing";
   EXPECT_EQ(text(stamped({0, 0.25, 0.5, 1.5, 1.75, 2})), "4 Hz with pauses of up to 1 s (2.5 Hz on average)");
-}
-
-TEST(FrameTimes, HaveAUsualRateThatAPauseDoesNotChange) {
-  EXPECT_EQ(FrameTimes(stamped({0, 0.25, 0.5, 60, 60.25}), {"x", 0, -1}, Playback::hold, 0).usual_rate_hz(),
-            4);
+  const RecordingIndex paused = stamped({0, 0.25, 0.5, 60, 60.25});
+  EXPECT_EQ(FrameTimes(paused, {"x", 0, -1}, Playback::hold, 0).usual_rate_hz(), 4);
 }
 
 TEST(FrameTimes, APartThatIsTooFastIsRefused) {
@@ -226,41 +210,6 @@ TEST(FrameStatistics, CountsMeasuredPointsOfAllFramesOnce) {
   EXPECT_EQ(statistics.text(), "2 read: 75 % of 20000 points measured, depth 1 to 2 m, with colours");
 }
 
-TEST(FrameStatistics, NotesPointsWithoutColour) {
-  FrameStatistics statistics(2);
-  PointCloud cloud = wall(0, 1);
-  cloud.colour.assign(cloud.size(), 0xFF0000);
-  statistics.add(0, cloud, 3);
-  EXPECT_TRUE(statistics.notes(3).empty());
-  for (std::size_t i = 0; i < 500; ++i) cloud.colour[i] = kNoColour;
-  cloud.x[0] = cloud.y[0] = cloud.z[0] = kNan;  // not measured: its colour does not count
-  statistics.add(1, cloud, 3);
-  ASSERT_EQ(statistics.notes(3).size(), 1u);
-  EXPECT_HAS(statistics.notes(3)[0].text, "2.5 % of the measured points have no colour (NaN)");
-}
-
-// Two frames have no colour image.
-TEST(FrameStatistics, NotesFramesWithoutColours) {
-  FrameStatistics statistics(4);
-  PointCloud coloured = wall(0, 1), nothing = wall(0, 1);
-  coloured.colour.assign(coloured.size(), 0xFF0000);
-  nothing.x.assign(nothing.size(), kNan);
-  statistics.add(0, coloured, 3);
-  statistics.add(1, nothing, 3);  // no colour is missing, because it has no measured point
-  EXPECT_TRUE(statistics.notes(3).empty());
-  statistics.add(3, wall(0, 1), 3);
-  statistics.add(2, wall(0, 1), 3);
-  ASSERT_EQ(statistics.notes(3).size(), 1u);
-  EXPECT_EQ(statistics.notes(3)[0].kind, "colours missing");
-  EXPECT_EQ(statistics.notes(3)[0].text, "2 of 3 frames have no colours, the first is frame 2");
-}
-
-TEST(FrameStatistics, RecordingsWithoutColoursMissNone) {
-  FrameStatistics statistics(1);
-  statistics.add(0, wall(0, 1), 3);
-  EXPECT_TRUE(statistics.notes(3).empty());
-}
-
 // Points of a lidar, x forward: z is no depth, and max_depth_m does not apply.
 TEST(FrameStatistics, CloudsWithoutACameraHaveCoordinatesInsteadOfADepth) {
   FrameStatistics statistics(1);
@@ -270,91 +219,75 @@ TEST(FrameStatistics, CloudsWithoutACameraHaveCoordinatesInsteadOfADepth) {
   EXPECT_EQ(
       statistics.text(),
       "1 read: 100 % of 2 points measured, x 2 to 30 m, y -1 to -1 m, z -1.5 to -0.25 m, without colours");
-  EXPECT_TRUE(statistics.notes(0.1).empty());
-}
-
-TEST(FrameStatistics, HasNoDepthRangeWithoutAMeasurement) {
-  FrameStatistics statistics(1);
+  EXPECT_TRUE(statistics.notes(0.1).empty()) << "no colours are missing where there are none";
+  FrameStatistics of_nothing(1);
   PointCloud nothing;
   nothing.append(Vec3::Constant(kNan));
-  statistics.add(0, nothing, 3);
-  EXPECT_EQ(statistics.text(), "1 read: 0 % of 1 points measured, without colours");
+  of_nothing.add(0, nothing, 3);
+  EXPECT_EQ(of_nothing.text(), "1 read: 0 % of 1 points measured, without colours");
 }
 
-TEST(FrameStatistics, NotesPointsBeyondTheLimitAboveATenth) {
-  for (const std::size_t beyond : {1000, 1001}) {
-    FrameStatistics statistics(1);
-    PointCloud cloud = wall(0, 1);
-    for (std::size_t i = 0; i < beyond; ++i) cloud.z[i] = 4;
-    statistics.add(0, cloud, 3);
-    const std::vector<Note> notes = statistics.notes(3);
-    ASSERT_EQ(notes.size(), beyond > 1000 ? 1u : 0u);
-    for (const Note& note : notes)
-      EXPECT_HAS(note.text, "beyond scenario.max_depth_m = 3 along the camera's axis");
-  }
+using Frames = std::vector<std::pair<std::size_t, PointCloud>>;
+
+// Returns the notes on these frames, one on each line.
+std::string notes_on(const Frames& frames) {
+  FrameStatistics statistics(10);
+  for (const auto& [frame, cloud] : frames) statistics.add(frame, cloud, 3);
+  std::string text;
+  for (const Note& note : statistics.notes(3)) text += note.kind + ": " + note.text + "\n";
+  return text;
 }
 
 // Half of the wall remains in view if the camera moves by 0.5 m, and a tenth if it moves by 0.9 m.
-TEST(FrameStatistics, NotesSuccessiveFramesThatShowDifferentPlaces) {
-  for (const double step : {0.5, 0.9}) {
-    FrameStatistics statistics(3);
-    for (std::size_t frame = 0; frame < 3; ++frame)
-      statistics.add(frame, wall(step * static_cast<double>(frame), 1), 3);
-    const std::vector<Note> notes = statistics.notes(3);
-    ASSERT_EQ(notes.size(), step > 0.7 ? 1u : 0u);
-    for (const Note& note : notes)
-      EXPECT_HAS(note.text,
-                 "2 pair(s) of successive frames show different places, the first is frames 0 and 1");
+TEST(FrameStatistics, NotesWhatIsUnusual) {
+  PointCloud coloured = wall(0, 1), pale, nothing = wall(0, 1), far = wall(0, 1), part = wall(0, 1);
+  coloured.colour.assign(coloured.size(), 0xFF0000), pale = coloured;
+  for (std::size_t i = 0; i < 500; ++i) pale.colour[i] = kNoColour;
+  pale.x[0] = pale.y[0] = pale.z[0] = kNan;  // not measured: its colour does not count
+  nothing.x.assign(nothing.size(), kNan);
+  for (std::size_t i = 0; i < 1000; ++i) far.z[i] = 4;
+  PointCloud too_far = far;
+  too_far.z[1000] = 4;
+  for (std::size_t i = 0; i < part.size(); ++i)
+    if (i % 100 >= 30) part.x[i] = part.y[i] = part.z[i] = kNan;
+  const std::string pairs =
+      "2 pair(s) of successive frames show different places, the first is frames 0 and 1: only ";
+  const std::pair<Frames, std::string> rows[] = {
+      {{{0, coloured}, {1, nothing}}, ""},  // no colour is missing, because it has no measured point
+      {{{0, coloured}, {1, pale}}, "2.5 % of the measured points have no colour (NaN)"},
+      {{{0, coloured}, {1, nothing}, {3, wall(0, 1)}, {2, wall(0, 1)}},
+       "colours missing: 2 of 3 frames have no colours, the first is frame 2"},
+      {{{0, far}}, ""},
+      {{{0, too_far}}, "beyond scenario.max_depth_m = 3 along the camera's axis"},
+      {{{0, wall(0, 1)}, {1, wall(0.5, 1)}, {2, wall(1, 1)}}, ""},
+      {{{0, wall(0, 1)}, {1, wall(0.9, 1)}, {2, wall(1.8, 1)}}, pairs},
+      {{{2, wall(5, 1)}, {1, wall(0.8, 1)}, {0, wall(0, 1)}}, pairs},  // the second pair is read first
+      {{{0, wall(0, 1)}, {5, wall(5, 1)}},
+       ""},  // they do not follow each other: a run reads the first for its path
+      // All of the first is near the second: 6 of the 20 columns of cells, and one more is next to them.
+      {{{0, part}, {1, wall(0, 1)}}, "only 35 % of the space that a frame shows"},
+  };
+  for (const auto& [frames, text] : rows) {
+    const std::string notes = notes_on(frames);
+    EXPECT_EQ(std::count(notes.begin(), notes.end(), '\n'), text.empty() ? 0 : 1) << notes;
+    EXPECT_HAS(notes, text);
   }
-}
-
-// The second pair of frames is read first and has less in common.
-TEST(FrameStatistics, NotesTheOverlapOfTheFirstPairInTheRecording) {
-  FrameStatistics statistics(3);
-  for (const auto& [frame, x] : {std::pair(2u, 5.0), {1u, 0.8}, {0u, 0.0}})
-    statistics.add(frame, wall(x, 1), 3);
-  ASSERT_EQ(statistics.notes(3).size(), 1u);
-  const std::string text = statistics.notes(3)[0].text;
-  EXPECT_HAS(text,
-             "2 pair(s) of successive frames show different places, the first is frames 0 and 1: only ");
-  EXPECT_EQ(text.find("only 0 %"), std::string::npos) << text;
+  EXPECT_FALSE(contains(notes_on(rows[7].first), "only 0 %")) << "that is the second pair";
 }
 
 // A wall that moves back and forth, by 1.2 mm to nearly a cell of 50 mm, counts as the same place, both at a
 // border of the cells and between borders. A wall that moves by more than two cells counts as another place.
 TEST(FrameStatistics, ASurfaceThatMovesALittleCountsAsTheSamePlace) {
   const auto notes = [](double at_m, double move_m) {
-    FrameStatistics statistics(4);
-    for (std::size_t frame = 0; frame < 4; ++frame)
-      statistics.add(frame, wall(0, at_m + (frame % 2 == 0 ? -0.5 : 0.5) * move_m), 3);
-    return statistics.notes(3);
+    Frames frames;
+    for (const double side : {-0.5, 0.5, -0.5, 0.5})
+      frames.push_back({frames.size(), wall(0, at_m + side * move_m)});
+    return notes_on(frames);
   };
   for (const double move_m : {0.0012, 0.003, 0.01, 0.049})
     for (const double at_m : {0.5, 0.51, 0.525})
-      EXPECT_TRUE(notes(at_m, move_m).empty()) << move_m << " at " << at_m;
-  ASSERT_EQ(notes(0.5, 0.151).size(), 1u);
-  EXPECT_EQ(notes(0.5, 0.151)[0].kind, "frames apart");
-}
-
-// All of the first frame is near the second, but little of the second is near the first.
-TEST(FrameStatistics, NotesAFrameThatShowsMuchThatTheOtherDoesNot) {
-  FrameStatistics statistics(2);
-  PointCloud part = wall(0, 1);
-  for (std::size_t i = 0; i < part.size(); ++i)
-    if (i % 100 >= 30) part.x[i] = part.y[i] = part.z[i] = kNan;
-  statistics.add(0, part, 3);
-  statistics.add(1, wall(0, 1), 3);
-  ASSERT_EQ(statistics.notes(3).size(), 1u);
-  // The part has 6 of the 20 columns of cells, and one more is next to them.
-  EXPECT_HAS(statistics.notes(3)[0].text, "only 35 % of the space that a frame shows");
-}
-
-// Frames that do not follow each other may differ: a run reads the first frame for its path.
-TEST(FrameStatistics, ComparesSuccessiveFramesOnly) {
-  FrameStatistics statistics(10);
-  statistics.add(0, wall(0, 1), 3);
-  statistics.add(5, wall(5, 1), 3);
-  EXPECT_TRUE(statistics.notes(3).empty());
+      EXPECT_EQ(notes(at_m, move_m), "") << move_m << " at " << at_m;
+  EXPECT_HAS(notes(0.5, 0.151), "frames apart: ");
 }
 
 }  // namespace

@@ -84,13 +84,16 @@ std::string matrices(
   return text;
 }
 
+std::string row(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += number(value) + " ";
+  return text;
+}
+
 std::string quaternion_text(const RigidTransform& X) {
   const Eigen::Quaterniond q(X.linear());
-  std::string text;
-  for (const double value :
-       {X.translation().x(), X.translation().y(), X.translation().z(), q.x(), q.y(), q.z(), q.w()})
-    text += number(value) + " ";
-  return text;
+  const Vec3 t = X.translation();
+  return row({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()});
 }
 
 class KnownScene : public testing::Test {
@@ -170,19 +173,17 @@ class KnownScene : public testing::Test {
 
 TEST_F(KnownScene, IsReadInTheLayoutOfTum) {
   write_own("own", 5000);
-  folder_.write("own/poses.txt", [] {
-    std::string text = "# tx ty tz qx qy qz qw\n";
-    for (const RigidTransform& X : camera_poses()) text += quaternion_text(X) + "\n";
-    return text;
-  }());
   write_images([](int i) { return "tum/depth/" + std::to_string(i) + ".png"; }, 5000);
   write_camera("tum", 1.0 / 5000);
   std::string list, truth = "# ground truth trajectory\n# timestamp tx ty tz qx qy qz qw\n";
+  std::string own = "# tx ty tz qx qy qz qw\n";
   for (int i = 0; i < kFrames; ++i) {
+    const std::string pose = quaternion_text(camera_poses()[i]) + "\n";
     list += number(i / 30.0) + " depth/" + std::to_string(i) + ".png\n";
-    truth += number(i / 30.0) + " " + quaternion_text(camera_poses()[i]) + "\n";
+    truth += number(i / 30.0) + " " + pose, own += pose;
   }
   folder_.write("tum/depth.txt", list), folder_.write("tum/groundtruth.txt", truth);
+  folder_.write("own/poses.txt", own);
   const RecordedScene tum = scene(settings("tum", "groundtruth.txt"));
   expect_equal(tum, scene(settings("own", "poses.txt")));
   EXPECT_TRUE(notes_of(tum).empty());
@@ -290,26 +291,28 @@ TEST_F(KnownScene, IsReadInTheLayoutOfBop) {
 
 // --- mistakes ---
 
+const RigidTransform kFlip = [] {
+  RigidTransform flip = RigidTransform::Identity();
+  flip.linear().diagonal() = Vec3(1, -1, -1);
+  return flip;
+}();
+
 const Change kAsIs = [](const RigidTransform& X) { return X; };
 const Change kInverse = [](const RigidTransform& X) { return X.inverse(); };
-const Change kMillimetres = [](RigidTransform X) {
-  X.translation() *= 1000;
-  return X;
-};
 const Change kTransposed = [](RigidTransform X) {
   X.linear().transposeInPlace();
   return X;
 };
-const Change kFlipped = [](RigidTransform X) {
-  X.linear() = (X.linear() * Vec3(1, -1, -1).asDiagonal()).eval();
-  return X;
-};
-
-const Change kFlippedParent = [](const RigidTransform& X) {
-  RigidTransform flip = RigidTransform::Identity();
-  flip.linear().diagonal() = Vec3(1, -1, -1);
-  return flip * X;
-};
+const Change kFlipped = [](const RigidTransform& X) { return X * kFlip; };
+Change scaled(double factor) {
+  return [factor](RigidTransform X) {
+    X.translation() *= factor;
+    return X;
+  };
+}
+Change behind(const RigidTransform& other) {
+  return [other](const RigidTransform& X) { return other * X; };
+}
 
 TEST_F(KnownScene, FramesThatItsPosesDoNotFitAreReported) {
   write_own("own");
@@ -326,17 +329,14 @@ TEST_F(KnownScene, FramesThatItsPosesDoNotFitAreReported) {
   EXPECT_HAS(note(matrices(X_WC, kInverse)), "scenario.pose_direction may be the other one");
   EXPECT_HAS(note(matrices(X_WC), PoseDirection::world_to_camera),
              "scenario.pose_direction may be the other one");
-  EXPECT_HAS(note(matrices(X_WC, kMillimetres)), "with positions in millimetres by");
+  EXPECT_HAS(note(matrices(X_WC, scaled(1000))), "with positions in millimetres by");
   EXPECT_HAS(note(matrices(X_WC, kTransposed)), "with transposed rotations by");
   EXPECT_HAS(note(matrices(X_WC, kFlipped)), "with y and z of the body reversed (as in OpenGL) by");
-  std::string w_first = "";
+  std::string w_first;
   for (int i = 0; i < kFrames; ++i) {
     const Eigen::Quaterniond q(X_WC[i].linear());
     const Vec3 t = X_WC[i].translation();
-    w_first += number(i / 30.0);
-    for (const double value : {t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()})
-      w_first += " " + number(value);
-    w_first += "\n";
+    w_first += row({i / 30.0, t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}) + "\n";
   }
   EXPECT_HAS(note(w_first), "with quaternions with qw first by");
   EXPECT_EQ(note("# t tx ty tz qw qx qy qz\n" + w_first), "");
@@ -355,36 +355,24 @@ TEST_F(KnownScene, TrueObjectsThatAreElsewhereAreRefusedOrReported) {
     });
     return text.empty() ? refused : text;
   };
-  EXPECT_EQ(outcome(kAsIs), "nothing");
-  EXPECT_HAS(outcome(kMillimetres),
-             " m from what the camera measured there (median of the depth); with positions in "
-             "millimetres it is ");
-  EXPECT_HAS(outcome([](RigidTransform X) {
-               X.translation() /= 1000;
-               return X;
-             }),
-             "; with positions 1000 times as large it is ");
-  EXPECT_HAS(outcome(kTransposed), "; with transposed rotations it is ");
-  EXPECT_HAS(outcome(kFlipped), "; with y and z of the body reversed (as in OpenGL) it is ");
-  EXPECT_HAS(outcome(kInverse), "poses.txt: no object is in the image of any frame: object is at x ");
-  EXPECT_HAS(outcome(kInverse), "; with the inverse poses, object is ");
-  EXPECT_HAS(outcome(kFlippedParent),
-             "; with y and z of the parent frame reversed (as in OpenGL), object is ");
-  EXPECT_HAS(outcome([](const RigidTransform& X) {
-               return pose({0, 0, -2}, {1, 0.5, 0}) * X;
-             }),
-             " m in frame 0: expected")
-      << "no cause explains it";
-  EXPECT_HAS(outcome([](RigidTransform X) {
-               X.translation().x() += 0.5;
-               return X;
-             }),
-             "the true object object is ");
-  EXPECT_HAS(outcome([](RigidTransform X) {
-               X.matrix().setConstant(std::nan(""));
-               return X;
-             }),
-             "poses.txt: has no known pose");
+  RigidTransform unknown;
+  unknown.matrix().setConstant(std::nan(""));
+  const std::pair<Change, std::string> rows[] = {
+      {kAsIs, "nothing"},
+      {scaled(1000),
+       " m from what the camera measured there (median of the depth); with positions in "
+       "millimetres it is "},
+      {scaled(0.001), "; with positions 1000 times as large it is "},
+      {kTransposed, "; with transposed rotations it is "},
+      {kFlipped, "; with y and z of the body reversed (as in OpenGL) it is "},
+      {kInverse, "poses.txt: no object is in the image of any frame: object is at x "},
+      {kInverse, "; with the inverse poses, object is "},
+      {behind(kFlip), "; with y and z of the parent frame reversed (as in OpenGL), object is "},
+      {behind(pose({0, 0, -2}, {1, 0.5, 0})), " m in frame 0: expected"},  // no cause explains it
+      {behind(pose({0.5, 0, 0}, Vec3::Zero())), "the true object object is "},
+      {[&](const RigidTransform&) { return unknown; }, "poses.txt: has no known pose"},
+  };
+  for (const auto& row : rows) EXPECT_HAS(outcome(row.first), row.second);
 }
 
 // The poses of the object are those in a world V, whose origin is far from the camera.
@@ -392,7 +380,7 @@ TEST_F(KnownScene, TrueObjectsInAWorldAreRefusedWithTheirCause) {
   write_own("own");
   folder_.write("own/truth/object.obj", "");
   const RigidTransform X_VW = pose({2, 3, -4}, {0.5, 0, 0.2});
-  const Change to_V = [&](const RigidTransform& X) { return X_VW * X; };
+  const Change to_V = behind(X_VW);
   const Change inverse = [&](const RigidTransform& X) { return (X_VW * X).inverse(); };
   const auto refused = [&](const Change& of_object, const Change& of_camera) {
     folder_.write("own/truth/poses.txt", matrices(Poses(kFrames, kX_WO), of_object));

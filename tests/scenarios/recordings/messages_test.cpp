@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -250,28 +251,53 @@ TEST(Messages, UseTheCameraThatFitsTheImage) {
   }
 }
 
-TEST(Messages, RefuseWrongCameras) {
-  const auto error = [](CameraInfoMessage camera) { return refusal([&] { ImageRays(camera, false, "m"); }); };
-  EXPECT_HAS(error(info(0, 3, {})), "has 0 x 3 pixels");
-  CameraInfoMessage camera = info(3, 2, {});
-  for (const double f : {0.0, 1e-320, 1e-6}) {  // so short that rays would be infinite
-    camera.K[0] = f;
-    EXPECT_HAS(error(camera), "expected a calibrated camera");
+TEST(Messages, RefuseWrongCamerasAndImagesThatAreNotClear) {
+  const auto error = [](const CameraInfoMessage& camera, bool rectified) {
+    return refusal([&] { ImageRays(camera, rectified, "m"); });
+  };
+  struct Row {
+    std::function<void(CameraInfoMessage&)> change;
+    std::string text;  // empty: none
+    bool rectified = false;
+  };
+  const auto cropped = [](const RegionMessage& region) {
+    return [region](CameraInfoMessage& c) { c.region = region; };
+  };
+  const auto bent_by = [](const std::vector<double>& distortion) {
+    return [distortion](CameraInfoMessage& c) { c.distortion = distortion; };
+  };
+  const Row rows[] = {
+      {[](auto& c) { c.width = 0; }, "has 0 x 4 pixels"},
+      {[](auto& c) { c.K[0] = 0; }, "expected a calibrated camera"},
+      {[](auto& c) { c.K[0] = 1e-6; }, "expected a calibrated camera"},  // rays would be infinite
+      {[](auto& c) { c.K[5] = std::nan(""); }, "expected a calibrated camera"},
+      {[](auto& c) { c.K[1] = 20; }, "m: K[1] = 20.000000: expected 0, a camera without skew"},
+      {[](auto& c) { c.K[1] = 20; }, "", true},  // the image has the camera P
+      {[](auto& c) { c.K[3] = std::nan(""); }, "m: K[3] = nan: expected 0"},
+      {[](auto& c) { c.K[8] = 2; }, "m: K[8] = 2.000000: expected 1"},
+      {[](auto& c) { c.K[8] = 0; }, ""},
+      {[](auto& c) { c.P[3] = -15; }, "m: P[3] = -15.000000: expected 0, the camera of the", true},
+      {[](auto& c) { c.P[7] = 1; }, "m: P[7] = 1.000000: expected 0", true},
+      {[](auto& c) { c.P[1] = 1; }, "m: P[1] = 1.000000: expected 0, a camera without skew", true},
+      {[](auto& c) { c.P[3] = -15, c.P[1] = 1; }, ""},  // the image has the camera K
+      {cropped({3, 0, 4, 4, false}), "m: roi has pixels 3 to 7 along x"},
+      {cropped({0, 0xFFFFFFFF, 2, 6, false}), "to 4294967297 along y: expected"},
+      {cropped({1, 0, 4, 0, false}), "m: roi has pixels 1 to 1 along x"},
+      {[](auto& c) { c.binning_x = 7; }, "m: binning = 7 x 1: expected no more than"},
+      {cropped({1, 1, 2, 2, true}), "m: roi.do_rectify = true", true},
+      {cropped({1, 1, 2, 2, true}), ""},
+      {bent_by({0.1, 0, 0}), "with 3 coefficients"},
+      {bent_by({std::nan(""), 0, 0, 0}), "finite"},
+      {[](auto& c) { c.distortion_model = "equidistant"; }, "", true},  // the image is that of a pinhole
+  };
+  for (const Row& row : rows) {
+    CameraInfoMessage camera = info(6, 4, {});
+    row.change(camera);
+    EXPECT_HAS(error(camera, row.rectified), row.text.empty() ? "no InputError" : row.text);
   }
-  camera = info(3, 2, {});
-  camera.K[5] = std::nan("");
-  EXPECT_HAS(error(camera), "expected a calibrated camera");
-  EXPECT_HAS(error(info(3, 2, {0.1, 0, 0, 0}, "equidistant")), "distortion_model = \"equidistant\"");
   for (const char* fisheye : {"equidistant", "fisheye", "Kannala Brandt4", "Ftheta", "thin_prism_fisheye"})
     for (const std::vector<double>& none : {std::vector<double>(4, 0.0), std::vector<double>()})
-      EXPECT_HAS(error(info(3, 2, none, fisheye)), std::string("distortion_model = \"") + fisheye);
-  EXPECT_EQ(refusal([] {
-              ImageRays(info(3, 2, {0, 0, 0, 0}, "equidistant"), true, "m");
-            }),
-            "no InputError")
-      << "a rectified image is that of a pinhole, whatever the lens was";
-  EXPECT_HAS(error(info(3, 2, {0.1, 0, 0})), "with 3 coefficients");
-  EXPECT_HAS(error(info(3, 2, {std::nan(""), 0, 0, 0})), "finite");
+      EXPECT_HAS(error(info(3, 2, none, fisheye), false), std::string("distortion_model = \"") + fisheye);
 }
 
 TEST(Messages, ReadBinningAndRegion) {
@@ -312,56 +338,12 @@ TEST(Messages, UseBinningAndRegionOfACamera) {
   EXPECT_EQ(ImageRays(camera, false, "m").camera().width, 16);
 }
 
-TEST(Messages, RefuseCamerasWhoseImageIsNotClear) {
-  const auto error = [](auto change, bool rectified = false) {
-    CameraInfoMessage camera = info(6, 4, {});
-    change(camera);
-    return refusal([&] { ImageRays(camera, rectified, "m"); });
-  };
-  EXPECT_HAS(error([](auto& c) { c.K[1] = 20; }), "m: K[1] = 20.000000: expected 0, a camera without skew");
-  EXPECT_HAS(error([](auto& c) { c.K[3] = std::nan(""); }), "m: K[3] = nan: expected 0");
-  EXPECT_HAS(error([](auto& c) { c.K[8] = 2; }), "m: K[8] = 2.000000: expected 1");
-  EXPECT_EQ(error([](auto& c) { c.K[8] = 0; }), "no InputError");
-  EXPECT_HAS(error([](auto& c) { c.P[3] = -15; }, true),
-             "m: P[3] = -15.000000: expected 0, the camera of the");
-  EXPECT_HAS(error([](auto& c) { c.P[7] = 1; }, true), "m: P[7] = 1.000000: expected 0");
-  EXPECT_HAS(error([](auto& c) { c.P[1] = 1; }, true),
-             "m: P[1] = 1.000000: expected 0, a camera without skew");
-  EXPECT_EQ(error([](auto& c) { c.P[3] = -15, c.P[1] = 1; }), "no InputError")
-      << "the image has the camera K";
-  EXPECT_EQ(error([](auto& c) { c.K[1] = 20; }, true), "no InputError") << "the image has the camera P";
-  EXPECT_HAS(error([](auto& c) { c.region = {3, 0, 4, 4, false}; }), "m: roi has pixels 3 to 7 along x");
-  EXPECT_HAS(error([](auto& c) {
-               c.region = {0, 0xFFFFFFFF, 2, 6, false};
-             }),
-             "to 4294967297 along y: expected");
-  EXPECT_HAS(error([](auto& c) { c.region = {1, 0, 4, 0, false}; }), "m: roi has pixels 1 to 1 along x");
-  EXPECT_HAS(error([](auto& c) { c.binning_x = 7; }), "m: binning = 7 x 1: expected no more than");
-  EXPECT_HAS(error([](auto& c) { c.region = {1, 1, 2, 2, true}; }, true), "m: roi.do_rectify = true");
-  EXPECT_EQ(error([](auto& c) { c.region = {1, 1, 2, 2, true}; }), "no InputError");
-}
-
 // A lens that folds the image over gives no points beyond the fold.
 TEST(Messages, HaveNoPointsBeyondTheFoldOfALens) {
   const ImageRays rays(info(40, 40, {-1.5, 0, 0, 0, 0}), false, "m");
   const PointCloud cloud = rays.cloud({40, 40, std::vector<double>(1600, 1.0)});
   EXPECT_FALSE(cloud.is_measured(0));
   EXPECT_TRUE(cloud.is_measured(20 * 40 + 20));
-}
-
-TEST(Messages, ReadTransforms) {
-  MessageBytes bytes;
-  bytes.add(std::uint32_t{1}).header(0, "base").text("eye");
-  for (const double value : {1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0}) bytes.add(value);
-  const auto transforms = read_transforms({bytes.done(), WireFormat::cdr, "m"});
-  ASSERT_EQ(transforms.size(), 1u);
-  EXPECT_EQ(transforms[0].parent, "base");
-  EXPECT_EQ(transforms[0].child, "eye");
-  EXPECT_TRUE((transforms[0].X * Vec3(1, 0, 5)).isApprox(Vec3(0, 2, 8)));
-  MessageBytes bad;
-  bad.add(std::uint32_t{1}).header(0, "base").text("eye");
-  for (int i = 0; i < 7; ++i) bad.add(0.0);
-  EXPECT_HAS(refusal([&] { read_transforms({bad.done(), WireFormat::cdr, "m"}); }), "quaternion of length 1");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Tests which points a mask selects, and which masks and frames the rule refuses.
-
+// The scene of a recording: its true surface, the layout of its frames, the depth limit and the rates; and
+// which points a mask of its images selects.
 #include "scenarios/recordings/recorded_scene.h"
 
 #include <gtest/gtest.h>
@@ -33,84 +33,51 @@ ImageMask::Settings settings(const fs::path& file) {
   return settings;
 }
 
-class ImageMasks : public testing::Test {
- protected:
-  Shares weights(const fs::path& file, const PointCloud& cloud) const {
-    return ImageMask(settings(file)).weights(cloud);
-  }
-  fs::path grey(const std::vector<std::uint8_t>& samples, int width) const {
-    const int height = static_cast<int>(samples.size()) / width;
-    return folder_.write_png("grey.png", width, height, PNG_FORMAT_GRAY, samples.data());
-  }
-
-  const TestFolder folder_{"image_mask_test"};
-};
-
-TEST_F(ImageMasks, SelectPixelsThatAreNotBlackRowByRow) {
-  EXPECT_EQ(weights(grey({0, 255, 0, 1, 0, 128}, 3), image(3, 2)), (Shares{0, 1, 0, 1, 0, 1}));
-  EXPECT_EQ(weights(grey({0, 255, 0, 1, 0, 128}, 2), image(2, 3)), (Shares{0, 1, 0, 1, 0, 1}));
+Shares weights(const fs::path& file, const PointCloud& cloud) {
+  return ImageMask(settings(file)).weights(cloud);
 }
 
-TEST_F(ImageMasks, MayHaveColours) {
-  const std::uint8_t rgb[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-  EXPECT_EQ(weights(folder_.write_png("rgb.png", 2, 2, PNG_FORMAT_RGB, rgb), image(2, 2)),
+// A partly transparent pixel selects by its colour, like an opaque one.
+TEST(ImageMask, SelectsPixelsThatAreNeitherBlackNorTransparentRowByRow) {
+  const TestFolder folder("image_mask_test");
+  const std::uint8_t grey[] = {0, 255, 0, 1, 0, 128}, rgb[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1},
+                     rgba[] = {0, 0, 0, 255, 9, 0, 0, 0, 9, 0, 0, 1};
+  EXPECT_EQ(weights(folder.write_png("3x2.png", 3, 2, PNG_FORMAT_GRAY, grey), image(3, 2)),
+            (Shares{0, 1, 0, 1, 0, 1}));
+  EXPECT_EQ(weights(folder.write_png("2x3.png", 2, 3, PNG_FORMAT_GRAY, grey), image(2, 3)),
+            (Shares{0, 1, 0, 1, 0, 1}));
+  EXPECT_EQ(weights(folder.write_png("rgb.png", 2, 2, PNG_FORMAT_RGB, rgb), image(2, 2)),
             (Shares{0, 1, 1, 1}));
-}
-
-// A fully transparent pixel selects nothing. A partly transparent one selects by its colour, like an opaque
-// one.
-TEST_F(ImageMasks, SelectNothingWhereAPixelIsTransparent) {
-  const std::uint8_t rgba[12] = {0, 0, 0, 255, 9, 0, 0, 0, 9, 0, 0, 1};
-  EXPECT_EQ(weights(folder_.write_png("rgba.png", 3, 1, PNG_FORMAT_RGBA, rgba), image(3, 1)),
+  EXPECT_EQ(weights(folder.write_png("rgba.png", 3, 1, PNG_FORMAT_RGBA, rgba), image(3, 1)),
             (Shares{0, 0, 1}));
 }
 
-TEST_F(ImageMasks, PickNothingThatWasNotMeasured) {
-  PointCloud cloud = image(2, 1);
-  cloud.x[0] = cloud.y[0] = cloud.z[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(weights(grey({255, 255}, 2), cloud), (Shares{0, 1}));
-}
-
-TEST_F(ImageMasks, AnotherSizeIsRefused) {
-  const fs::path file = grey({0, 1, 2, 3, 4, 5}, 3);
-  for (const std::pair<int, int>& size : {std::pair{2, 3}, {6, 1}, {3, 3}, {4, 2}}) {
-    const std::string why = refusal([&] { weights(file, image(size.first, size.second)); });
-    EXPECT_EQ(why, file.string() + ": 3 x 2 pixels: expected as many as the frames: " +
-                       std::to_string(size.first) + " x " + std::to_string(size.second));
-  }
+TEST(ImageMask, IsRefusedIfItDoesNotFitOrCannotBeRead) {
+  const TestFolder folder("image_mask_test");
+  const std::uint8_t grey[6] = {};
+  const std::uint16_t deep[2] = {0, 1};
+  const fs::path mask = folder.write_png("grey.png", 3, 2, PNG_FORMAT_GRAY, grey),
+                 text = folder.write("text.png", "no image at all"), missing = folder / "missing.png",
+                 depth = folder.write_png("depth.png", 2, 1, PNG_FORMAT_LINEAR_Y, deep);
+  const auto why = [](const fs::path& file, const PointCloud& cloud) {
+    return refusal([&] { weights(file, cloud); });
+  };
+  for (const std::pair<int, int>& size : {std::pair{2, 3}, {6, 1}, {3, 3}, {4, 2}})
+    EXPECT_EQ(why(mask, image(size.first, size.second)),
+              mask.string() + ": 3 x 2 pixels: expected as many as the frames: " +
+                  std::to_string(size.first) + " x " + std::to_string(size.second));
   PointCloud no_image = image(3, 2);
   no_image.image.reset();
-  EXPECT_HAS(refusal([&] { weights(file, no_image); }), "image-mask: the frame is not an image");
-}
-
-TEST_F(ImageMasks, AreRefusedIfTheyCannotBeRead) {
-  const auto why = [&](const fs::path& file) { return refusal([&] { ImageMask mask(settings(file)); }); };
-  const fs::path missing = folder_ / "missing.png";
-  EXPECT_HAS(why(missing), missing.string() + ": no such recording");
-  EXPECT_THROW(ImageMask mask(settings(missing)), MissingInput);
-  const fs::path text = folder_.write("text.png", "no image at all");
-  EXPECT_HAS(why(text), text.string() + ": ");
-  const std::uint16_t deep[2] = {0, 1};
-  const fs::path depth = folder_.write_png("depth.png", 2, 1, PNG_FORMAT_LINEAR_Y, deep);
-  EXPECT_HAS(why(depth), depth.string() + ": ");
-}
-
-TEST_F(ImageMasks, AreListedAsInputFiles) {
-  ImageMask::Settings settings;
-  EXPECT_HAS(validate(settings), "path = \"\": expected a PNG file");
-  settings.path = grey({1}, 1).string();
-  EXPECT_EQ(validate(settings), "");
-  EXPECT_EQ(input_files(settings), InputPart{settings.path});
-  const auto files = files_of(input_files(settings));
-  ASSERT_EQ(files.size(), 1u);
-  EXPECT_EQ(files[0].name, "grey.png");
-  EXPECT_EQ(files[0].file, settings.path);
+  EXPECT_HAS(why(mask, no_image), "image-mask: the frame is not an image");
+  EXPECT_HAS(why(missing, no_image), missing.string() + ": no such recording");
+  EXPECT_THROW(ImageMask{settings(missing)}, MissingInput);
+  for (const fs::path& file : {text, depth}) EXPECT_HAS(why(file, no_image), file.string() + ": ");
+  EXPECT_HAS(validate(ImageMask::Settings{}), "path = \"\": expected a PNG file");
 }
 
 }  // namespace
 }  // namespace remote_touch::image_mask_test
 
-// Tests the scene of a recording: its true surface, the layout of its frames, the depth limit and the rates.
 namespace remote_touch::recorded_scene_test {
 namespace {
 
@@ -152,12 +119,7 @@ TEST_F(RecordedSceneTest, KnowsTheSurfaceExceptAtDepthEdges) {
   EXPECT_NEAR(scene.signed_distance(seen(4, 8, 0.52), 0), -0.02, 1e-12);
   EXPECT_NEAR(scene.signed_distance(seen(13, 8, 0.69), 0), 0.01, 1e-12);
   EXPECT_TRUE(std::isnan(scene.signed_distance(seen(9, 8, 0.5), 0)));
-}
-
-// A slave must not take the step from frame to frame for a motion.
-TEST_F(RecordedSceneTest, ItsTruthBelongsToTheNewestFrame) {
-  const RecordedScene scene(two_walls(folder_), {}, scenes::kernels());
-  EXPECT_EQ(scene.truth_time_s(0.03), 0);
+  EXPECT_EQ(scene.truth_time_s(0.03), 0) << "a slave must not take the step from frame to frame for a motion";
 }
 
 // Depth edges are found in the camera's depth and not in the base frame's z, which may be negative or lie in
@@ -227,60 +189,49 @@ TEST_F(RecordedSceneTest, EveryViewpointThatIsNotUsedIsReported) {
                                "form no image");
 }
 
-// Points at NaN, at infinity or farther away than any room cannot be touched, so such a first frame is
-// refused.
+// Points at NaN, at infinity or farther away than any room, as those of a map, cannot be touched, so such a
+// first frame is refused. A single far point is not.
 TEST_F(RecordedSceneTest, AFirstFrameWithoutUsablePointsIsRefused) {
   RecordedScene::Settings settings;
-  for (const char* value : {"nan", "inf", "1e30", "-inf"}) {
-    std::string rows;
-    for (int i = 0; i < 4; ++i) rows += std::string(value) + " " + value + " " + value + "\n";
-    for (const char* height : {"2", "1"}) {
-      const char* width = *height == '2' ? "2" : "4";
-      settings.path =
-          folder_
-              .write("x.pcd",
-                     pcd_header("x y z", "4 4 4", "F F F", "1 1 1", width, height, "4", "ascii") + rows)
-              .string();
-      EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
-                 std::string(value) == "1e30" ? "x.pcd: frame 0 has all its points more than 1000 m"
-                                              : "x.pcd: its first frame has no point within 10000")
-          << value;
-    }
-  }
-  folder_.write_png("empty/depth/0000.png", 3, 2, PNG_FORMAT_LINEAR_Y, std::vector<std::uint16_t>(6).data());
-  write_camera(folder_, "20", "empty/");
-  settings.path = (folder_ / "empty").string();
-  EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
-             "its first frame has no point within scenario.max_depth_m = 3.000000: 1 read: 0 % of 6 points "
-             "measured, without colours: expected a frame of measured points, in metres");
-  folder_.write_png("empty/depth/0000.png", 3, 2, PNG_FORMAT_LINEAR_Y,
-                    std::vector<std::uint16_t>(6, 5000).data());
-  EXPECT_HAS(
-      refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
-      "depth 5 to 5 m, without colours: expected a frame of measured points, in metres; the depth scale "
-      "may be wrong");
-}
-
-// A cloud in the coordinates of a map is refused. A single far point is not.
-TEST_F(RecordedSceneTest, ASceneFarFromTheOriginIsRefused) {
-  RecordedScene::Settings settings;
-  const std::string far = "1001 0 1\n1001 1 1\n1002 0 1\n1002 1 1\n";
-  const auto problem = [&](const std::string& rows) {
-    settings.path =
-        folder_.write("x.pcd", pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "2", "2", "4", "ascii") + rows)
-            .string();
-    return refusal([&] {
-      RecordedScene(settings, {}, scenes::kernels());
-      throw InputError("read");
-    });
+  const auto refused = [&] { return refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }); };
+  const auto of_points = [&](const std::string& points, const char* width, const char* height) {
+    const std::string header = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", width, height, "4", "ascii");
+    settings.path = folder_.write("x.pcd", header + points).string();
+    return refused();
   };
-  EXPECT_HAS(problem(far), "x.pcd: frame 0 has all its points more than 1000 m from the origin");
-  EXPECT_EQ(problem("0 0 1\n" + far.substr(far.find('\n') + 1)), "read");
+  const auto four = [](const std::string& point) { return point + point + point + point; };
+  const std::string nowhere = "x.pcd: its first frame has no point within 10000",
+                    far_away = "x.pcd: frame 0 has all its points more than 1000 m from the origin",
+                    of_map = "1001 0 1\n1001 1 1\n1002 0 1\n1002 1 1\n";
+  const std::pair<std::string, std::string> rows[] = {
+      {four("nan nan nan\n"), nowhere},
+      {four("inf inf inf\n"), nowhere},
+      {four("-inf -inf -inf\n"), nowhere},
+      {four("1e30 1e30 1e30\n"), far_away},
+      {of_map, far_away},
+      {"0 0 1\n" + of_map.substr(of_map.find('\n') + 1), "no InputError"}};
+  for (const auto& [points, text] : rows) {
+    EXPECT_HAS(of_points(points, "2", "2"), text);
+    EXPECT_HAS(of_points(points, "4", "1"), text);
+  }
   settings.camera_position_m = Vec3(-2, 0, 0);  // the limit is for the cloud in its own coordinates, too
-  EXPECT_HAS(problem(far), "more than 1000 m");
+  EXPECT_HAS(of_points(of_map, "2", "2"), far_away);
+  write_camera(folder_, "20", "empty/");
+  settings = {};
+  settings.path = (folder_ / "empty").string();
+  for (const auto& [unit, text] :
+       {std::pair(std::uint16_t{0},
+                  "its first frame has no point within scenario.max_depth_m = 3.000000: 1 read: 0 % "
+                  "of 6 points measured, without colours: expected a frame of measured points, in "
+                  "metres"),
+        {std::uint16_t{5000},
+         "depth 5 to 5 m, without colours: expected a frame of measured points, in metres; the "
+         "depth scale may be wrong"}}) {
+    const std::vector<std::uint16_t> units(6, unit);
+    folder_.write_png("empty/depth/0000.png", 3, 2, PNG_FORMAT_LINEAR_Y, units.data());
+    EXPECT_HAS(refused(), text);
+  }
 }
-
-// --- from frame to frame ---
 
 // Writes a plane 0.5 m away in columns x rows pixels of a camera with a focal length of 100 px. With one row
 // the points are in no order.
@@ -314,28 +265,6 @@ TEST_F(RecordedSceneTest, AFrameOfAnotherSizeIsRefusedByItsName) {
   EXPECT_TRUE(RecordedScene(settings, {}, scenes::kernels()).cloud(0).image) << "alone it can be used";
 }
 
-TEST_F(RecordedSceneTest, CloudsInNoOrderMayDifferInSize) {
-  write_plane(folder_, "1.pcd", 48, 1), write_plane(folder_, "2.pcd", 30, 1);
-  const RecordedScene scene(recording_in(folder_), {}, scenes::kernels());
-  EXPECT_EQ(scene.cloud(0).size(), 48u);
-  EXPECT_EQ(scene.cloud(1).size(), 30u);
-}
-
-// A frame in which nothing was measured is an image of holes, not a cloud without a camera.
-TEST_F(RecordedSceneTest, AnEmptyFrameOfImagesIsAnImage) {
-  write_plane(folder_, "1.pcd", 4, 3);
-  std::string empty = pcd_header("x y z", "4 4 4", "F F F", "1 1 1", "4", "3", "12", "ascii");
-  for (int i = 0; i < 12; ++i) empty += "nan nan nan\n";
-  folder_.write("2.pcd", empty);
-  const RecordedScene scene(recording_in(folder_), {}, scenes::kernels());
-  const PointCloud cloud = scene.cloud(1);
-  ASSERT_TRUE(cloud.image);
-  EXPECT_NEAR(cloud.image->camera.fx, 100, 1e-3);
-  EXPECT_FALSE(cloud.is_measured(0));
-}
-
-// --- the limit of the depth ---
-
 // The axes are those of a lidar, x forward and z up. No point above 3 m may be lost, and a limit that the
 // user has set is refused, because it cannot apply.
 TEST_F(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
@@ -351,8 +280,6 @@ TEST_F(RecordedSceneTest, CloudsWithoutACameraAreNotCut) {
   EXPECT_HAS(refusal([&] { RecordedScene(settings, {}, scenes::kernels()); }),
              "its points form no camera image and have no depth: expected scenario.max_depth_m = 3");
 }
-
-// --- rates ---
 
 // Writes the same image for each of these times.
 void write_stamped(const TestFolder& folder, const std::vector<std::string>& stamps) {
@@ -385,6 +312,8 @@ TEST_F(RecordedSceneTest, StampsInMillisecondsAreReportedWhereTheyAreUsed) {
   write_stamped(folder_, {"0", "0.033", "0.066", "100"});
   EXPECT_TRUE(note_kinds_of(scene()).empty()) << "one long pause";
   EXPECT_HAS(scene().input(), " at 30.303 Hz with pauses of up to 99.934 s (0.03 Hz on average)");
+  EXPECT_EQ(scene().newest_frame(99.9), 2);
+  EXPECT_EQ(scene().newest_frame(100.1), 3);
 }
 
 // camera.json states its rate in hertz, so no number is read as a stamp.
@@ -417,18 +346,6 @@ TEST_F(RecordedSceneTest, FramesThatWereNotUsedAreReportedForEveryPlayback) {
         "2 of 4 frames were not used: the run ended before 1 of them; newer frames replaced the others, or "
         "they were lost");
   }
-}
-
-// A loop keeps the recorded stamps; the first frame follows one mean period after the last.
-TEST_F(RecordedSceneTest, ALoopHasTheStampsOfItsFrames) {
-  write_stamped(folder_, {"5", "5.25", "5.5", "6.5"});
-  RecordedScene::Settings settings = recording_in(folder_);
-  settings.playback = RecordedScene::Playback::loop;
-  const RecordedScene scene(settings, {}, scenes::kernels());
-  EXPECT_EQ(scene.newest_frame(1.4), 2);
-  EXPECT_EQ(scene.newest_frame(1.6), 3);
-  EXPECT_EQ(scene.newest_frame(2.1), 4) << "the first frame again, one mean period of 0.5 s after the last";
-  EXPECT_HAS(scene.input(), " at 4 Hz with pauses of up to 1 s (2 Hz on average)");
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
+// Recordings in folders: images and clouds, their cameras, stamps and colours, and what is refused.
 #include "scenarios/recordings/recording.h"
 
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -18,109 +17,7 @@
 namespace remote_touch::recording_test {
 namespace {
 
-// Folders in which a recording is searched.
-
 namespace fs = std::filesystem;
-
-class FindRecording : public testing::Test {
- protected:
-  FindRecording() { fs::create_directory(folder_ / "here"), fs::current_path(folder_ / "here"); }
-  ~FindRecording() override { fs::current_path(before_), set_data_folder({}); }
-
-  const fs::path before_ = fs::current_path();
-  const TestFolder folder_{"find_input"};
-};
-
-TEST_F(FindRecording, LooksHereAndThenBelowTheDataFolder) {
-  set_data_folder((folder_ / "data").string());
-  folder_.write("data/a.png", ""), folder_.write("data/scans/b.png", ""), folder_.write("here/a.png", "");
-  EXPECT_EQ(find_input("a.png"), "a.png") << "here comes first";
-  EXPECT_EQ(find_input("scans/b.png"), (folder_ / "data/scans/b.png").string());
-  const std::string whole = (folder_ / "data/a.png").string();
-  EXPECT_EQ(find_input(whole), whole);
-}
-
-TEST_F(FindRecording, ReportsTheSearchedFolders) {
-  const std::string places = "no such recording, image or mesh: expected a folder or file here or below ";
-  EXPECT_EQ(refusal([] { find_input("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA (not set)");
-  set_data_folder("/data");
-  EXPECT_EQ(refusal([] { find_input("a.png"); }), "a.png: " + places + "REMOTE_TOUCH_DATA = /data");
-  EXPECT_EQ(input_places(), "here or below REMOTE_TOUCH_DATA = /data");
-  EXPECT_THROW(find_input("/a.png"), MissingInput);
-}
-
-TEST_F(FindRecording, RefusesPipesAndDevices) {
-  set_data_folder((folder_ / "data").string());
-  folder_.write("data/trace.csv", "");
-  fs::create_symlink("/dev/zero", folder_ / "data/zero.csv");
-  ASSERT_EQ(::mkfifo((folder_ / "here/pipe.csv").c_str(), 0600), 0);
-  for (const char* name : {"pipe.csv", "zero.csv"}) {
-    EXPECT_HAS(refusal([&] { find_input(name); }), "cannot be read (a pipe or a device): expected a file");
-    EXPECT_HAS(refusal([&] { files_of({name}); }), "cannot be read (a pipe or a device): expected a file");
-  }
-  EXPECT_EQ(find_input("trace.csv"), (folder_ / "data/trace.csv").string());
-}
-
-TEST_F(FindRecording, ANameThatNoFileCanHaveIsMissing) {
-  set_data_folder((folder_ / "data").string());
-  EXPECT_THROW(find_input(std::string(5000, 'x')), MissingInput);
-}
-
-// Their digest would never end.
-TEST_F(FindRecording, RefusesPartsThatAreNoFiles) {
-  folder_.write("here/scan/camera.json", R"({"width": 3, "height": 2, "fx": 10, "fy": 20, "cx": 1, "cy": 0.5,
-                                             "depth_scale_m": 0.001, "frame_rate_hz": 20})");
-  folder_.write("here/scan/depth/0000.png", "");
-  EXPECT_EQ(files_of({"scan"}).size(), 2u);
-  fs::create_symlink("/dev/zero", folder_ / "here/scan/depth/0001.png");
-  EXPECT_HAS(refusal([] { files_of({"scan"}); }), "0001.png: cannot be read (a pipe or a device)");
-  fs::remove(folder_ / "here/scan/depth/0001.png"), fs::remove(folder_ / "here/scan/camera.json");
-  ASSERT_EQ(::mkfifo((folder_ / "here/scan/camera.json").c_str(), 0600), 0);
-  EXPECT_HAS(refusal([] { files_of({"scan"}); }), "camera.json: cannot be read (a pipe or a device)");
-  for (const char* name : {"mesh.obj", "poses.txt", "session.h5", "trace.csv"}) {
-    fs::create_directory(name);
-    EXPECT_HAS(refusal([&] { files_of({name}); }), "cannot be read (a folder): expected a file") << name;
-  }
-}
-
-// The digest of such a file would take minutes, only for the reader to refuse it.
-TEST_F(FindRecording, RefusesFilesThatNoReaderAccepts) {
-  const auto refused = [&](const std::string& name, std::uintmax_t bytes) {
-    folder_.write("here/" + name, "");
-    fs::resize_file(name, bytes);  // takes no blocks on the disk
-    return refusal([&] { files_of({name}); });
-  };
-  const std::uintmax_t text = 16 << 20, mesh = std::uintmax_t{2} << 30;
-  for (const std::string name : {"a.csv", "a.traj", "a.txt", "a.tum"}) {
-    EXPECT_EQ(refused(name, text), "no InputError");
-    EXPECT_HAS(refused(name, text + 1), name + ": is longer than 16 MiB: expected a shorter text");
-  }
-  for (const std::string name : {"a.obj", "a.PLY", "a.stl"}) {
-    EXPECT_EQ(refused(name, mesh), "no InputError");
-    EXPECT_HAS(refused(name, mesh + 1),
-               name + ": is larger than 2 GiB: expected a mesh of at most 5 million");
-  }
-  EXPECT_EQ(refused("session.h5", mesh + 1), "no InputError");
-}
-
-TEST_F(FindRecording, BagsAreReadAsAWhole) {
-  for (const char* name :
-       {"bag/metadata.yaml", "bag/bag_0.mcap", "bag/bag_1.mcap", "bag/notes.txt", "one.bag"})
-    folder_.write(std::string("here/") + name, "");
-  std::vector<std::string> names;
-  for (const InputFile& file : files_of({"bag", 3, 1000})) names.push_back(file.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"bag_0.mcap", "bag_1.mcap", "metadata.yaml"}));
-  ASSERT_EQ(files_of({"one.bag", 0, -1}).size(), 1u);
-  EXPECT_EQ(files_of({"one.bag", 0, -1})[0].name, "one.bag");
-}
-
-// The environment variable is an input of the program: the Python package passes it to set_data_folder().
-TEST_F(FindRecording, DoesNotReadTheEnvironment) {
-  folder_.write("data/a.png", "");
-  ::setenv("REMOTE_TOUCH_DATA", (folder_ / "data").c_str(), 1);
-  EXPECT_THROW(find_input("a.png"), MissingInput);
-  ::unsetenv("REMOTE_TOUCH_DATA");
-}
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 const std::string kCamera =
@@ -150,14 +47,6 @@ class Recording : public ::testing::Test {
     });
     EXPECT_EQ(text.rfind((folder_ / subject).string() + ": ", 0), 0u) << text << "\nis not about " << subject;
     EXPECT_HAS(text, part);
-  }
-
-  void expect_camera_error(const std::string& part, const std::string& replacement,
-                           const std::string& message) {
-    std::string json = kCamera;
-    json.replace(json.find(part), part.size(), replacement);
-    folder_.write("camera.json", json);
-    expect_error("camera.json", message);
   }
 
   const TestFolder folder_{"recording_test"};
@@ -221,17 +110,7 @@ TEST_F(Recording, TheCameraOfTumIsThatOfItsSequence) {
   EXPECT_HAS(description(camera("x", "# freiburg2\n"), "5 Hz"), "c = 325.1, 249.7 (freiburg2 of TUM");
   EXPECT_TRUE(camera("x", "# freiburg2\n").notes.empty());
   EXPECT_EQ(kinds_of(camera("x", "").notes), Kinds{"camera assumed"});
-}
-
-TEST_F(Recording, IsInTheOrderOfTheNumbersInNames) {
-  folder_.write("camera.json", kCamera);
-  const std::vector<std::string> names = {"1b.png", "9.png", "10.png", "0100.png"};
-  for (const std::string& name : names) folder_.write_depth("depth/" + name, 1000);
-  const RecordingIndex index = index_recording(folder_.path());
-  ASSERT_EQ(index.frames.size(), names.size());
-  for (std::size_t j = 0; j < names.size(); ++j) EXPECT_EQ(index.frames[j].depth.filename(), names[j]);
-  for (const char* name : {"clouds/a_10.pcd", "clouds/a_9.pcd"}) write_pcd(name, "1");
-  EXPECT_EQ(index_recording(folder_ / "clouds").frames[0].depth.filename(), "a_9.pcd");
+  EXPECT_EQ(camera("x", "").frame_rate_hz, 30) << "one frame has no rate of its own";
 }
 
 TEST_F(Recording, HasTheNameOfTheCurrentFolder) {
@@ -284,30 +163,29 @@ TEST_F(Recording, RefusesIncompleteFolders) {
   expect_error("camera.json", "is missing: depth images need {width, height, fx");
 }
 
-TEST_F(Recording, RefusesBadCameraFiles) {
+TEST_F(Recording, RefusesBadFiles) {
+  struct Row {
+    std::string part, replacement, message;  // of camera.json
+  };
+  const Row rows[] = {
+      {R"("frame_rate_hz": 20)", R"("frame_rate_hz": 0)", "frame_rate_hz = 0: expected a number above 0"},
+      {R"("frame_rate_hz": 20, )", "", "has no key 'frame_rate_hz'"},
+      {R"("fx": 10)", R"("fx": -10)", "fx = -10: expected a number above 0"},
+      {R"("cx": 1)", R"("cx": [])", "cx = []: expected a number"},
+      {R"("width": 3)", R"("width": 3.5)", "width = 3.5: expected an integer from 1 to 65535"},
+      {R"("height": 2)", R"("height": 1e12)", "height = 1000000000000.0: expected an integer"},
+      {"true", "1", "colour_registered = 1: expected true, false"},
+      {"true", R"(true, "depth_along": "z")", R"(depth_along = "z": expected "axis", "ray")"},
+      {"colour_registered", "color\\nregistered", R"(key "color\nregistered": expected)"},
+      {"{", "", "expected JSON"},
+      {kCamera, "[1]", "is of type array: expected object"},
+  };
   write_recording();
-  expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": 0)",
-                      "frame_rate_hz = 0: expected a number above 0");
-  expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": -3.5)", "frame_rate_hz = -3.5");
-  expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": null)", "frame_rate_hz = null");
-  expect_camera_error(R"("frame_rate_hz": 20)", R"("frame_rate_hz": 1e999)", "1e999");
-  expect_camera_error(R"("frame_rate_hz": 20, )", "", "has no key 'frame_rate_hz'");
-  expect_camera_error(R"("fx": 10)", R"("fx": -10)", "fx = -10: expected a number above 0");
-  expect_camera_error(R"("fy": 20.5)", R"("fy": "20")", "fy = \"20\": expected a number above 0");
-  expect_camera_error(R"("cx": 1)", R"("cx": [])", "cx = []: expected a number");
-  expect_camera_error(R"("width": 3)", R"("width": 3.5)", "width = 3.5: expected an integer from 1 to 65535");
-  expect_camera_error(R"("height": 2)", R"("height": 1e12)", "height = 1000000000000.0: expected an integer");
-  expect_camera_error(R"("depth_scale_m": 0.001)", R"("depth_scale_m": 0)", "depth_scale_m = 0: expected");
-  expect_camera_error("true", "1", "colour_registered = 1: expected true, false");
-  expect_camera_error("colour_registered", "color\\nregistered", "key \"color\\nregistered\": expected");
-  expect_camera_error("{", "", "expected JSON");
-  folder_.write("camera.json", "[1]");
-  expect_error("camera.json", "is of type array: expected object");
-  folder_.write("camera.json", "");
-  expect_error("camera.json", "expected JSON");
-}
-
-TEST_F(Recording, RefusesImagesOfAnotherSize) {
+  for (const Row& row : rows) {
+    std::string json = kCamera;
+    folder_.write("camera.json", json.replace(json.find(row.part), row.part.size(), row.replacement));
+    expect_error("camera.json", row.message);
+  }
   write_recording();
   folder_.write_colour("rgb/0001.png", 1, 5);
   expect_error("rgb/0001.png", "has 5 x 2 pixels: expected 3 x 2");
@@ -315,6 +193,8 @@ TEST_F(Recording, RefusesImagesOfAnotherSize) {
   expect_error("depth/0001.png", "has 4 x 2 pixels: expected 3 x 2");
   folder_.write("depth/0000.png", "not an image");
   expect_error("depth/0000.png", "is not a whole PNG file");
+  folder_.write("depth/2.npy", "");
+  expect_error("depth", "holds .png and .npy files: expected one kind");
 }
 
 TEST_F(Recording, AssociatesTumStamps) {
@@ -346,21 +226,6 @@ TEST_F(Recording, AssociatesTumStamps) {
                               (folder_ / "depth/c.png").string());
 }
 
-TEST_F(Recording, ReadsTumWithItsOwnCamera) {
-  folder_.write("camera.json", kCamera);
-  folder_.write_depth("depth/a.png", 1000);
-  folder_.write_colour("rgb/p.png", 0x33);
-  folder_.write("depth.txt", "12.5 depth/a.png\n");
-  folder_.write("rgb.txt", "12.51 rgb/p.png\n");
-  const RecordingIndex index = index_recording(folder_.path());
-  EXPECT_EQ(index.frame_rate_hz, 30);  // one frame has no rate of its own
-  const PointCloud cloud = read_frame(index, 0, kNoLimit);
-  for (int i = 0; i < 6; ++i) EXPECT_DOUBLE_EQ(cloud.z.at(i), 1.0 + 0.001 * i) << i;
-  EXPECT_EQ(cloud.colour.at(0), 0x333333u);
-  fs::remove(folder_ / "camera.json");
-  expect_error("depth/a.png", "has 3 x 2 pixels: expected 640 x 480");
-}
-
 TEST_F(Recording, RefusesBadTumLists) {
   folder_.write_depth("depth/a.png", 1000);
   const std::string missing = "no file " + (folder_ / "depth/b.png").string();
@@ -368,12 +233,10 @@ TEST_F(Recording, RefusesBadTumLists) {
        {std::array<std::string, 3>{"\xEF\xBB\xBF# nothing\n\n", "depth.txt", "lists no file"},
         {"# header\n1.0 depth/a.png\nnoon depth/a.png\n", "depth.txt:3",
          "timestamp 'noon': expected a number of seconds"},
-        {"nan depth/a.png\n", "depth.txt:1", "timestamp 'nan'"},
         {"1e300 depth/a.png\n", "depth.txt:1", "timestamp '1e300'"},
         {"0 depth/a.png\n1e-9 depth/a.png\n", "depth.txt",
          "has timestamps of more than 10000 frames a second"},
         {"1.0\r\n", "depth.txt:1", "'1.0': expected one timestamp and one file name"},
-        {"1.0 depth/a.png rgb/a.png\n", "depth.txt:1", "'1.0 depth/a.png rgb/a.png': expected"},
         {"1.0 depth/a.png\n1.0 depth/a.png\n", "depth.txt:2", "timestamp 1.0: expected above"},
         {"1.0 depth/a.png\n2.0 depth/b.png\n", "depth.txt:2", missing}}) {
     folder_.write("depth.txt", list);
@@ -427,32 +290,23 @@ TEST_F(Recording, DepthsAreFloatsAndDistancesIfCameraJsonSaysSo) {
   fs::remove(folder_ / "depth.txt"), fs::remove(folder_ / "camera.json");
   folder_.write("intrinsic/intrinsic_depth.txt", "5 0 2.5 0\n0 5 1.5 0\n0 0 1 0\n0 0 0 1\n");
   EXPECT_EQ(index_recording(folder_.path()).camera.width, kWidth);
-  folder_.write("camera.json", json + R"(, "depth_along": "z"})");
-  expect_error("camera.json", "depth_along = \"z\": expected \"axis\", \"ray\"");
-  folder_.write("camera.json", json + "}");
-  folder_.write_depth("depth/2.png", 1000);
-  expect_error("depth", "holds .png and .npy files: expected one kind");
 }
 
 TEST_F(Recording, NamesWithEqualNumbersAreANote) {
   write_pcd("frame_2.pcd", "2"), write_pcd("frame_1.pcd", "1");
   EXPECT_TRUE(index_recording(folder_.path()).notes.empty());
   write_pcd("frame_01.pcd", "1");
-  const RecordingIndex index = index_recording(folder_.path());
-  EXPECT_EQ(index.frames.size(), 3u);
-  ASSERT_EQ(index.notes.size(), 1u);
-  EXPECT_EQ(index.notes[0].kind, "equal numbers");
-  EXPECT_EQ(index.notes[0].text, "frame_01.pcd and frame_1.pcd have equal numbers: all are frames");
+  EXPECT_EQ(kinds_of(index_recording(folder_.path()).notes), Kinds{"equal numbers"});
 }
 
 TEST_F(Recording, StreamsPcdFiles) {
-  write_pcd("frame_2.pcd", "2"), write_pcd("frame_1.pcd", "1");
+  write_pcd("frame_10.pcd", "2"), write_pcd("frame_9.pcd", "1");
   RecordingIndex index = index_recording(folder_.path());
   EXPECT_EQ(index.kind, RecordingIndex::Kind::pcd);
   EXPECT_EQ(index.frame_rate_hz, 30);
   ASSERT_EQ(index.frames.size(), 2u);
   EXPECT_EQ(index.frames[1].captured_s, 1 / 30.0);
-  EXPECT_EQ(index.frames[1].depth, folder_ / "frame_2.pcd");
+  EXPECT_EQ(index.frames[1].depth, folder_ / "frame_10.pcd");
   // u = fx x/z + cx with u = 0, 1 at x/z = -1/2, 1/2 in the first file.
   const PointCloud first = read_frame(index, 0, 2);
   ASSERT_TRUE(first.image);
@@ -466,12 +320,70 @@ TEST_F(Recording, StreamsPcdFiles) {
 
   folder_.write("camera.json", R"({"frame_rate_hz": 3.79})");
   EXPECT_EQ(index_recording(folder_.path()).frame_rate_hz, 3.79);
-  EXPECT_EQ(index_recording(folder_ / "frame_1.pcd").frames.size(), 1u);
+  EXPECT_EQ(index_recording(folder_ / "frame_9.pcd").frames.size(), 1u);
   folder_.write("camera.json", "{}");
   expect_error("camera.json", "has no key 'frame_rate_hz'");
   fs::remove(folder_ / "camera.json");
-  folder_.write("frame_2.pcd", "VERSION 0.7\n");
-  expect_error("frame_2.pcd", "the PCD header has no FIELDS entry");
+  folder_.write("frame_10.pcd", "VERSION 0.7\n");
+  expect_error("frame_10.pcd", "the PCD header has no FIELDS entry");
+}
+
+// Colour and depth images with equal names belong together, else those with equal numbers. What has not
+// exactly one partner is refused.
+TEST_F(Recording, PairsColourImagesWithDepthImages) {
+  using Names = std::vector<std::string>;
+  struct Row {
+    Names depth, rgb, colours;
+    std::string refused = "", partner = "";
+  };
+  const Row rows[] = {
+      {{"1.png", "2.png"}, {}, {"", ""}},
+      {{"1.png", "2.png"}, {"2.png", "a1.png"}, {"", "2.png"}},
+      {{"frame-9.depth.png", "frame-10.depth.png", "frame-11.depth.png"},
+       {"f010.color.png", "f9.color.png"},
+       {"f9.color.png", "f010.color.png", ""}},
+      {{"k2_0001.png", "k3_0001.png"}, {"3_1.png", "2_1.png"}, {"2_1.png", "3_1.png"}},
+      {{"a_1.png", "a_2.png"}, {"b_1.png"}, {"b_1.png", ""}},
+      {{"k2_0001.png", "k3_0001.png"}, {"1.png"}, {}, "1.png", "k2_0001.png"},
+      {{"a_1.png", "a_2.png"}, {"7.png"}, {}, "7.png", "a_1.png"},
+      {{"a_1.png", "a_2.png"}, {"b_1.png", "c_01.png"}, {}, "c_01.png", "a_1.png"},
+      {{"a_1.png", "a_2.png", "z_1.png"}, {"b_1.png"}, {}, "b_1.png", "z_1.png"},
+  };
+  const auto colours = [&] {
+    Names names;
+    for (const fs::path& file : colour_images(files_in_order(folder_ / "depth", ".png"), folder_ / "rgb"))
+      names.push_back(file.filename().string());
+    return names;
+  };
+  for (const Row& row : rows) {
+    fs::remove_all(folder_ / "depth"), fs::remove_all(folder_ / "rgb");
+    for (const std::string& name : row.depth) folder_.write("depth/" + name, "");
+    for (const std::string& name : row.rgb) folder_.write("rgb/" + name, "");
+    if (row.refused.empty())
+      EXPECT_EQ(colours(), row.colours) << row.depth.front();
+    else
+      EXPECT_EQ(refusal(colours).rfind((folder_ / "rgb" / row.refused).string() +
+                                           ": it is not clear whether it belongs to " +
+                                           (folder_ / "depth" / row.partner).string(),
+                                       0),
+                0u);
+  }
+  fs::remove(folder_ / "rgb/b_1.png"), folder_.write("rgb/1.jpg", "");
+  EXPECT_HAS(refusal(colours),
+             (folder_ / "rgb").string() + ": holds no .png file: expected the colour images of ");
+}
+
+TEST_F(Recording, LinksToNothingAreRefused) {
+  write_recording();
+  const std::string problem = "is a link to a file that does not exist: expected a file";
+  for (const char* name : {"depth/2.png", "rgb/2.png"}) {
+    fs::create_symlink("nowhere", folder_ / name);
+    expect_error(name, problem);
+    fs::remove(folder_ / name);
+  }
+  fs::create_symlink("nowhere", folder_ / "link");
+  EXPECT_HAS(refusal([&] { colour_images({folder_ / "depth/0000.png"}, folder_ / "link"); }),
+             "link: " + problem);
 }
 
 }  // namespace
