@@ -1,3 +1,4 @@
+// Tools from files and from the cache: the same bits, made anew where a file of the cache is damaged.
 #include "runners/experiment/mesh_files/loaded_tool.h"
 
 #include <gtest/gtest.h>
@@ -49,8 +50,14 @@ class ToolCacheTest : public testing::Test {
     return folder_ / "cache" / (names.empty() ? "none" : names[0]);
   }
 
+  fs::path spheres_file() const {
+    for (const std::string& name : files_in(folder_ / "cache"))
+      if (name.ends_with(".spheres")) return folder_ / "cache" / name;
+    return {};
+  }
+
   TestFolder folder_{"tool_cache"};
-  ToolSettings bar_{.mesh = "bar", .voxel_m = 1e-3};
+  const ToolSettings bar_{.mesh = "bar", .voxel_m = 1e-3}, slab_{.mesh = "slab-20", .voxel_m = 2e-3};
 };
 
 TEST_F(ToolCacheTest, FreshAndCachedAreTheSameBits) {
@@ -172,13 +179,6 @@ TEST_F(ToolCacheTest, RefusalsNameTheParameter) {
   EXPECT_HAS(validate({.size_m = 5e-4}), "tool_size_m = 0.000500: expected two voxels");
 }
 
-TEST_F(ToolCacheTest, ParametersReachTheSettings) {
-  ToolSettings settings;
-  std::vector<std::string> names;
-  for (const Parameter& p : parameters(settings)) names.push_back(p.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"tool_mesh", "tool_size_m", "tool_voxel_m", "tool_repair"}));
-}
-
 // Every number of the spheres, in an order that tells different trees apart.
 std::vector<double> numbers_of(const ToolSpheres& tool) {
   std::vector<double> all{tool.inflation_m, tool.outside_m, tool.surface_outside_m};
@@ -194,25 +194,7 @@ std::vector<double> numbers_of(const ToolSpheres& tool) {
   return all;
 }
 
-class SpheresCacheTest : public testing::Test {
- protected:
-  SpheresCacheTest() {
-    ::setenv("REMOTE_TOUCH_CACHE", (folder_ / "cache").c_str(), 1);
-    ::unsetenv("REMOTE_TOUCH_CACHE_MB");  // the user may have set it
-  }
-  ~SpheresCacheTest() override { ::unsetenv("REMOTE_TOUCH_CACHE"); }
-
-  fs::path spheres_file() const {
-    for (const std::string& name : files_in(folder_ / "cache"))
-      if (name.ends_with(".spheres")) return folder_ / "cache" / name;
-    return {};
-  }
-
-  TestFolder folder_{"spheres_cache"};
-  const ToolSettings slab_{.mesh = "slab-20", .voxel_m = 2e-3};
-};
-
-TEST_F(SpheresCacheTest, FreshAndCachedAreTheSameBits) {
+TEST_F(ToolCacheTest, FreshAndCachedSpheresAreTheSameBits) {
   std::string made, again;
   const ToolOfSpheres fresh = load_tool_of_spheres(slab_, 20, &made);
   const auto before = fs::last_write_time(spheres_file());
@@ -223,7 +205,7 @@ TEST_F(SpheresCacheTest, FreshAndCachedAreTheSameBits) {
   EXPECT_EQ(fs::last_write_time(spheres_file()), before) << "made anew";
 }
 
-TEST_F(SpheresCacheTest, EveryNumberOfLeavesHasItsOwn) {
+TEST_F(ToolCacheTest, EveryNumberOfLeavesHasItsOwnSpheres) {
   EXPECT_NE(spheres_key("tool", 20), spheres_key("tool", 21));
   EXPECT_NE(spheres_key("tool", 20), spheres_key("other", 20));
   EXPECT_LE(load_tool_of_spheres(slab_, 8).spheres->spheres.leaves().size(), 8u);
@@ -231,7 +213,7 @@ TEST_F(SpheresCacheTest, EveryNumberOfLeavesHasItsOwn) {
 }
 
 // A whole file of this kind whose counts are not those of its leaves, which no honest writer makes.
-TEST_F(SpheresCacheTest, CountsThatDoNotFitAreRefused) {
+TEST_F(ToolCacheTest, SpheresWhoseCountsDoNotFitAreRefused) {
   const std::vector<double> leaves(8, 0.01);
   for (const std::vector<std::uint32_t>& counts : {std::vector<std::uint32_t>{1}, {2, 1}, {1, 2}, {3}, {}}) {
     const auto put = [&](CacheWriter& pack) {

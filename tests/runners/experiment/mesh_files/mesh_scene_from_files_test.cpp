@@ -1,33 +1,124 @@
+// Scenes of mesh files: objects that are placed and moved against closed forms, the table, what the camera
+// sees, and what is refused.
 #include "runners/experiment/mesh_files/mesh_file.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "core/mesh/triangle_mesh.h"
 #include "core/points/point_cloud.h"
-#include "tests/runners/experiment/mesh_files/box_scene.h"
+#include "core/points/vector.h"
 #include "tests/support/meshes.h"
 #include "tests/support/note_kinds.h"
+#include "tests/support/scenes.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::mesh_scene_from_files_test {
 namespace {
 
-// Meshes that are placed and moved: the true surface against closed forms, and meshes that are refused in one
-// line.
+using Settings = MeshSceneFromFiles::Settings;
 
-using namespace box_scene;
+// A box in the middle of nowhere. Its coordinates have single precision.
+const Vec3 kSides_m(0.25, 0.125, 0.5), kCentre_m(1, 2, -3);
 
-class PlacedMeshes : public BoxScene {};
+std::string obj_of(const TriangleMesh& mesh) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const Vec3& v : mesh.vertices) text << "v " << v.x() << " " << v.y() << " " << v.z() << "\n";
+  for (const auto& [a, b, c] : mesh.triangles) text << "f " << a + 1 << " " << b + 1 << " " << c + 1 << "\n";
+  return text.str();
+}
 
-// --- positions ---
+TriangleMesh sheet() {  // faces +y
+  return {{{-0.25, 0, 0.25}, {0.25, 0, 0.25}, {0.25, 0, -0.25}, {-0.25, 0, -0.25}}, {{0, 1, 2}, {0, 2, 3}}};
+}
 
-TEST_F(PlacedMeshes, AnObjectStandsAtItsPosition) {
+double distance_to_box(const Vec3& p, const Vec3& centre, const Vec3& sides) {
+  const Vec3 beyond = (p - centre).cwiseAbs() - 0.5 * sides;
+  return beyond.cwiseMax(0.0).norm() + std::min(0.0, beyond.maxCoeff());
+}
+
+// Positions around the box, inside of it, and at its corners.
+std::vector<Vec3> positions_around(const Vec3& centre, const Vec3& sides) {
+  std::vector<Vec3> positions;
+  for (const double x : {-0.62, -0.3, 0.1, 0.7})
+    for (const double y : {-0.6, 0.05, 0.45, 0.9})
+      for (const double z : {-0.55, -0.4, 0.2, 0.53})
+        positions.push_back(centre + sides.cwiseProduct(Vec3(x, y, z)));
+  return positions;
+}
+
+RigidTransform turned(const Vec3& rotation_deg, const Vec3& position_m = Vec3::Zero()) {
+  return Eigen::Translation3d(position_m) * rotation(kRadiansPerDegree * rotation_deg);
+}
+
+std::string names_of(const std::vector<InputPart>& parts) {
+  std::string names;
+  for (const InputPart& part : parts)
+    for (const InputFile& file : files_of(part)) names += file.name + " ";
+  return names;
+}
+
+class ScenesOfFiles : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const TriangleMesh& mesh) const {
+    return folder_.write(name, obj_of(mesh)).string();
+  }
+  // Writes a line 't tx ty tz qx qy qz qw' for each pose, or with qw first.
+  std::string write_path(const std::string& name, const std::vector<StampedPose>& poses,
+                         bool real_part_first = false) const {
+    std::ostringstream text;
+    text.precision(17);
+    for (const StampedPose& pose : poses) {
+      const Eigen::Quaterniond q(pose.X.linear());
+      const Eigen::Vector4d first(q.w(), q.x(), q.y(), q.z()), last = q.coeffs();
+      text << pose.time_s << " " << pose.X.translation().transpose() << " "
+           << (real_part_first ? first : last).transpose() << "\n";
+    }
+    return folder_.write(name, text.str()).string();
+  }
+  // The box without a table and without errors of the sensor, in a small image.
+  Settings box_alone() const {
+    Settings s;
+    s.objects[0] = {.mesh = write("box.obj", box_mesh(kSides_m, kCentre_m))};
+    s.table = false;
+    DepthCameraSettings& camera = s.scene.sensor.camera;
+    camera.width = 96, camera.height = 72, camera.focal_px = 80;
+    camera.noise_per_m = 0, camera.quantisation_per_m = 0, camera.hole_px = 0;
+    return s;
+  }
+  static MeshSceneFromFiles made(const Settings& s) {
+    EXPECT_EQ(validate(s), "");
+    return {s, NoiseKey{1}, scenes::kernels()};
+  }
+  // Expects that the scene has the box at a pose X_WB of its middle, and nothing else.
+  static void expect_box(const MeshSceneFromFiles& scene, double time_s, const RigidTransform& X_WB,
+                         const Vec3& sides = kSides_m) {
+    for (const Vec3& p_B : positions_around(Vec3::Zero(), sides))
+      EXPECT_NEAR(scene.signed_distance(X_WB * p_B, time_s), distance_to_box(p_B, Vec3::Zero(), sides), 1e-9)
+          << time_s << " s: " << p_B.transpose();
+  }
+  std::string refused(const Settings& s) const {
+    return refusal([&] { made(s); });
+  }
+  // Returns the reason for which a mesh is refused as the second object.
+  std::string refused(const std::string& name, const TriangleMesh& mesh) const {
+    Settings s = box_alone();
+    s.objects[1].mesh = write(name, mesh);
+    return refused(s);
+  }
+
+  TestFolder folder_{"mesh_scene_from_files"};
+};
+
+TEST_F(ScenesOfFiles, AnObjectStandsAtItsPosition) {
   Settings s = box_alone();
   s.objects[0].position_m = {0.1, -0.05, 0.2};
   expect_box(made(s), 0, turned(Vec3::Zero(), Vec3(0.1, -0.05 + 0.5 * kSides_m.y(), 0.2)));
@@ -35,25 +126,16 @@ TEST_F(PlacedMeshes, AnObjectStandsAtItsPosition) {
   expect_box(made(s), 0, turned(Vec3::Zero(), Vec3(0.1, -0.05, 0.2) + kCentre_m));
 }
 
-TEST_F(PlacedMeshes, TheSizeIsThatOfTheLongestSide) {
-  Settings s = box_alone();
-  s.objects[0].size_m = 0.125;
-  const Vec3 sides = 0.25 * kSides_m;
-  expect_box(made(s), 0, turned(Vec3::Zero(), Vec3(0, 0.5 * sides.y(), 0)), sides);
-}
-
-TEST_F(PlacedMeshes, AVertexWithoutTrianglesIsNotInTheSize) {
+TEST_F(ScenesOfFiles, AVertexWithoutTrianglesIsNotInTheSize) {
   Settings s = box_alone();
   TriangleMesh mesh = box_mesh(kSides_m);
-  mesh.vertices.insert(mesh.vertices.begin(), Vec3(9, 9, 9));
-  for (auto& triangle : mesh.triangles)
-    for (int& corner : triangle) ++corner;
+  mesh.vertices.emplace_back(9, 9, 9);
   write("box.obj", mesh);
   s.objects[0].size_m = 0.5;
   expect_box(made(s), 0, turned(Vec3::Zero(), Vec3(0, 0.5 * kSides_m.y(), 0)));
 }
 
-TEST_F(PlacedMeshes, ATurnedObjectStandsOnItsLowestPoint) {
+TEST_F(ScenesOfFiles, ATurnedObjectStandsOnItsLowestPoint) {
   Settings s = box_alone();
   s.objects[0].rotation_deg = {-90, 0, 0};  // z of the file is up
   expect_box(made(s), 0, turned({-90, 0, 0}, Vec3(0, 0.5 * kSides_m.z(), 0)));
@@ -62,16 +144,7 @@ TEST_F(PlacedMeshes, ATurnedObjectStandsOnItsLowestPoint) {
   expect_box(made(s), 0, turned({0, 0, 45}, Vec3(0, 0.5 * height, 0)));
 }
 
-TEST_F(PlacedMeshes, ASphereHasTheDistanceOfASphere) {
-  constexpr double kRadius_m = 0.1, kSag_m = 3e-4;  // between the sphere and its triangles
-  Settings s = box_alone();
-  s.objects[0].mesh = write("ball.obj", sphere(kRadius_m));
-  const MeshSceneFromFiles scene = made(s);
-  for (const Vec3& p : positions_around({0, kRadius_m, 0}, {0.3, 0.3, 0.3}))
-    EXPECT_NEAR(scene.signed_distance(p, 0), (p - Vec3(0, kRadius_m, 0)).norm() - kRadius_m, kSag_m);
-}
-
-TEST_F(PlacedMeshes, SeveralObjectsCountAsTheirUnion) {
+TEST_F(ScenesOfFiles, SeveralObjectsCountAsTheirUnion) {
   Settings s = box_alone();
   s.objects[1] = {.mesh = "slab-40", .position_m = {0.4, 0, 0}};
   s.objects[2] = {.mesh = s.objects[0].mesh, .size_m = 0.25, .position_m = {-0.4, 0.1, 0}};
@@ -85,9 +158,7 @@ TEST_F(PlacedMeshes, SeveralObjectsCountAsTheirUnion) {
   EXPECT_EQ(scene.true_meshes(0).size(), 3u);
 }
 
-// --- motions ---
-
-TEST_F(PlacedMeshes, AMotionMovesTheTrueSurfaceAtAllTimes) {
+TEST_F(ScenesOfFiles, AMotionMovesTheTrueSurfaceAtAllTimes) {
   Settings s = box_alone();
   s.objects[0].position_m = {0.1, 0.2, 0};
   s.objects[0].motion = {0.2, 0, 0, 0, 0, 0, 0, 1.2, 0, 0.3, 0, 0, 90, 0};
@@ -99,27 +170,11 @@ TEST_F(PlacedMeshes, AMotionMovesTheTrueSurfaceAtAllTimes) {
   }
 }
 
-// A hand at rest over the middle of the top comes nearer to it at the speed of the motion.
-TEST_F(PlacedMeshes, TheTrueSurfaceHasTheVelocityOfTheMotion) {
+TEST_F(ScenesOfFiles, APathIsThatOfItsFile) {
   Settings s = box_alone();
-  s.objects[0].motion = {0, 0, 0, 0, 0, 0, 0, 0.5, 0.05, 0.1, 0, 0, 0, 0, 1, 0.05, -0.3, 0, 0, 0, 0};
-  const MeshSceneFromFiles scene = made(s);
-  constexpr double kStep_s = 1e-4;
-  const Vec3 p_W(0.02, 0.3, 0.03);
-  for (const auto& [time, speed] : {std::pair(0.013, 0.2), {0.4, 0.2}, {0.6, -0.8}, {0.99, -0.8}, {1.1, 0.0}})
-    EXPECT_NEAR((scene.signed_distance(p_W, time) - scene.signed_distance(p_W, time + kStep_s)) / kStep_s,
-                speed, 1e-8)
-        << time;
-}
-
-TEST_F(PlacedMeshes, APathIsThatOfItsFile) {
-  const double half = std::sqrt(0.5);
-  std::ostringstream path;
-  path.precision(17);
-  path << "# t tx ty tz qx qy qz qw\n100 0 0 0 0 0 0 1\n100.5 0.2 0 0 0 0 0 1\n101.5 0.2 0.1 0 0 " << half
-       << " 0 " << half << "\n";
-  Settings s = box_alone();
-  s.objects[0].path = folder_.write("path.txt", path.str()).string();
+  s.objects[0].path = write_path("path.txt", {{100, turned(Vec3::Zero())},
+                                              {100.5, turned(Vec3::Zero(), {0.2, 0, 0})},
+                                              {101.5, turned({0, 90, 0}, {0.2, 0.1, 0})}});
   s.objects[0].origin = PlacedMesh::Origin::file;
   s.objects[0].position_m = {0, 0, 0.3};
   s.objects[0].rotation_deg = {0, 90, 0};
@@ -132,7 +187,7 @@ TEST_F(PlacedMeshes, APathIsThatOfItsFile) {
   EXPECT_EQ(scene.frame_count(), 46) << "until the end of the path";
 }
 
-TEST_F(PlacedMeshes, AnObjectOnAPathStandsAtItsPositionAtTheStart) {
+TEST_F(ScenesOfFiles, AnObjectOnAPathStandsAtItsPositionAtTheStart) {
   Settings s = box_alone();
   s.objects[0].path = folder_.write("path.txt", "0 0.7 0.4 0 0 0 0 1\n2 0.7 0.6 0 0 0 0 1\n").string();
   s.objects[0].position_m = {0, 0.05, 0};
@@ -141,36 +196,61 @@ TEST_F(PlacedMeshes, AnObjectOnAPathStandsAtItsPositionAtTheStart) {
     expect_box(scene, time, turned(Vec3::Zero(), Vec3(0, 0.05 + 0.1 * time + 0.5 * kSides_m.y(), 0)));
 }
 
-// --- refusals ---
-
-TEST_F(PlacedMeshes, RefusesFilesThatAreNotThere) {
-  Settings s = box_alone();
-  s.objects[1].mesh = "none.obj";
-  EXPECT_HAS(refused(s), "scenario.second_mesh = none.obj: no such mesh: expected ball, bar");
-  EXPECT_THROW(made(s), MissingInput);
-  s.objects[1].mesh = "bar", s.objects[1].path = "none.txt";
-  EXPECT_HAS(refused(s), "none.txt");
-  s.objects[1].path.clear(), s.camera_path = "none.tum";
-  EXPECT_HAS(refused(s), "none.tum");
-}
-
-TEST_F(PlacedMeshes, RefusesMeshesThatAreNoSolidsInMetres) {
+// One row for each refusal: a change of the settings of box_alone(), and what is wrong then.
+TEST_F(ScenesOfFiles, RefuseWhatIsNotClear) {
   const TriangleMesh box = box_mesh(kSides_m);
   TriangleMesh open = box;
   open.triangles.pop_back();
-  EXPECT_HAS(refused("open.obj", open), "open.obj: not closed: 3 boundary edges");
-  EXPECT_HAS(refused("open.obj", open), "expected a closed mesh, scenario.second_mesh_repair=true or");
-  EXPECT_HAS(refused("in.obj", meshes::inside_out(box)), "in.obj: closed (1 part, 12 triangles, inside out)");
-  const TriangleMesh large = meshes::moved(box, 1000 * Eigen::Matrix3d::Identity(), Vec3::Zero());
-  EXPECT_HAS(refused("mm.obj", large), "mm.obj: its bounding box has a diagonal of 572.8");
-  EXPECT_HAS(refused("mm.obj", large), "may be millimetres; scenario.second_mesh_size_m scales the mesh");
-  const TriangleMesh point = meshes::moved(box, Eigen::Matrix3d::Zero(), Vec3::Zero());
-  EXPECT_HAS(refused("point.obj", point), "point.obj: ");
-  const TriangleMesh line = meshes::moved(box, Vec3(1, 0, 0).asDiagonal(), Vec3::Zero());
-  EXPECT_HAS(refused("line.obj", line), "line.obj: ");
+  write("open.obj", open);
+  write("mm.obj", meshes::moved(box, 1000 * Eigen::Matrix3d::Identity(), Vec3::Zero()));
+  for (const char* name : {"no.obj", "no.ply", "no.stl"}) folder_.write(name, "no mesh\n");
+  folder_.write("empty.txt", "");
+  using Change = std::function<void(Settings&)>;
+  const auto second = [&](const std::string& name) -> Change {
+    return [file = (folder_ / name).string()](Settings& s) { s.objects[1].mesh = file; };
+  };
+  const std::pair<Change, std::string> rows[] = {
+      {[](Settings& s) { s.objects[1].mesh = "none.obj"; },
+       "scenario.second_mesh = none.obj: no such mesh: expected ball, bar"},
+      {[](Settings& s) { s.objects[1].mesh = "bar", s.objects[1].path = "none.txt"; }, "none.txt"},
+      {[](Settings& s) { s.camera_path = "none.tum"; }, "none.tum"},
+      {[&](Settings& s) { s.objects[0].path = (folder_ / "empty.txt").string(); }, "empty.txt: has no pose"},
+      {second("open.obj"), "open.obj: not closed: 3 boundary edges"},
+      {second("open.obj"), "expected a closed mesh, scenario.second_mesh_repair=true or"},
+      {second("mm.obj"), "mm.obj: its bounding box has a diagonal of 572.8"},
+      {second("mm.obj"), "may be millimetres; scenario.second_mesh_size_m scales the mesh"},
+      {second("no.obj"), "no.obj"},
+      {second("no.ply"), "no.ply"},
+      {second("no.stl"), "no.stl"},
+      {[](Settings& s) { s.objects[0].mesh = "wolf"; }, "mesh = wolf: expected ball, bar"},
+      {[](Settings& s) { s.objects[0].mesh = ""; }, "mesh = \"\": expected an object"},
+      {[](Settings& s) { s.objects[0].colour = "red"; }, "mesh_colour = red: expected #"},
+      {[](Settings& s) { s.objects[0].colour = "#12345g"; }, "mesh_colour = #12345g"},
+      {[](Settings& s) { s.objects[0].sheet = s.objects[0].repair = true; }, "mesh_sheet = false"},
+      {[](Settings& s) { s.objects[0].motion = std::vector<double>(14); },
+       "mesh_motion: row 1: expected a later time"},
+      {[](Settings& s) {
+         s.objects[1].mesh = "bar", s.objects[1].motion.assign(7, 0), s.objects[1].path = "p.txt";
+       },
+       "second_mesh_motion: expected no motion beside second_mesh_path = p.txt"},
+      {[](Settings& s) {
+         DepthCameraSettings& camera = s.scene.sensor.camera;
+         camera.camera_position_m = camera.target_position_m;
+       },
+       "expected two different positions"},
+  };
+  for (const auto& row : rows) {
+    Settings s = box_alone();
+    row.first(s);
+    const std::string invalid = validate(s);
+    EXPECT_HAS(invalid.empty() ? refused(s) : invalid, row.second);
+  }
+  Settings s = box_alone();
+  s.objects[1].mesh = "none.obj";
+  EXPECT_THROW(made(s), MissingInput);
 }
 
-TEST_F(PlacedMeshes, RefusesAPartThatIsInsideOutUnlessItIsAHollow) {
+TEST_F(ScenesOfFiles, RefusesAPartThatIsInsideOutUnlessItIsAHollow) {
   const TriangleMesh large = box_mesh({0.5, 0.5, 0.5});
   const auto with_small = [&](const Vec3& at) {
     return meshes::together(large, meshes::inside_out(box_mesh({0.25, 0.25, 0.25}, at)));
@@ -182,7 +262,7 @@ TEST_F(PlacedMeshes, RefusesAPartThatIsInsideOutUnlessItIsAHollow) {
   EXPECT_NEAR(made(s).signed_distance({0, 0.40625, 0}, 0), -0.03125, 1e-9) << "in the wall";
 }
 
-TEST_F(PlacedMeshes, ARepairClosesAndTurnsMeshes) {
+TEST_F(ScenesOfFiles, ARepairClosesAndTurnsMeshes) {
   TriangleMesh open = box_mesh(kSides_m, kCentre_m);
   open.triangles.pop_back();
   const RigidTransform standing = turned(Vec3::Zero(), Vec3(0, 0.5 * kSides_m.y(), 0));
@@ -192,29 +272,6 @@ TEST_F(PlacedMeshes, ARepairClosesAndTurnsMeshes) {
     expect_box(made(s), 0, standing);
   }
 }
-
-TEST_F(PlacedMeshes, RefusesTextThatIsNoMeshOrNoPath) {
-  Settings s = box_alone();
-  for (const char* name : {"no.obj", "no.ply", "no.stl"}) {
-    s.objects[0].mesh = folder_.write(name, "no mesh\n").string();
-    EXPECT_HAS(refused(s), name);
-  }
-  const auto path_refused = [this](const std::string& text) {
-    Settings moved = box_alone();
-    moved.objects[0].path = folder_.write("path.txt", text).string();
-    return refused(moved);
-  };
-  EXPECT_HAS(path_refused(""), "path.txt: has no pose");
-  EXPECT_HAS(path_refused("0 0 0 0 0 0 1\n"), "path.txt:1: has 7 words");
-  EXPECT_HAS(path_refused("1 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"), "path.txt:2: its time");
-  EXPECT_HAS(path_refused("0 0 0 0 0 0 0 2\n"), "path.txt:1: its quaternion has the norm 2");
-}
-
-// Scenes of mesh files: the table, what the camera sees, and settings that contradict each other.
-
-class ScenesOfFiles : public BoxScene {};
-
-// --- table and sheets ---
 
 TEST_F(ScenesOfFiles, TheTableIsBelowTheObjects) {
   Settings s = box_alone();
@@ -247,25 +304,25 @@ TEST_F(ScenesOfFiles, ASheetHasASurfaceOnlyWithinItsBorder) {
   EXPECT_TRUE(std::isnan(scene.signed_distance({0.3, 0.03, 0}, 0)));
 }
 
-// --- views ---
-
-TEST_F(ScenesOfFiles, PointsWithoutNoiseLieOnTheTrueSurface) {
+// The camera is where its settings say if it is not fitted.
+TEST_F(ScenesOfFiles, PointsLieOnTheTrueSurfaceInTheirColours) {
   Settings s = box_alone();
-  s.table = true;
+  s.table = true, s.objects[0].colour = "#C03020", s.camera_fit = false;
   s.objects[0].motion = {0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0.1, 0, 0, 20, 0};
-  s.objects[1] = {.mesh = write("ball.obj", sphere(0.05)), .position_m = {0.25, 0, 0.1}};
+  s.scene.sensor.camera.camera_position_m = {0.3, 0.6, 0},
+  s.scene.sensor.camera.target_position_m = {0, 0, 0};
   const MeshSceneFromFiles scene = made(s);
   for (const int frame : {0, 4, 15}) {
-    std::array<int, 3> seen{};  // box, ball, table
     const PointCloud cloud = scene.cloud(frame);
+    EXPECT_TRUE(cloud.image->X_WC.isApprox(look_at({0.3, 0.6, 0}, {0, 0, 0}), 1e-15));
+    int on_box = 0, on_table = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       if (!cloud.is_measured(i)) continue;
-      const Vec3 p = cloud.point(i);
-      EXPECT_LT(std::abs(scene.signed_distance(p, scene.captured_s(frame))), 1e-6) << p.transpose();
-      const bool is_ball = (p - Vec3(0.25, 0.05, 0.1)).norm() < 0.051;
-      ++seen[is_ball ? 1 : std::abs(p.y()) < 1e-9 ? 2 : 0];
+      EXPECT_LT(std::abs(scene.signed_distance(cloud.point(i), scene.captured_s(frame))), 1e-6);
+      EXPECT_EQ(cloud.colour[i], cloud.y[i] > 1e-9 ? 0xC03020 : kNoColour);
+      ++(cloud.y[i] > 1e-9 ? on_box : on_table);
     }
-    for (const int count : seen) EXPECT_GT(count, 30) << frame;
+    EXPECT_GT(std::min(on_box, on_table), 30) << frame;
   }
 }
 
@@ -293,54 +350,18 @@ TEST_F(ScenesOfFiles, TheCameraFitsObjectsOfAllSizes) {
     }
 }
 
-TEST_F(ScenesOfFiles, ACameraThatIsNotFittedIsWhereItsSettingsSay) {
-  Settings s = box_alone();
-  s.camera_fit = false;
-  s.scene.sensor.camera.camera_position_m = {0.3, 0.6, 0},
-  s.scene.sensor.camera.target_position_m = {0, 0, 0};
-  const RigidTransform X_WC = made(s).cloud(0).image->X_WC;
-  EXPECT_TRUE(X_WC.isApprox(look_at({0.3, 0.6, 0}, {0, 0, 0}), 1e-15));
-}
-
-TEST_F(ScenesOfFiles, ACameraFollowsItsPath) {
-  Settings s = box_alone();
-  s.table = true;
-  const RigidTransform down = look_at({0, 1, 0}, {0, 0, 0});
-  const Eigen::Quaterniond q(down.linear());
-  std::ostringstream path;
-  path.precision(17);
-  for (const double t : {0.0, 1.0})
-    path << t << " " << 0.2 * t << " 1 0 " << q.x() << " " << q.y() << " " << q.z() << " " << q.w() << "\n";
-  s.camera_path = folder_.write("camera.txt", path.str()).string();
-  const MeshSceneFromFiles scene = made(s);
-  for (const int frame : {0, 12, 30}) {
-    const PointCloud cloud = scene.cloud(frame);
-    RigidTransform X_WC = down;
-    X_WC.translation().x() = 0.2 * frame / 30;
-    EXPECT_TRUE(cloud.image->X_WC.isApprox(X_WC, 1e-12)) << frame;
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      if (cloud.is_measured(i)) {
-        EXPECT_LT(std::abs(scene.signed_distance(cloud.point(i), scene.captured_s(frame))), 1e-6);
-      }
-  }
-}
-
 // Object and camera move in the same way on one clock, so that the image stays the same from the moment on
 // from which both move.
 TEST_F(ScenesOfFiles, PathsWhoseTimesOverlapHaveOneClock) {
   Settings s = box_alone();
   s.objects[0].origin = PlacedMesh::Origin::file, s.objects[0].position_m = -kCentre_m;
-  const Eigen::Quaterniond q(look_at({0, 1, 0}, {0, 0, 0}).linear());
-  const auto line = [&](double t, double x) {
-    std::ostringstream text;
-    text.precision(17);
-    text << t << " " << x << " 1 0 " << q.x() << " " << q.y() << " " << q.z() << " " << q.w() << "\n";
-    return text.str();
+  const auto object = [&](double first_s) {
+    return write_path("object.txt",
+                      {{first_s, turned(Vec3::Zero())}, {first_s + 1, turned(Vec3::Zero(), {0.5, 0, 0})}});
   };
-  s.camera_path = folder_.write("camera.txt", line(100, 0) + line(100.5, 0) + line(101.5, 0.5)).string();
-  const std::string moves = " 0 0 0 0 0 1\n";
-  s.objects[0].path =
-      folder_.write("object.txt", "# t tx ty tz qx qy qz qw\n100.5 0" + moves + "101.5 0.5" + moves).string();
+  const RigidTransform before = look_at({0, 1, 0}, {0, 0, 0}), after = look_at({0.5, 1, 0}, {0.5, 0, 0});
+  s.camera_path = write_path("camera.txt", {{100, before}, {100.5, before}, {101.5, after}});
+  s.objects[0].path = object(100.5);
   const MeshSceneFromFiles scene = made(s);
   EXPECT_TRUE(scene.true_meshes(0.5)[0].X_WO->translation().isApprox(-kCentre_m, 1e-12));
   EXPECT_TRUE(scene.true_meshes(1.0)[0].X_WO->translation().isApprox(Vec3(0.25, 0, 0) - kCentre_m, 1e-12));
@@ -348,7 +369,7 @@ TEST_F(ScenesOfFiles, PathsWhoseTimesOverlapHaveOneClock) {
   EXPECT_HAS(scene.input(),
              "; object.txt: 2 poses over 1 s at 1 Hz, 0.5 m long, at most 0.5 m/s; camera.txt: 3 poses");
   EXPECT_TRUE(scene.input_notes().empty());
-  s.objects[0].path = folder_.write("object.txt", "200.5 0" + moves + "201.5 0.5" + moves).string();
+  s.objects[0].path = object(200.5);
   ASSERT_EQ(kinds_of(made(s).input_notes()), Kinds{"unusual poses"});
   EXPECT_HAS(made(s).input_notes()[0].text, "each file counts from its own first line");
 }
@@ -358,15 +379,7 @@ TEST_F(ScenesOfFiles, ThatTheirCameraDoesNotShowAreReported) {
   s.objects[0].position_m = {0.2, 0, 0.1};
   const RigidTransform down = look_at({0.1, 1, 0}, {0.2, 0, 0.1});
   const auto notes = [&](const RigidTransform& X, PoseDirection direction, bool real_part_first = false) {
-    const Eigen::Quaterniond q(X.linear());
-    const Vec3 t = X.translation();
-    std::ostringstream path;
-    path.precision(17);
-    path << "0 " << t.x() << " " << t.y() << " " << t.z() << " ";
-    if (real_part_first) path << q.w() << " ";
-    path << q.x() << " " << q.y() << " " << q.z();
-    if (!real_part_first) path << " " << q.w();
-    s.camera_path = folder_.write("camera.txt", path.str() + "\n").string(), s.pose_direction = direction;
+    s.camera_path = write_path("camera.txt", {{0, X}}, real_part_first), s.pose_direction = direction;
     std::string text;
     for (const Note& note : made(s).input_notes()) text += note.kind + ": " + note.text;
     return text;
@@ -383,79 +396,14 @@ TEST_F(ScenesOfFiles, ThatTheirCameraDoesNotShowAreReported) {
              "with quaternions with qw first of the camera");
 }
 
-TEST_F(ScenesOfFiles, ObjectsHaveTheirColours) {
-  Settings s = box_alone();
-  s.table = true, s.objects[0].colour = "#C03020";
-  const PointCloud cloud = made(s).cloud(0);
-  std::set<std::uint32_t> found;
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    if (cloud.is_measured(i)) {
-      EXPECT_EQ(cloud.colour[i], cloud.y[i] > 1e-9 ? 0xC03020 : kNoColour);
-      found.insert(cloud.colour[i]);
-    }
-  EXPECT_EQ(found.size(), 2u);
-}
-
-TEST_F(ScenesOfFiles, FramesArePureFunctions) {
-  Settings s = box_alone();
-  s.table = true, s.scene.sensor.camera.noise_per_m = 0.002;
-  const PointCloud third = made(s).cloud(3);
-  EXPECT_TRUE(scenes::same_clouds(made(s).cloud(3), third));
-  EXPECT_FALSE(scenes::same_clouds(made(s, 2).cloud(3), third));
-  EXPECT_FALSE(scenes::same_clouds(made(s).cloud(4), third));
-}
-
-// --- settings ---
-
-TEST_F(ScenesOfFiles, TheDefaultsAreASceneWithoutFiles) {
-  const Settings s;
-  EXPECT_TRUE(input_files(s).empty());
-  const MeshSceneFromFiles scene = made(s);
-  EXPECT_HAS(scene.input(), "husky: ");
-  EXPECT_GT(scene.cloud(0).size(), 0u);
-}
-
-TEST_F(ScenesOfFiles, EveryParameterHasANameOfItsOwn) {
-  Settings s;
-  std::set<std::string> names;
-  for (const Parameter& parameter : parameters(s))
-    EXPECT_TRUE(names.insert(parameter.name).second) << parameter.name;
-  for (const char* name : {"mesh", "second_mesh_size_m", "third_mesh_path", "camera_path", "sensor"})
-    EXPECT_EQ(names.count(name), 1u) << name;
-}
-
 TEST_F(ScenesOfFiles, TheInputIsEveryFile) {
+  EXPECT_TRUE(input_files(Settings{}).empty());
   Settings s = box_alone();
   s.objects[0].path = folder_.write("path.txt", "0 0 0 0 0 0 0 1\n").string();
   s.objects[1] = {.mesh = "bar"};
-  s.objects[2] = {.mesh = write("ball.obj", sphere(0.1))};
+  s.objects[2] = {.mesh = write("ball.obj", box_mesh(kSides_m))};
   s.camera_path = folder_.write("camera.tum", "0 0 1 0 0 0 0 1\n").string();
   EXPECT_EQ(names_of(input_files(s)), "box.obj path.txt ball.obj camera.tum ");
-}
-
-TEST_F(ScenesOfFiles, SettingsThatContradictEachOtherAreInvalid) {
-  const auto problem = [this](auto change) {
-    Settings s = box_alone();
-    change(s);
-    return validate(s);
-  };
-  EXPECT_EQ(problem([](Settings&) {}), "");
-  EXPECT_HAS(problem([](Settings& s) { s.objects[0].mesh = "wolf"; }), "mesh = wolf: expected ball, bar");
-  EXPECT_HAS(problem([](Settings& s) { s.objects[0].mesh = ""; }), "mesh = \"\": expected an object");
-  EXPECT_HAS(problem([](Settings& s) { s.objects[0].colour = "red"; }), "mesh_colour = red: expected #");
-  EXPECT_HAS(problem([](Settings& s) { s.objects[0].colour = "#12345g"; }), "mesh_colour = #12345g");
-  EXPECT_HAS(problem([](Settings& s) { s.objects[0].sheet = s.objects[0].repair = true; }),
-             "mesh_sheet = false");
-  EXPECT_HAS(problem([](Settings& s) { s.objects[0].motion = {1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0}; }),
-             "mesh_motion: row 1: expected a later time");
-  EXPECT_HAS(problem([](Settings& s) {
-               s.objects[1] = {.mesh = "bar", .motion = {0, 0, 0, 0, 0, 0, 0}, .path = "p.txt"};
-             }),
-             "second_mesh_motion: expected no motion beside second_mesh_path = p.txt");
-  EXPECT_HAS(problem([](Settings& s) {
-               s.scene.sensor.camera.camera_position_m = s.scene.sensor.camera.target_position_m;
-             }),
-             "expected two different positions");
 }
 
 }  // namespace
