@@ -1,3 +1,4 @@
+// Scenes of points on a grid: lifts, planes and waves against their closed forms.
 #include "scenarios/simulated/grid_scenes.h"
 
 #include <gtest/gtest.h>
@@ -5,15 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "analysis/trace/trace.h"
 #include "runners/experiment/catalog/experiment.h"
-#include "runners/experiment/hand/trajectory.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/simulated/shape.h"
 #include "tests/support/scenes.h"
-#include "tests/support/test_files.h"
 
 // A lift against its closed form: the motion is a function of time, which frames sample.
 namespace remote_touch::lifts_test {
@@ -75,19 +77,6 @@ TEST(LiftMotion, IsTheSameAtEveryFrameRate) {
   MovingShape::Settings shape;
   shape.motion.lift = lift();
   expect_the_same_motion<MovingShape>(shape, lift());
-}
-
-TEST(LiftMotion, EventsOfAShapeAreAtTheirTimesAtAnyFrameRate) {
-  for (const double rate_hz : {15.0, 30.0, 60.0}) {
-    MovingShape::Settings s;
-    s.frame_rate_hz = rate_hz, s.empty_frame_at_s = 0.4, s.vanish_at_s = 0.8;
-    const MovingShape shape(s, {1, 2, 3}, scenes::kernels());
-    for (int frame = 0; frame < shape.frame_count(); ++frame) {
-      const bool is_empty = frame == std::lround(0.4 * rate_hz),
-                 is_gone = frame >= std::lround(0.8 * rate_hz);
-      EXPECT_EQ(shape.cloud(frame).size() == 0, is_empty || is_gone) << rate_hz << " " << frame;
-    }
-  }
 }
 
 // --- the heights that 4.3.2 gives ---
@@ -156,284 +145,148 @@ TEST(LiftMotion, PopsThroughAtTheBoundOfEachFrameRate) {
 }  // namespace
 }  // namespace remote_touch::lifts_test
 
-namespace remote_touch::moving_shape_test {
+// Grids and waves at rest, the plane that rises, and points whose noise is made on demand.
+namespace remote_touch::grid_scenes_test {
 namespace {
 
-using Kind = Shape::Kind;
-
-const NoiseKey kKey{1, 2, 3};
-constexpr double kPi = 3.14159265358979323846;
-const Kind kKinds[] = {Kind::flat, Kind::ridge, Kind::valley, Kind::sphere, Kind::ripple, Kind::corner};
-
-MovingShape made(const MovingShape::Settings& settings, const NoiseKey& key = kKey) {
-  return MovingShape(settings, key, scenes::kernels());
+template <class Made>
+Made made(const typename Made::Settings& settings = {}) {
+  return Made(settings, {1, 2, 3}, scenes::kernels());
 }
 
-Vec3 turned(const Vec3& p, double angle_deg) {
-  return Eigen::AngleAxisd(angle_deg * kPi / 180, Vec3::UnitZ()) * p;
+using Found = std::tuple<std::uint32_t, double, double, double>;  // number and position of a point
+
+std::vector<Found> gathered(const NeighbourSearch& search, const Ball& ball) {
+  const GatheredPoints out = scenes::gathered(search, ball);
+  const PointsView view = out.view();
+  std::vector<Found> found;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    found.push_back({out.index()[i], view.x[i], view.y[i], view.z[i]});
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
-// Settings of a shape of this kind, with all motions at once.
-MovingShape::Settings busy(Kind kind) {
-  MovingShape::Settings s;
-  s.grid = {41, 31, 0.0015, 0.25, -0.5};
-  s.shape.kind = kind, s.shape.slope_deg = 25, s.shape.radius_m = 0.025;
-  s.motion = {8, {0, 0.02, 0.1, 4 / 30.0, -1, 4 / 30.0}, 0.05, 0.004, 3, 6, 1.5, 0.1};
-  s.truth = SurfaceTime::moving;
-  return s;
-}
-
-// --- a lift ---
-
-TEST(MovingShape, AFlatLiftIsAMovingLiftBitForBit) {
-  MovingLift::Settings lift;
-  MovingShape::Settings shape;
-  shape.grid = lift.grid, shape.noise_sigma_m = lift.noise_sigma_m;
-  shape.motion.lift = lift.lift;
-  for (const bool moving : {false, true}) {
-    if (moving) lift.truth = SurfaceTime::moving, shape.truth = SurfaceTime::moving;
-    const MovingLift one(lift, kKey, scenes::kernels());
-    const MovingShape other = made(shape);
-    ASSERT_EQ(other.frame_count(), one.frame_count());
-    for (const int frame : {0, 1, 15, 17, 25})
-      EXPECT_TRUE(scenes::same_points(one.cloud(frame), other.cloud(frame))) << frame;
-    for (int tick = 0; tick < 1000; tick += 7) {
-      const double time_s = 0.001 * tick;
-      const Vec3 p(0.01, 1e-4 * tick - 0.05, -0.02);
-      EXPECT_EQ(one.signed_distance(p, time_s), other.signed_distance(p, time_s)) << time_s;
-      EXPECT_EQ(one.surface_height(0, 0, time_s), other.surface_height(0, 0, time_s)) << time_s;
-    }
+std::vector<Found> expected(const PointCloud& cloud, const Ball& ball) {
+  std::vector<Found> found;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 e = cloud.point(i) - ball.centre;
+    if (e.x() * e.x() + e.y() * e.y() + e.z() * e.z() <= ball.radius * ball.radius)
+      found.push_back({static_cast<std::uint32_t>(i), cloud.x[i], cloud.y[i], cloud.z[i]});
   }
+  return found;
 }
 
-// --- motions in addition to the lift, and the true surface ---
+TEST(FlatGrid, PointsLieOnACentredGrid) {
+  FlatGrid::Settings s;
+  s.grid = {5, 3, 0.01, 0.25, -0.5};
+  const PointCloud cloud = made<FlatGrid>(s).cloud(0);
+  ASSERT_EQ(cloud.size(), 15u);
+  EXPECT_LT((cloud.point(0) - Vec3(-0.0175, 0, -0.015)).norm(), 1e-17);
+  EXPECT_LT((cloud.point(4) - Vec3(0.0225, 0, -0.015)).norm(), 1e-17);
+  EXPECT_LT((cloud.point(14) - Vec3(0.0225, 0, 0.005)).norm(), 1e-17);
+}
 
-// A step along a point's normal changes the distance to the true surface by the length of the step, in any
-// pose.
-TEST(MovingShape, NormalsAreThoseOfTheTrueSurface) {
-  for (const Kind kind : kKinds) {
-    MovingShape::Settings s = busy(kind);
-    EXPECT_FALSE(made(s).cloud(3).has_normals());
-    s.normals = true;
-    const MovingShape shape = made(s);
-    EXPECT_TRUE(scenes::same_points(shape.cloud(5), made(busy(kind)).cloud(5)));
-    for (const int frame : {0, 9}) {
-      const PointCloud cloud = shape.cloud(frame);
-      int tried = 0;
-      for (std::size_t i = 0; i < cloud.size(); i += 13) {
-        if (!cloud.point(i).allFinite()) continue;
-        ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-12);
-        // Beside a crease another side may be nearer.
-        const double step_m = 1e-5;
-        EXPECT_NEAR(shape.signed_distance(cloud.point(i) + step_m * cloud.normal(i), frame / 30.0), step_m,
-                    1e-7)
-            << static_cast<int>(kind) << " " << i;
-        ++tried;
+// Noise is drawn on demand here. The oracle draws all of it and tests every point.
+TEST(MovingLift, LazyPointsAreTheCloudBitForBit) {
+  std::mt19937 random(1);
+  for (const double sigma : {0.0, 0.003, 0.015}) {
+    MovingLift::Settings s;
+    s.noise_sigma_m = sigma;
+    const MovingLift lift = made<MovingLift>(s);
+    for (const int frame : {0, 14, 25}) {
+      const PointCloud cloud = lift.cloud(frame);
+      const double y = lift.surface_height(0, 0, lift.captured_s(frame));
+      const PointCloud at = scenes::random_cloud(60, 1, static_cast<unsigned>(frame));
+      std::vector<Ball> balls;
+      for (std::size_t i = 0; i < at.size(); ++i) {
+        const Vec3 far(0.17 * at.x[i], y + 0.1 * at.y[i], 0.17 * at.z[i]);  // beyond the grid's edge at 0.149
+        const Vec3 near(0.03 * at.x[i], y + (0.01 + 3 * sigma) * at.y[i], 0.03 * at.z[i]);
+        balls.push_back({i % 2 == 0 ? far : near, 0.002 + 0.0003 * static_cast<double>(i)});
+        balls.push_back({balls.back().centre + Vec3(0.001, 0.0002, -0.001), 0.01});  // a proxy moves a little
       }
-      EXPECT_GT(tried, 30);
-    }
-  }
-}
-
-TEST(MovingShape, SlideShakeAndRockFollowTheirFormulas) {
-  MovingShape::Settings s;
-  s.motion.slide_velocity_m_per_s = -0.2, s.motion.shake_amplitude_m = 0.003, s.motion.shake_hz = 4;
-  s.motion.rock_deg = 7, s.motion.rock_hz = 0.8, s.motion.tilt_deg = -3, s.motion.motion_from_s = 0.25;
-  s.truth = SurfaceTime::moving;
-  const MovingShape shape = made(s);
-  EXPECT_EQ(shape.frame_count(), std::numeric_limits<int>::max());
-  for (int frame = 0; frame < 40; frame += 3) {
-    const double t = std::max(0.0, frame / 30.0 - 0.25);
-    const Vec3 origin(-0.2 * t, 0.003 * std::sin(2 * kPi * 4 * t), 0);
-    const double rotation_deg = -3 + 7 * std::sin(2 * kPi * 0.8 * t);
-    const PointCloud cloud = shape.cloud(frame);
-    for (std::size_t i = 0; i < cloud.size(); i += 97) {
-      const int column = static_cast<int>(i) % 80, row = static_cast<int>(i) / 80;
-      const Vec3 expected = origin + turned({s.grid.x(column), 0, s.grid.z(row)}, rotation_deg);
-      EXPECT_LT((cloud.point(i) - expected).norm(), 1e-15) << frame;
-    }
-    // The height is that of a tilted plane, also over positions beyond its border.
-    for (const double x : {0.0, 0.03, -1.0})
-      EXPECT_NEAR(shape.surface_height(x, 0.01, frame / 30.0),
-                  origin.y() + std::tan(rotation_deg * kPi / 180) * (x - origin.x()), 1e-14);
-  }
-  EXPECT_EQ(shape.surface_height(0, 0, 0.1), shape.surface_height(0, 0, 0.2)) << "before it begins";
-}
-
-TEST(MovingShape, NoiseFreePointsLieOnTheTrueSurfaceAtEveryFrame) {
-  for (const Kind kind : kKinds) {
-    const MovingShape shape = made(busy(kind));
-    for (const int frame : {0, 2, 5, 9, 23}) {
-      const PointCloud cloud = shape.cloud(frame);
-      const double t = shape.captured_s(frame);
-      int measured = 0;
-      for (std::size_t i = 0; i < cloud.size(); i += 5) {
-        if (!cloud.is_measured(i)) continue;
-        ++measured;
-        const Vec3 p = cloud.point(i);
-        ASSERT_NEAR(shape.signed_distance(p, t), 0, 2e-12) << static_cast<int>(kind) << " frame " << frame;
-        // A ball that is turned overhangs at its rim.
-        const bool lies_on_top = shape.signed_distance(p + Vec3(0, 0.001, 0), t) > 0.0005;
-        if (lies_on_top) {
-          ASSERT_NEAR(shape.surface_height(p.x(), p.z(), t), p.y(), 1e-11);
+      // The point that the noise has moved highest: only a bound that no normal variate exceeds finds it.
+      const auto highest = std::max_element(cloud.y.begin(), cloud.y.end()) - cloud.y.begin();
+      balls.push_back({cloud.point(static_cast<std::size_t>(highest)), 1e-5});
+      const auto search = lift.points(frame);
+      std::size_t total = 0, empty = 0;
+      for (int round = 0; round < 2; ++round) {
+        for (const Ball& ball : balls) {
+          const auto want = expected(cloud, ball);
+          ASSERT_EQ(gathered(*search, ball), want) << sigma << ", " << ball.centre.transpose();
+          total += want.size(), empty += want.empty();
         }
+        std::shuffle(balls.begin(), balls.end(), random);
       }
-      EXPECT_GT(measured, 100);
+      EXPECT_GT(total, 2000u);
+      EXPECT_GT(empty, 5u);
     }
   }
 }
 
-// The moving truth between frames is the surface where the motion has carried it. The truth of the newest
-// frame does not change.
-TEST(MovingShape, TheTruthMovesBetweenFramesOrIsThatOfTheNewest) {
-  MovingShape::Settings s = busy(Kind::ridge);
-  const MovingShape moving = made(s);
-  s.truth = SurfaceTime::newest_frame;
-  const MovingShape newest = made(s);
-  const Vec3 p(0.004, 0.03, 0.002);
-  for (int frame = 3; frame < 12; ++frame) {
-    const double t = moving.captured_s(frame), next = moving.captured_s(frame + 1);
-    EXPECT_NEAR(moving.signed_distance(p, t), newest.signed_distance(p, t), 1e-15);
-    EXPECT_EQ(newest.signed_distance(p, t + 0.03), newest.signed_distance(p, t));
-    EXPECT_NE(moving.signed_distance(p, t + 0.03), moving.signed_distance(p, t));
-    EXPECT_NEAR(moving.signed_distance(p, next - 1e-9), moving.signed_distance(p, next), 1e-8);
+// Corners half a period apart, alternately below and above by an amplitude that grows along the grid.
+double wave_height(double x) {
+  const double length = 299 * 0.0015, place = std::clamp((x + 0.5 * length) / 0.03, 0.0, length / 0.03);
+  const int k = static_cast<int>(place);
+  const auto corner = [&](int i) { return (i % 2 == 1 ? 0.015 : -0.015) * std::min(1.0, i * 0.03 / length); };
+  return corner(k) + (place - k) * (corner(k + 1) - corner(k));
+}
+
+TEST(TriangleWave, SignedDistanceIsToTheStraightFlanks) {
+  const TriangleWave wave = made<TriangleWave>();
+  EXPECT_NEAR(wave.surface_height(-149.5 * 0.0015 + 0.09, 1, 0), 0.015 * 0.09 / (299 * 0.0015), 1e-15);
+  const double end = 149.5 * 0.0015, spacing = 2e-5;
+  const PointCloud at = scenes::random_cloud(200, 1, 1);
+  int below = 0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Vec3 p(0.22 * at.x[i], 0.025 * at.y[i], 0.07 * at.z[i]);
+    double squared = std::numeric_limits<double>::infinity();
+    for (double x = -end; x <= end; x += spacing)
+      squared = std::min(squared, std::pow(x - p.x(), 2) + std::pow(wave_height(x) - p.y(), 2));
+    const double got = wave.signed_distance(p, 0);
+    EXPECT_NEAR(wave.surface_height(p.x(), p.z(), 0), wave_height(p.x()), 1e-15);
+    EXPECT_EQ(got < 0, p.y() < wave_height(p.x()));
+    // The flanks rise by less than 1: samples are at most 1.5 spacings apart along them.
+    EXPECT_LE(std::abs(got), std::sqrt(squared) + 1e-15);
+    EXPECT_GE(std::sqrt(got * got + 2.25 * spacing * spacing), std::sqrt(squared) - 1e-15);
+    below += got < 0;
   }
+  EXPECT_GT(below, 50);
+  EXPECT_TRUE(std::isnan(wave.signed_distance({0, -0.05, 0.08}, 0))) << "beside the cloud, along z";
+  EXPECT_TRUE(std::isnan(wave.signed_distance({end + 1, -0.05, 0}, 0))) << "and along x";
+  EXPECT_GT(wave.signed_distance({end + 0.01, 0.05, 0.08}, 0), 0);
 }
 
-// --- points ---
-
-TEST(MovingShape, LayersFollowEachOtherBelow) {
-  MovingShape::Settings s = busy(Kind::valley);
-  s.layers = 3, s.layer_spacing_m = 0.012;
-  const MovingShape shape = made(s);
-  s.layers = 1;
-  const PointCloud all = shape.cloud(7), first = made(s).cloud(7);
-  const double rotation_deg = 8 + 6 * std::sin(2 * kPi * 1.5 * (7 / 30.0 - 0.1));
-  ASSERT_EQ(all.size(), 3 * first.size());
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const double below = 0.012 * static_cast<double>(i / first.size());
-    const Vec3 expected = first.point(i % first.size()) - below * turned(Vec3::UnitY(), rotation_deg);
-    ASSERT_LT((all.point(i) - expected).norm(), 1e-15);
+TEST(MovingPlane, WaitsRisesAndRests) {
+  MovingPlane::Settings s;
+  s.acceleration_m_per_s2 = 0.6;
+  const MovingPlane plane = made<MovingPlane>(s);
+  const auto height = [&](double t) { return plane.surface_height(0, 0, t); };
+  EXPECT_EQ(height(0), -0.06);
+  EXPECT_EQ(height(1), -0.06);
+  EXPECT_NEAR(height(1.1), -0.06 + 0.01 + 0.003, 1e-15);
+  // 0.1 t + 0.3 t^2 = 0.1
+  const double end = (-0.1 + std::sqrt(0.01 + 0.12)) / 0.6;
+  EXPECT_NEAR(height(1 + end - 1e-9), 0.04, 1e-9);
+  EXPECT_EQ(height(1 + end + 1e-12), -0.06 + 0.1);
+  EXPECT_EQ(plane.frame_count(), 1 + static_cast<int>(std::ceil((1 + end) * 30)));
+  EXPECT_NEAR(plane.signed_distance({0.09, -0.05, 0.02}, 1.1), -0.05 + 0.047, 1e-15);
+  EXPECT_NEAR(plane.signed_distance({1, -0.04, 2}, 1.1), -0.04 + 0.047, 1e-15);
+  EXPECT_TRUE(std::isnan(plane.signed_distance({1, -0.05, 2}, 1.1))) << "beside the cloud";
+  for (const int frame : {0, 31, 40, plane.frame_count() - 1}) {
+    const PointCloud cloud = plane.cloud(frame);
+    EXPECT_EQ(cloud.y[7], height(plane.captured_s(frame)));
+    EXPECT_EQ(cloud.normal(7), Vec3(Vec3::UnitY()));
   }
-  for (const double y : {-0.05, 0.0, 0.05})  // the true surface is the first layer
-    EXPECT_EQ(shape.signed_distance({0, y, 0}, 0.2), made(s).signed_distance({0, y, 0}, 0.2));
+  s.speed_m_per_s = s.acceleration_m_per_s2 = s.rise_height_m = 0;
+  EXPECT_EQ(made<MovingPlane>(s).frame_count(), 1);
 }
 
-TEST(MovingShape, NoiseBelongsToKeyAndFrame) {
-  MovingShape::Settings s = busy(Kind::ridge);
-  const MovingShape clean = made(s);
-  s.noise_sigma_m = 0.002;
-  const MovingShape one = made(s), same = made(s), other = made(s, {9, 2, 3});
-  EXPECT_TRUE(scenes::same_points(one.cloud(4), same.cloud(4)));
-  EXPECT_FALSE(scenes::same_points(one.cloud(4), other.cloud(4)));
-  s.redraw_noise = false;
-  const MovingShape fixed = made(s);
-  EXPECT_TRUE(scenes::same_points(fixed.cloud(0), one.cloud(0)));
-  double squares = 0, count = 0;
-  for (std::size_t i = 0; i < fixed.cloud(4).size(); ++i) {
-    const auto noise = [&](const MovingShape& noisy, int frame) -> Vec3 {
-      return noisy.cloud(frame).point(i) - clean.cloud(frame).point(i);
-    };
-    if (i % 40 == 0) {
-      EXPECT_LT((noise(fixed, 4) - noise(fixed, 0)).norm(), 1e-15);
-      EXPECT_GT((noise(one, 4) - noise(one, 0)).norm(), 1e-6);
-      squares += noise(one, 4).squaredNorm(), count += 3;
-    }
-  }
-  EXPECT_NEAR(std::sqrt(squares / count), 0.002, 5 * 0.002 / std::sqrt(2 * count));
-}
-
-TEST(MovingShape, SearchesFindThePointsOfTheCloud) {
-  for (const Kind kind : kKinds) {
-    for (const bool level : {true, false}) {
-      MovingShape::Settings s = busy(kind);
-      if (level) s.motion = {}, s.motion.shake_amplitude_m = 0.004;
-      s.noise_sigma_m = 0.001;
-      const MovingShape shape = made(s);
-      const auto points = shape.points(5);
-      EXPECT_EQ(dynamic_cast<const NoisyGridSearch*>(points.get()) != nullptr, level && kind == Kind::flat);
-      const PointCloud cloud = shape.cloud(5);
-      const BruteForceSearch oracle(cloud);
-      ASSERT_EQ(points->size(), cloud.size());
-      GatheredPoints found, expected;
-      for (GatheredPoints* out : {&found, &expected}) out->reserve(cloud.size(), false, false);
-      for (std::size_t i = 0; i < cloud.size(); i += 50) {
-        if (!cloud.is_measured(i)) continue;
-        found.clear(), expected.clear();
-        points->gather({cloud.point(i), 0.008}, scenes::kernels(), found);
-        oracle.gather({cloud.point(i), 0.008}, scenes::kernels(), expected);
-        EXPECT_EQ(found.size(), expected.size());
-        EXPECT_GT(found.size(), 0u);
-      }
-      found.clear();
-      points->gather({Vec3(0, 0, std::nan("")), 1}, scenes::kernels(), found);
-      EXPECT_EQ(found.size(), 0u);
-    }
-  }
-}
-
-// --- frames without points ---
-
-TEST(MovingShape, VanishesForGood) {
-  MovingShape::Settings s = busy(Kind::flat);
-  s.vanish_at_s = 5 / 30.0;
-  const MovingShape shape = made(s);
-  s.vanish_at_s = -1;
-  const MovingShape stays = made(s);
-  ASSERT_EQ(shape.frame_count(), 6);
-  EXPECT_TRUE(scenes::same_points(shape.cloud(4), stays.cloud(4)));
-  EXPECT_EQ(shape.cloud(5).size(), 0u);
-  EXPECT_EQ(shape.points(5)->size(), 0u);
-  const double gone_s = shape.captured_s(5);
-  EXPECT_EQ(shape.signed_distance({0, 0.01, 0}, gone_s - 0.001),
-            stays.signed_distance({0, 0.01, 0}, gone_s - 0.001));
-  EXPECT_TRUE(std::isnan(shape.signed_distance({0, 0.01, 0}, gone_s)));
-  EXPECT_EQ(shape.surface_height(0, 0, gone_s + 3), stays.surface_height(0, 0, gone_s));
-}
-
-TEST(MovingShape, OneFrameMayBeEmpty) {
-  MovingShape::Settings s;
-  s.empty_frame_at_s = 4 / 30.0;
-  const MovingShape rests = made(s);
-  ASSERT_EQ(rests.frame_count(), 6);
-  EXPECT_EQ(rests.cloud(4).size(), 0u);
-  EXPECT_TRUE(scenes::same_points(rests.cloud(3), rests.cloud(5)));
-  EXPECT_EQ(rests.signed_distance({0, 0.01, 0}, 4.5 / 30), 0.01) << "it is there, and not seen";
-  s = busy(Kind::ripple), s.empty_frame_at_s = 4 / 30.0;
-  const MovingShape moves = made(s);
-  EXPECT_EQ(moves.cloud(4).size(), 0u);
-  EXPECT_GT(moves.cloud(5).size(), 0u);
-}
-
-// --- a hand that presses ---
-
-TEST(MovingShape, AHandCanPressEveryShape) {
-  for (const Kind kind : kKinds) {
-    for (const bool moving : {false, true}) {
-      MovingShape::Settings s = busy(kind);
-      if (!moving) s.motion = {};
-      s.vanish_at_s = 40 / 30.0;
-      const MovingShape shape = made(s);
-      Press::Settings press;
-      press.press_at_s = 0, press.surface = SurfaceTime::moving;
-      const Press hand(press, shape);
-      for (int tick = 0; tick < 3000; tick += 11) ASSERT_TRUE(hand.at(0.001 * tick).position_W.allFinite());
-      EXPECT_LT(shape.signed_distance(hand.at(0.5).position_W, 0.5), 0);
-    }
-  }
-}
-
-TEST(MovingShape, RefusesSlopesThatStandUpright) {
-  MovingShape::Settings s;
-  EXPECT_EQ(validate(s), "");
-  s.shape.kind = Kind::ridge, s.shape.slope_deg = 60, s.motion.tilt_deg = -20;
-  EXPECT_EQ(validate(s), "");
-  s.motion.rock_deg = 10;
-  EXPECT_HAS(validate(s), "tilt_deg = -20");
-  EXPECT_HAS(validate(s), "below 89 degrees together, not 90.0");
-  s.shape.kind = Kind::sphere;
-  EXPECT_EQ(validate(s), "");
+// It rises for 1e8 s, which is 1e12 frames.
+TEST(MovingPlane, LimitsItsFramesToTheLargestInt) {
+  MovingPlane::Settings s;
+  s.frame_rate_hz = 10000, s.speed_m_per_s = 1e-6, s.rise_height_m = 100;
+  EXPECT_EQ(made<MovingPlane>(s).frame_count(), std::numeric_limits<int>::max());
 }
 
 }  // namespace
-}  // namespace remote_touch::moving_shape_test
+}  // namespace remote_touch::grid_scenes_test

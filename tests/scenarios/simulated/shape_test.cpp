@@ -1,4 +1,5 @@
-// The shapes of moving-shape against brute force over dense samples of their surfaces.
+// The shapes of moving-shape against brute force over dense samples of their surfaces, and their motions
+// against formulas.
 #include "scenarios/simulated/shape.h"
 
 #include <gtest/gtest.h>
@@ -8,11 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "analysis/trace/columns.h"
-#include "runners/experiment/hand/trajectory.h"
 #include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
-#include "tests/support/test_files.h"
 
 namespace remote_touch::shape_test {
 namespace {
@@ -220,32 +218,28 @@ TEST(Shape, HasABackBehindAFlankOrAWaveAlsoBesideTheBorder) {
   EXPECT_TRUE(std::isnan(corner.signed_distance({1, -10, 0})));
 }
 
-TEST(Shape, PointsLieOnTheSurface) {
+TEST(Shape, PointsHaveTheHeightOfItsFormula) {
   for (const Kind kind : kKinds) {
     const Shape::Settings s = settings_of(kind);
     const Shape shape(s, kGrid);
     int missing = 0;
-    for (int row = 0; row < kGrid.rows; ++row)
-      for (int column = 0; column < kGrid.columns; ++column) {
-        const double x = kGrid.x(column), z = kGrid.z(row);
-        const Vec3 p = shape.point(x, z);
-        if (kind == Kind::sphere && std::hypot(x, z) > s.radius_m) {
-          EXPECT_TRUE(std::isnan(p.x()) && std::isnan(p.y()) && std::isnan(p.z()));
-          EXPECT_EQ(shape.height(x, z), -s.radius_m);  // the plane that a hand presses beside it
-          ++missing;
-          continue;
-        }
-        EXPECT_EQ(p, Vec3(x, shape.height(x, z), z));
-        EXPECT_NEAR(p.y(), expected_height(s, x, z), 1e-16);
-        EXPECT_NEAR(shape.signed_distance(p), 0, 1e-12);
+    for (int i = 0; i < kGrid.rows * kGrid.columns; ++i) {
+      const double x = kGrid.x(i % kGrid.columns), z = kGrid.z(i / kGrid.columns);
+      const Vec3 p = shape.point(x, z);
+      if (kind == Kind::sphere && std::hypot(x, z) > s.radius_m) {
+        EXPECT_TRUE(p.array().isNaN().all());
+        EXPECT_EQ(shape.height(x, z), -s.radius_m) << "the plane that a hand presses beside it";
+        ++missing;
+        continue;
       }
+      EXPECT_EQ(p, Vec3(x, shape.height(x, z), z));
+      EXPECT_NEAR(p.y(), expected_height(s, x, z), 1e-16);
+    }
     EXPECT_EQ(missing > 0, kind == Kind::sphere);
-    EXPECT_EQ(shape.height(0, 0), 0);
   }
 }
 
-// The search along x finds the nearest of several crests or troughs. The distance to these is known in closed
-// form.
+// The search along x finds the nearest of several crests or troughs.
 TEST(Shape, ARippleHasItsDistanceFromAfarAndOverItsCrests) {
   Shape::Settings s = settings_of(Kind::ripple);
   const Shape shape(s, kGrid);
@@ -254,15 +248,6 @@ TEST(Shape, ARippleHasItsDistanceFromAfarAndOverItsCrests) {
   EXPECT_NEAR(shape.signed_distance({-crest, -0.1, 0.01}), -(0.1 - s.amplitude_m), 1e-12);
   EXPECT_NEAR(shape.signed_distance({crest, s.amplitude_m + 0.0003, 0.024}), std::hypot(0.0003, 0.004),
               1e-12);
-  // High above the middle between two crests both are equally near. The expected distance is that of a fine
-  // scan.
-  const Vec3 p(-crest, 0.05, 0);
-  double nearest = 1;
-  for (int i = 0; i <= 4000000; ++i) {
-    const double x = -0.03 + 0.04 * i / 4e6;
-    nearest = std::min(nearest, std::hypot(x - p.x(), expected_height(s, x, 0) - p.y()));
-  }
-  EXPECT_NEAR(shape.signed_distance(p), nearest, 1e-12);
 }
 
 TEST(Shape, AGridOfOnePointOrOneFlankIsAPatch) {
@@ -277,3 +262,218 @@ TEST(Shape, AGridOfOnePointOrOneFlankIsAPatch) {
 
 }  // namespace
 }  // namespace remote_touch::shape_test
+
+// Shapes that move.
+namespace remote_touch::moving_shape_test {
+namespace {
+
+using Kind = Shape::Kind;
+
+const NoiseKey kKey{1, 2, 3};
+constexpr double kPi = 3.14159265358979323846;
+const Kind kKinds[] = {Kind::flat, Kind::ridge, Kind::valley, Kind::sphere, Kind::ripple, Kind::corner};
+
+MovingShape made(const MovingShape::Settings& settings, const NoiseKey& key = kKey) {
+  return MovingShape(settings, key, scenes::kernels());
+}
+
+Vec3 turned(const Vec3& p, double angle_deg) {
+  return Eigen::AngleAxisd(angle_deg * kPi / 180, Vec3::UnitZ()) * p;
+}
+
+// Settings of a shape of this kind, with all motions at once.
+MovingShape::Settings busy(Kind kind) {
+  MovingShape::Settings s;
+  s.grid = {41, 31, 0.0015, 0.25, -0.5};
+  s.shape.kind = kind, s.shape.slope_deg = 25, s.shape.radius_m = 0.025;
+  s.motion = {8, {0, 0.02, 0.1, 4 / 30.0, -1, 4 / 30.0}, 0.05, 0.004, 3, 6, 1.5, 0.1};
+  s.truth = SurfaceTime::moving;
+  return s;
+}
+
+TEST(MovingShape, AFlatLiftIsAMovingLiftBitForBit) {
+  MovingLift::Settings lift;
+  MovingShape::Settings shape;
+  shape.grid = lift.grid, shape.noise_sigma_m = lift.noise_sigma_m;
+  shape.motion.lift = lift.lift;
+  for (const bool moving : {false, true}) {
+    if (moving) lift.truth = SurfaceTime::moving, shape.truth = SurfaceTime::moving;
+    const MovingLift one(lift, kKey, scenes::kernels());
+    const MovingShape other = made(shape);
+    ASSERT_EQ(other.frame_count(), one.frame_count());
+    for (const int frame : {0, 1, 15, 17, 25})
+      EXPECT_TRUE(scenes::same_points(one.cloud(frame), other.cloud(frame))) << frame;
+    for (int tick = 0; tick < 1000; tick += 7) {
+      const double time_s = 0.001 * tick;
+      const Vec3 p(0.01, 1e-4 * tick - 0.05, -0.02);
+      EXPECT_EQ(one.signed_distance(p, time_s), other.signed_distance(p, time_s)) << time_s;
+      EXPECT_EQ(one.surface_height(0, 0, time_s), other.surface_height(0, 0, time_s)) << time_s;
+    }
+  }
+}
+
+// A step along a point's normal changes the distance to the true surface by the length of the step, in any
+// pose.
+TEST(MovingShape, NormalsAreThoseOfTheTrueSurface) {
+  for (const Kind kind : kKinds) {
+    MovingShape::Settings s = busy(kind);
+    EXPECT_FALSE(made(s).cloud(3).has_normals());
+    s.normals = true;
+    const MovingShape shape = made(s);
+    EXPECT_TRUE(scenes::same_points(shape.cloud(5), made(busy(kind)).cloud(5)));
+    for (const int frame : {0, 9}) {
+      const PointCloud cloud = shape.cloud(frame);
+      int tried = 0;
+      for (std::size_t i = 0; i < cloud.size(); i += 13) {
+        if (!cloud.point(i).allFinite()) continue;
+        ASSERT_NEAR(cloud.normal(i).norm(), 1, 1e-12);
+        constexpr double kStep_m = 1e-5;  // beside a crease another side may be nearer
+        const Vec3 above = cloud.point(i) + kStep_m * cloud.normal(i);
+        EXPECT_NEAR(shape.signed_distance(above, frame / 30.0), kStep_m, 1e-7) << static_cast<int>(kind);
+        ++tried;
+      }
+      EXPECT_GT(tried, 30);
+    }
+  }
+}
+
+TEST(MovingShape, SlideShakeAndRockFollowTheirFormulas) {
+  MovingShape::Settings s;
+  s.motion.slide_velocity_m_per_s = -0.2, s.motion.shake_amplitude_m = 0.003, s.motion.shake_hz = 4;
+  s.motion.rock_deg = 7, s.motion.rock_hz = 0.8, s.motion.tilt_deg = -3, s.motion.motion_from_s = 0.25;
+  s.truth = SurfaceTime::moving;
+  const MovingShape shape = made(s);
+  EXPECT_EQ(shape.frame_count(), std::numeric_limits<int>::max());
+  for (int frame = 0; frame < 40; frame += 3) {
+    const double t = std::max(0.0, frame / 30.0 - 0.25);
+    const Vec3 origin(-0.2 * t, 0.003 * std::sin(2 * kPi * 4 * t), 0);
+    const double rotation_deg = -3 + 7 * std::sin(2 * kPi * 0.8 * t);
+    const PointCloud cloud = shape.cloud(frame);
+    for (std::size_t i = 0; i < cloud.size(); i += 97) {
+      const int column = static_cast<int>(i) % 80, row = static_cast<int>(i) / 80;
+      const Vec3 expected = origin + turned({s.grid.x(column), 0, s.grid.z(row)}, rotation_deg);
+      EXPECT_LT((cloud.point(i) - expected).norm(), 1e-15) << frame;
+    }
+    // The height is that of a tilted plane, also over positions beyond its border.
+    for (const double x : {0.0, 0.03, -1.0})
+      EXPECT_NEAR(shape.surface_height(x, 0.01, frame / 30.0),
+                  origin.y() + std::tan(rotation_deg * kPi / 180) * (x - origin.x()), 1e-14);
+  }
+  EXPECT_EQ(shape.surface_height(0, 0, 0.1), shape.surface_height(0, 0, 0.2)) << "before it begins";
+}
+
+TEST(MovingShape, NoiseFreePointsLieOnTheTrueSurfaceAtEveryFrame) {
+  for (const Kind kind : kKinds) {
+    const MovingShape shape = made(busy(kind));
+    for (const int frame : {0, 2, 5, 9, 23}) {
+      const PointCloud cloud = shape.cloud(frame);
+      const double t = shape.captured_s(frame);
+      int measured = 0;
+      for (std::size_t i = 0; i < cloud.size(); i += 5) {
+        if (!cloud.is_measured(i)) continue;
+        ++measured;
+        const Vec3 p = cloud.point(i);
+        ASSERT_NEAR(shape.signed_distance(p, t), 0, 2e-12) << static_cast<int>(kind) << " frame " << frame;
+        // A ball that is turned overhangs at its rim.
+        const bool lies_on_top = shape.signed_distance(p + Vec3(0, 0.001, 0), t) > 0.0005;
+        if (lies_on_top) {
+          ASSERT_NEAR(shape.surface_height(p.x(), p.z(), t), p.y(), 1e-11);
+        }
+      }
+      EXPECT_GT(measured, 100);
+    }
+  }
+}
+
+// The moving truth between frames is the surface where the motion has carried it. The truth of the newest
+// frame does not change.
+TEST(MovingShape, TheTruthMovesBetweenFramesOrIsThatOfTheNewest) {
+  MovingShape::Settings s = busy(Kind::ridge);
+  const MovingShape moving = made(s);
+  s.truth = SurfaceTime::newest_frame;
+  const MovingShape newest = made(s);
+  const Vec3 p(0.004, 0.03, 0.002);
+  for (int frame = 3; frame < 12; ++frame) {
+    const double t = moving.captured_s(frame), next = moving.captured_s(frame + 1);
+    EXPECT_NEAR(moving.signed_distance(p, t), newest.signed_distance(p, t), 1e-15);
+    EXPECT_EQ(newest.signed_distance(p, t + 0.03), newest.signed_distance(p, t));
+    EXPECT_NE(moving.signed_distance(p, t + 0.03), moving.signed_distance(p, t));
+    EXPECT_NEAR(moving.signed_distance(p, next - 1e-9), moving.signed_distance(p, next), 1e-8);
+  }
+}
+
+TEST(MovingShape, NoiseBelongsToKeyAndFrame) {
+  MovingShape::Settings s = busy(Kind::ridge);
+  const MovingShape clean = made(s);
+  s.noise_sigma_m = 0.002;
+  const PointCloud noisy = made(s).cloud(4), without = clean.cloud(4);
+  EXPECT_FALSE(scenes::same_points(noisy, made(s, {9, 2, 3}).cloud(4)));
+  double squares = 0;
+  for (std::size_t i = 0; i < noisy.size(); ++i) squares += (noisy.point(i) - without.point(i)).squaredNorm();
+  const double count = 3 * static_cast<double>(noisy.size());
+  EXPECT_NEAR(std::sqrt(squares / count), 0.002, 5 * 0.002 / std::sqrt(2 * count));
+  const Vec3 first = made(s).cloud(0).point(0) - clean.cloud(0).point(0);
+  EXPECT_GT((noisy.point(0) - without.point(0) - first).norm(), 1e-6);
+  s.redraw_noise = false;
+  EXPECT_LT((made(s).cloud(4).point(0) - without.point(0) - first).norm(), 1e-15);
+}
+
+// Only a flat grid that stays level makes its noise on demand; it has the points of its cloud.
+TEST(MovingShape, ALevelGridIsSearchedOnDemand) {
+  for (const Kind kind : {Kind::flat, Kind::ridge})
+    for (const bool level : {true, false}) {
+      MovingShape::Settings s = busy(kind);
+      if (level) s.motion = {}, s.motion.shake_amplitude_m = 0.004;
+      s.noise_sigma_m = 0.001;
+      const MovingShape shape = made(s);
+      const auto points = shape.points(5);
+      const bool is_lazy = dynamic_cast<const NoisyGridSearch*>(points.get()) != nullptr;
+      EXPECT_EQ(is_lazy, level && kind == Kind::flat);
+      const PointCloud cloud = shape.cloud(5);
+      for (std::size_t i = 0; i < cloud.size(); i += 50) {
+        const Ball ball{cloud.point(i), 0.008};
+        EXPECT_EQ(scenes::gathered(*points, ball).size(),
+                  scenes::gathered(BruteForceSearch(cloud), ball).size());
+      }
+      EXPECT_EQ(scenes::gathered(*points, {Vec3(0, 0, std::nan("")), 1}).size(), 0u);
+    }
+}
+
+TEST(MovingShape, VanishesForGoodAtItsTime) {
+  for (const double rate_hz : {15.0, 30.0, 60.0}) {
+    MovingShape::Settings s = busy(Kind::flat);
+    s.frame_rate_hz = rate_hz;
+    const MovingShape stays = made(s);
+    s.vanish_at_s = 0.4;
+    const MovingShape shape = made(s);
+    const int last = static_cast<int>(std::lround(0.4 * rate_hz));
+    ASSERT_EQ(shape.frame_count(), last + 1);
+    EXPECT_TRUE(scenes::same_points(shape.cloud(last - 1), stays.cloud(last - 1)));
+    EXPECT_EQ(shape.cloud(last).size(), 0u);
+    EXPECT_EQ(shape.points(last)->size(), 0u);
+    const double gone_s = shape.captured_s(last);
+    EXPECT_EQ(shape.signed_distance({0, 0.01, 0}, gone_s - 0.001),
+              stays.signed_distance({0, 0.01, 0}, gone_s - 0.001));
+    EXPECT_TRUE(std::isnan(shape.signed_distance({0, 0.01, 0}, gone_s)));
+    EXPECT_EQ(shape.surface_height(0, 0, gone_s + 3), stays.surface_height(0, 0, gone_s));
+  }
+}
+
+TEST(MovingShape, OneFrameMayBeEmpty) {
+  for (const double rate_hz : {15.0, 30.0, 60.0}) {
+    MovingShape::Settings s;
+    s.frame_rate_hz = rate_hz, s.empty_frame_at_s = 0.4;
+    const MovingShape rests = made(s);
+    const int empty = static_cast<int>(std::lround(0.4 * rate_hz));
+    ASSERT_EQ(rests.frame_count(), empty + 2);
+    EXPECT_EQ(rests.cloud(empty).size(), 0u);
+    EXPECT_TRUE(scenes::same_points(rests.cloud(empty - 1), rests.cloud(empty + 1)));
+    EXPECT_EQ(rests.signed_distance({0, 0.01, 0}, 0.41), 0.01) << "it is there, and not seen";
+    s = busy(Kind::ripple), s.frame_rate_hz = rate_hz, s.empty_frame_at_s = 0.4;
+    EXPECT_EQ(made(s).cloud(empty).size(), 0u);
+    EXPECT_GT(made(s).cloud(empty + 1).size(), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace remote_touch::moving_shape_test
