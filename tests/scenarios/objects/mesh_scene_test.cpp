@@ -263,7 +263,7 @@ TriangleMesh ring_ball(double radius, int rings, int columns) {
   return ball;
 }
 
-// Of triangles that begin behind the camera, only the part before it is drawn.
+// The part of a triangle behind the camera is not drawn.
 TEST(DepthRaster, IsThatOfRayCastingOverTrianglesWithoutOrder) {
   for (const unsigned seed : {1u, 2u}) {
     const TriangleMesh soup = triangle_soup(60, 0.7, {0, 0, 1.5}, seed);
@@ -330,7 +330,7 @@ TEST(DepthRaster, RaysThroughVerticesMeetTheMesh) {
     ASSERT_NEAR(image.depth.z_m[i], mesh.vertices[i].z(), 1e-12) << i;
 }
 
-// Of equal depths the first is seen; a triangle in the plane of the rays of a column is not.
+// The first of equal depths is seen; a triangle in the plane of the rays of a column is not.
 TEST(DepthRaster, EqualEdgeOnAndMissingTrianglesHaveAnAnswer) {
   const TriangleMesh plate = {{{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}, {{0, 1, 2}, {0, 2, 3}}};
   const RasterMesh seen = before(plate, at(Vec3::Zero()), false);

@@ -126,7 +126,7 @@ TEST_F(TruthFolders, AreRefusedIfTheDescriptionIsOfAnotherForm) {
   for (const auto& [json, text] : texts)
     folder_.write("truth/truth.json", json), expect_refused("truth.json", text);
   struct Row {
-    std::string part, by, text;  // what is replaced in the description of one object
+    std::string part, by, text;  // the part is replaced in the description of one object
   };
   const std::string inside = "expected a file inside truth/";
   const Row rows[] = {

@@ -165,7 +165,7 @@ TEST_F(Recording, RefusesIncompleteFolders) {
 
 TEST_F(Recording, RefusesBadFiles) {
   struct Row {
-    std::string part, replacement, message;  // of camera.json
+    std::string part, replacement, message;  // the part is one of camera.json
   };
   const Row rows[] = {
       {R"("frame_rate_hz": 20)", R"("frame_rate_hz": 0)", "frame_rate_hz = 0: expected a number above 0"},

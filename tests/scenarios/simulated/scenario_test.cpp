@@ -1,4 +1,4 @@
-// What all simulated scenes have in common: refusals of settings, sides without a back, noise that goes on,
+// Properties of all simulated scenes: refusals of settings, sides without a back, noise that goes on,
 // frames that are kept, and the true normal.
 #include "scenarios/simulated/scenario.h"
 
