@@ -236,6 +236,7 @@ RecordingIndex index_images(const std::vector<fs::path>& depth, const ImageCamer
   RecordingIndex index;
   set_camera(camera, camera_file, index);
   append_frames(depth, index);
+  require_target(colours);
   const bool has_colours = fs::is_directory(colours) && !fs::is_empty(colours);
   if (!has_colours) return index;
   if (!camera.colour_registered) {
