@@ -6,26 +6,76 @@
 // with them shows what an adapter calls, not what a camera does.
 #pragma once
 
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "runners/live/devices/clock.h"
-#include "tests/doubles/camera_lens.h"
 #include "tests/doubles/simulated_clock.h"
 
 namespace remote_touch {
 
+// The lens of a camera double: that of Brown and Conrady, with a rational part. It is written from the
+// equations, without the vendors' sources.
+struct CameraLens {
+  int width = 640, height = 480;
+  double fx = 500, fy = 502, cx = 321.3, cy = 238.6;
+  std::array<double, 6> k{};  // radial: three of the numerator, three of the denominator
+  double p1 = 0, p2 = 0;      // tangential
+  double max_radius = 1.7;    // rays farther from the axis are not seen
+
+  using Point = Eigen::Vector2d;
+
+  // Returns a lens of the Azure Kinect for its smallest images, which distorts.
+  static CameraLens distorted_k4a() {
+    return {.fx = 250, .fy = 251, .cx = 160.2, .cy = 143.1, .k = {-0.1, 0.01, 0, 0, 0, 0}, .p1 = 1e-3};
+  }
+
+  // Returns the position on the plane z = 1 where the lens shows this ray.
+  Point distorted(const Point& ray) const {
+    const double x = ray.x(), y = ray.y(), r2 = x * x + y * y;
+    const double radial =
+        (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[2]))) / (1 + r2 * (k[3] + r2 * (k[4] + r2 * k[5])));
+    return {x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
+            y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y};
+  }
+  std::optional<Point> pixel_of(const Point& ray) const {
+    if (ray.norm() > max_radius) return {};
+    const Point at = distorted(ray);
+    return Point(cx + fx * at.x(), cy + fy * at.y());
+  }
+  // Newton's method with differences solves it.
+  std::optional<Point> ray_of(const Point& pixel) const {
+    const Point wanted((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
+    Point ray = wanted;
+    for (int i = 0; i < 30; ++i) {
+      const Point error = distorted(ray) - wanted;
+      if (error.norm() < 1e-12) return ray.norm() > max_radius ? std::nullopt : std::optional(ray);
+      constexpr double kStep = 1e-6;
+      Eigen::Matrix2d slope;
+      slope.col(0) = (distorted(ray + Point(kStep, 0)) - distorted(ray - Point(kStep, 0))) / (2 * kStep);
+      slope.col(1) = (distorted(ray + Point(0, kStep)) - distorted(ray - Point(0, kStep))) / (2 * kStep);
+      ray -= slope.inverse() * error;
+    }
+    return {};
+  }
+};
+
 class CameraDouble {
  public:
   static constexpr const char* kExport = "camera_double";
+  using Bytes = std::vector<std::uint8_t>;
 
   struct State {
     std::vector<std::string> serials = {"000123", "CL2F"};
@@ -81,10 +131,22 @@ class CameraDouble {
     return static_cast<int>(calls_.size()) == state.fail_at || name == state.fail_name;
   }
   // Returns a handle of that kind, which must be given back once. Its content lives as long.
-  void* hold(const char* kind, std::vector<std::uint8_t> content = {}) {
-    auto* handle = new std::vector<std::uint8_t>(std::move(content));
-    held_[handle] = {kind, std::unique_ptr<std::vector<std::uint8_t>>(handle)};
+  void* hold(const char* kind, Bytes content = {}) {
+    auto* handle = new Bytes(std::move(content));
+    held_[handle] = {kind, std::unique_ptr<Bytes>(handle)};
     return handle;
+  }
+  // Returns the content of a handle that begins with a number, and that number.
+  static Bytes bytes_of(int number, const Bytes& more = {}) {
+    Bytes bytes(sizeof number + more.size());
+    std::memcpy(bytes.data(), &number, sizeof number);
+    std::copy(more.begin(), more.end(), bytes.begin() + sizeof number);
+    return bytes;
+  }
+  static int number_in(const void* handle) {
+    int number = 0;
+    std::memcpy(&number, static_cast<const Bytes*>(handle)->data(), sizeof number);
+    return number;
   }
   void give_back(const char* kind, const void* handle) {
     if (is_held(kind, handle)) held_.erase(handle);
@@ -127,10 +189,9 @@ class CameraDouble {
 
   int stride() const { return 2 * state.lens.width + state.row_gap_bytes; }
   // The gaps are full of ones.
-  std::vector<std::uint8_t> image() {
+  Bytes image() {
     if (image_.empty()) draw();
-    std::vector<std::uint8_t> bytes(
-        static_cast<std::size_t>(stride()) * static_cast<std::size_t>(state.lens.height), 0xff);
+    Bytes bytes(static_cast<std::size_t>(stride()) * static_cast<std::size_t>(state.lens.height), 0xff);
     for (int v = 0; v < state.lens.height; ++v)
       std::memcpy(bytes.data() + v * stride(), image_.data() + v * state.lens.width,
                   2 * static_cast<std::size_t>(state.lens.width));
@@ -152,7 +213,7 @@ class CameraDouble {
 
   SimulatedClock* simulated_ = nullptr;
   std::vector<std::string> calls_, misuse_;
-  std::map<const void*, std::pair<std::string, std::unique_ptr<std::vector<std::uint8_t>>>> held_;
+  std::map<const void*, std::pair<std::string, std::unique_ptr<Bytes>>> held_;
   std::vector<std::uint16_t> image_;
   bool is_started_ = false;
   std::int64_t start_ns_ = 0;

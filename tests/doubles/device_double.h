@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <mutex>
+#include <type_traits>
 #include <vector>
 
 #include "runners/live/devices/clock.h"
@@ -56,7 +57,6 @@ class DeviceDouble {
     const std::lock_guard<std::mutex> lock(mutex_);
     state_ = {}, sent_ = {}, events_ = {};
     has_motors_on_ = is_open_ = false;
-    count_ = 0;
     hang_next_ = none, hangs_ = false;
   }
   template <class Change>
@@ -64,19 +64,19 @@ class DeviceDouble {
     const std::lock_guard<std::mutex> lock(mutex_);
     change(state_);
   }
+  template <class Value>
+  void set(Value State::*member, const std::type_identity_t<Value>& value) {
+    set([&](State& state) { state.*member = value; });
+  }
   // The next such call hangs until release(), and then does its work.
   enum Call { none, write_force, switch_on };
   void hang_next(Call call) { hangs_ = true, hang_next_ = call; }
   void release() { hangs_ = false; }
   bool is_hanging() const { return hangs_ && hang_next_ == none; }
 
-  // The newest 4096 events in order; older ones were dropped.
   std::vector<Event> events() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    std::vector<Event> events;
-    for (std::uint64_t i = count_ - std::min<std::uint64_t>(count_, events_.size()); i < count_; ++i)
-      events.push_back(events_[i % events_.size()]);
-    return events;
+    return events_;
   }
   Event now() const {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -114,15 +114,14 @@ class DeviceDouble {
   }
 
  private:
-  void remember() { events_[count_++ % events_.size()] = {clock().now_ns(), sent_, has_motors_on_}; }
+  void remember() { events_.push_back({clock().now_ns(), sent_, has_motors_on_}); }
 
   SimulatedClock* simulated_ = nullptr;
   mutable std::mutex mutex_;
   State state_;
   std::array<double, 6> sent_{};
   bool has_motors_on_ = false, is_open_ = false;
-  std::array<Event, 4096> events_{};
-  std::uint64_t count_ = 0;
+  std::vector<Event> events_;
   std::atomic<Call> hang_next_{none};
   std::atomic<bool> hangs_{false};
 };

@@ -49,9 +49,9 @@ bool is_possible(const Started& wanted) {
 }
 
 // The bytes that are given out as a calibration. Only this library understands them.
-const std::vector<std::uint8_t>& calibration_bytes() {
-  static const std::vector<std::uint8_t> bytes = [] {
-    std::vector<std::uint8_t> filled(kCalibrationBytes);
+const CameraDouble::Bytes& calibration_bytes() {
+  static const CameraDouble::Bytes bytes = [] {
+    CameraDouble::Bytes filled(kCalibrationBytes);
     for (std::size_t i = 0; i < filled.size(); ++i) filled[i] = static_cast<std::uint8_t>(i % 251);
     return filled;
   }();
@@ -61,17 +61,9 @@ bool is_calibration(const void* calibration) {
   return std::memcmp(calibration, calibration_bytes().data(), kCalibrationBytes) == 0;
 }
 
-int number_in(const void* capture) {
-  int number = 0;
-  std::memcpy(&number, static_cast<const std::vector<std::uint8_t>*>(capture)->data(), sizeof number);
-  return number;
+const CameraDouble::Bytes& bytes_in(const void* handle) {
+  return *static_cast<const CameraDouble::Bytes*>(handle);
 }
-
-const std::vector<std::uint8_t>& bytes_in(const void* image) {
-  return *static_cast<const std::vector<std::uint8_t>*>(image);
-}
-// The number of the frame is stored after its pixels.
-constexpr std::size_t kNumberBytes = sizeof(int);
 
 }  // namespace
 
@@ -111,7 +103,7 @@ void k4a_device_close(void* device) {
 
 int k4a_device_get_serialnum(void* device, char* serial, std::size_t* size) {
   if (camera.enter("k4a_device_get_serialnum") || !camera.is_held("device", device)) return kFailed;
-  const std::vector<std::uint8_t>& text = bytes_in(device);
+  const CameraDouble::Bytes& text = bytes_in(device);
   const bool fits = serial != nullptr && *size > text.size();
   *size = text.size() + 1;
   if (!fits) return kTooSmall;
@@ -158,9 +150,7 @@ int k4a_device_get_capture(void* device, void** capture, std::int32_t timeout_ms
   }
   const int number = std::max(camera.last() + 1, camera.sent() - kQueue + 1);
   camera.take(number);
-  std::vector<std::uint8_t> content(sizeof number);
-  std::memcpy(content.data(), &number, sizeof number);
-  *capture = camera.hold("capture", std::move(content));
+  *capture = camera.hold("capture", CameraDouble::bytes_of(number));
   return kSucceeded;
 }
 
@@ -171,12 +161,9 @@ void k4a_capture_release(void* capture) {
 
 void* k4a_capture_get_depth_image(void* capture) {
   if (camera.enter("k4a_capture_get_depth_image") || !camera.is_held("capture", capture)) return nullptr;
-  const int number = number_in(capture);
+  const int number = CameraDouble::number_in(capture);
   if (!camera.state.has_depth(number)) return nullptr;
-  std::vector<std::uint8_t> content = camera.image();
-  content.resize(content.size() + kNumberBytes);
-  std::memcpy(content.data() + content.size() - kNumberBytes, &number, kNumberBytes);
-  return camera.hold("image", std::move(content));
+  return camera.hold("image", CameraDouble::bytes_of(number, camera.image()));
 }
 
 void k4a_image_release(void* image) {
@@ -186,12 +173,12 @@ void k4a_image_release(void* image) {
 
 const std::uint8_t* k4a_image_get_buffer(void* image) {
   if (camera.enter("k4a_image_get_buffer") || !camera.is_held("image", image)) return nullptr;
-  return bytes_in(image).data();
+  return bytes_in(image).data() + sizeof(int);
 }
 
 std::size_t k4a_image_get_size(void* image) {
   if (camera.enter("k4a_image_get_size") || !camera.is_held("image", image)) return 0;
-  return bytes_in(image).size() - kNumberBytes;
+  return bytes_in(image).size() - sizeof(int);
 }
 
 int k4a_image_get_format(void* image) {
@@ -216,9 +203,7 @@ int k4a_image_get_stride_bytes(void* image) {
 
 std::uint64_t k4a_image_get_device_timestamp_usec(void* image) {
   if (camera.enter("k4a_image_get_device_timestamp_usec") || !camera.is_held("image", image)) return 0;
-  int number = 0;
-  std::memcpy(&number, bytes_in(image).data() + bytes_in(image).size() - kNumberBytes, kNumberBytes);
-  return static_cast<std::uint64_t>(std::llround(1e6 * camera.state.stamp_s(number)));
+  return static_cast<std::uint64_t>(std::llround(1e6 * camera.state.stamp_s(CameraDouble::number_in(image))));
 }
 
 int k4a_calibration_3d_to_2d(const void* calibration, const float* point, int source, int target,

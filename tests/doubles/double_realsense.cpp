@@ -25,16 +25,13 @@ struct StreamDouble {
 };
 const StreamDouble infrared{kInfraredStream, kY8}, depth{kDepthStream, kZ16};
 
-using Bytes = std::vector<std::uint8_t>;
+using Bytes = CameraDouble::Bytes;
+
 Bytes bytes_of(int number) {
-  Bytes bytes(sizeof number);
-  std::memcpy(bytes.data(), &number, sizeof number);
-  return bytes;
+  return CameraDouble::bytes_of(number);
 }
 int number_in(const void* handle) {
-  int number = 0;
-  std::memcpy(&number, static_cast<const Bytes*>(handle)->data(), sizeof number);
-  return number;
+  return CameraDouble::number_in(handle);
 }
 
 void set_error(void** error, const std::string& message) {
@@ -72,11 +69,7 @@ bool is_depth_frame(const void* frame) {
 }
 // The content of a frame is its number, its pixels, and its kind.
 void* frame_of(int number, int kind) {
-  Bytes content = bytes_of(number);
-  if (kind == kDepthStream) {
-    const Bytes pixels = camera.image();
-    content.insert(content.end(), pixels.begin(), pixels.end());
-  }
+  Bytes content = CameraDouble::bytes_of(number, kind == kDepthStream ? camera.image() : Bytes());
   content.push_back(static_cast<std::uint8_t>(kind));
   return camera.hold("frame", std::move(content));
 }
@@ -283,11 +276,7 @@ int rs2_pipeline_poll_for_frames(void* pipeline, void** frame, void** error) {
   if (!begins("rs2_pipeline_poll_for_frames", "pipeline", pipeline, error)) return 0;
   if (camera.sent() <= camera.last()) return 0;
   camera.take(camera.sent());
-  *frame = camera.state.is_alone ? frame_of(camera.last(), kDepthStream) : camera.hold("frame", [] {
-    Bytes content = bytes_of(camera.last());
-    content.push_back(0);
-    return content;
-  }());
+  *frame = frame_of(camera.last(), camera.state.is_alone ? kDepthStream : 0);
   return 1;
 }
 int rs2_is_frame_extendable_to(const void* frame, int what, void** error) {

@@ -1,7 +1,11 @@
 // Settings by which a test makes the double of the OpenCL library fail: which call fails, and in which way.
 #pragma once
 
+#include <dlfcn.h>
+
 #include <atomic>
+#include <cstdio>
+#include <cstdlib>
 #include <type_traits>
 
 namespace remote_touch {
@@ -34,5 +38,19 @@ struct OpenClDouble {
   }
 };
 static_assert(std::is_trivially_destructible_v<OpenClDouble>);
+
+#ifdef REMOTE_TOUCH_DOUBLE_OPENCL
+// The double, loaded by the program of a test. It stays loaded. The library exports extern "C"
+// remote_touch::OpenClDouble* opencl_double().
+inline OpenClDouble& library() {
+  static void* const loaded = dlopen(REMOTE_TOUCH_DOUBLE_OPENCL, RTLD_NOW | RTLD_LOCAL);
+  if (loaded == nullptr) {
+    std::fprintf(stderr, "%s\n", dlerror());
+    std::abort();
+  }
+  static OpenClDouble& one = *reinterpret_cast<OpenClDouble* (*)()>(dlsym(loaded, "opencl_double"))();
+  return one;
+}
+#endif
 
 }  // namespace remote_touch

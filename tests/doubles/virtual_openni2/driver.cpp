@@ -1,11 +1,10 @@
-// A camera that exists only here, as a driver for the run-time library of OpenNI 2. It shows pattern.h at 30
+// A camera that exists only here, as a driver for the run-time library of OpenNI 2. It shows a pattern at 30
 // Hz. The environment variable VIRTUAL_CAMERA controls it, with words that are separated by commas:
 //   absent           no camera is plugged in
 //   stop_after=N     sends no frame after frame N, which is not missing
 //   small_after=N    depth after frame N has half of the rows
 //   stays_mirrored   shows a mirrored image, whatever mirroring is set
 //   unregistered     does not register depth to colour
-//   flat=N           shows a wall N mm ahead, instead of the pattern
 // The library's own headers need allocation macros that no package ships. The two below are enough.
 #define XN_NEW(type, ...) new type(__VA_ARGS__)
 #define XN_DELETE(pointer) delete (pointer)
@@ -21,7 +20,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/doubles/virtual_openni2/pattern.h"
+#include "tests/doubles/virtual_openni2/virtual_camera.h"
 
 namespace remote_touch::virtual_camera {
 namespace {
@@ -241,12 +240,11 @@ void Stream::stop() {
 }
 
 void Stream::draw(int number, std::uint8_t* to) const {
-  const int flat = option("flat");
   for (int v = 0; v < kHeight; ++v)
     for (int u = 0; u < kWidth; ++u, to += pixel_bytes()) {
       const int seen_u = is_mirrored_ ? kWidth - 1 - u : u;
       if (is_depth_) {
-        const std::uint16_t depth = flat > 0 ? static_cast<std::uint16_t>(flat) : depth_at(number, seen_u, v);
+        const std::uint16_t depth = depth_at(number, seen_u, v);
         std::memcpy(to, &depth, sizeof depth);
       } else {
         const std::uint32_t colour = colour_at(number, seen_u, v);

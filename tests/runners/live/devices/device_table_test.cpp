@@ -1,120 +1,72 @@
+// The parts that the table of devices and its adapters share: addresses, connections, and devices without
+// hardware; and the presets of devices.
 #include "runners/live/devices/device_table.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
+
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <numbers>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
+#include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/sessions/session_file.h"
+#include "runners/experiment/simulation/simulation.h"
 #include "runners/live/devices/clock.h"
+#include "runners/live/devices/haptic_device.h"
 #include "tests/doubles/simulated_clock.h"
-#include "tests/doubles/vendor_devices.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::device_table_test {
 namespace {
 
-// Its trajectory reads the newest frame of its scenario in every tick.
-constexpr const char* kPressInTheImage = R"({
-  "scenario": {"name": "camera-scene", "width": 160, "height": 120}, "renderer": {"name": "proxy"},
-  "trajectory": {"name": "image-press", "row": 60, "column": 80, "depth_m": 0.01}})";
-
-class DeviceTable : public testing::Test {
- protected:
-  std::unique_ptr<HapticDevice> open(const std::string& uri, std::shared_ptr<HandPoses> poses = nullptr) {
-    return open_device(uri, {experiment_, scenes::kernels(), clock_, std::move(poses)});
-  }
-  const Experiment experiment_ = Experiment::from_json(kPressInTheImage, "a test");
-  const std::unique_ptr<Scenario> scenario_ = experiment_.build_scenario(scenes::kernels());
-  const std::unique_ptr<Trajectory> script_ = experiment_.build_trajectory(*scenario_);
-  SimulatedClock clock_;
-};
-
-// The scenario lives as long as the device.
-TEST_F(DeviceTable, TheSimulatedHandFollowsATrajectoryThatReadsFrames) {
-  const auto device = open("sim:");
-  run_ticks(*device, 300, [&](int i) {
-    DeviceReading reading;
-    device->read(reading);
-    device->write({});
-    EXPECT_EQ(reading.position_m, script_->at((i + 1) / 1000.0).position_W) << "tick " << i;
-  });
-}
-
-// The fourth image has another size. read() does not throw: that would end the program.
-TEST_F(DeviceTable, ATrajectoryThatCannotUseAFrameIsAFault) {
-  const TestFolder folder("size_changes");
-  folder.write("camera.json", R"({"width": 160, "height": 120, "fx": 150, "fy": 150, "cx": 79.5, "cy": 59.5,
-    "depth_scale_m": 0.001, "frame_rate_hz": 30})");
-  for (int i = 0; i < 6; ++i) {
-    const int width = i == 3 ? 80 : 160;
-    const std::vector<std::uint16_t> samples(static_cast<std::size_t>(width) * 120, 500);
-    folder.write_png("depth/" + std::to_string(i) + ".png", width, 120, PNG_FORMAT_LINEAR_Y, samples.data());
-  }
-  const Experiment press = Experiment::from_json(
-      R"({"scenario": {"name": "recording", "path": ")" + folder.path().string() +
-          R"("}, "renderer": {"name": "proxy"}, "trajectory": {"name": "image-press"}, "duration_s": 0.2})",
-      "a test");
-  const auto device = open_device("sim:", {press, scenes::kernels(), clock_, nullptr});
-  DeviceFault fault;
-  int ticks = 0;
-  const DeviceTick tick = [&] {
-    DeviceReading reading;
-    fault = device->read(reading);
-    return ++ticks < 1000 && !fault;
+TEST(DeviceTable, TheMouseNeedsAPageAndBeginsWhereTheExperimentDoes) {
+  const Experiment experiment = Experiment::from_json(R"({
+      "scenario": {"name": "flat-grid"}, "renderer": {"name": "proxy"},
+      "trajectory": {"name": "waypoints", "waypoints": [[0.1, 0.2, 0.3, 0]]}})",
+                                                      "test");
+  SimulatedClock clock;
+  const auto open = [&](const std::string& uri, std::shared_ptr<HandPoses> poses = nullptr) {
+    return open_device(uri, {experiment, scenes::kernels(), clock, std::move(poses)});
   };
-  EXPECT_HAS(refusal([&] { device->run(tick); }), "depth/3.png");
-  EXPECT_EQ(ticks, 100) << "the first tick is 1 ms, and frame 3 is captured at 0.1 s";
-  ASSERT_TRUE(fault);
-  EXPECT_HAS(fault.what, "80 x 120 pixels");
-}
-
-TEST_F(DeviceTable, TheMouseBeginsWhereTheExperimentDoes) {
-  DeviceReading reading;
-  open("browser:", std::make_shared<HandPoses>())->read(reading);
-  EXPECT_EQ(reading.position_m, script_->at(0).position_W);
-}
-
-TEST_F(DeviceTable, TheMouseNeedsAPage) {
   EXPECT_HAS(refusal([&] { open("browser:"); }), "expected the option --view");
   EXPECT_HAS(refusal([&] { open("browser:x", std::make_shared<HandPoses>()); }), "expected browser:");
+  DeviceReading reading;
+  open("browser:", std::make_shared<HandPoses>())->read(reading);
+  EXPECT_EQ(reading.position_m, Vec3(0.1, 0.2, 0.3));
 }
-
-}  // namespace
-}  // namespace remote_touch::device_table_test
-
-namespace remote_touch::device_address_test {
-namespace {
 
 const std::vector<std::string> kKnown{"rate", "force"};
 
-TEST(DeviceAddress, HasAPathAndSettings) {
-  const DeviceAddress address("fd", "0?rate=500&force=vector", kKnown);
+TEST(DeviceAddress, HasAPathAndSettingsOrTheirDefaults) {
+  const DeviceAddress address("fd", "0?rate=500&force=vector", kKnown), plain("fd", "", kKnown);
   EXPECT_EQ(address.place(), "0");
-  EXPECT_EQ(address.refusal("x").what(), std::string("fd:0?rate=500&force=vector: x"));
+  EXPECT_EQ(plain.place(), "");
+  EXPECT_FALSE(plain.has("rate"));
   EXPECT_EQ(address.number("rate", 1000, 1, 4000), 500);
+  EXPECT_EQ(plain.number("rate", 1000, 1, 4000), 1000);
   EXPECT_EQ(address.choice("force", {"values", "vector"}), "vector");
+  EXPECT_EQ(plain.choice("force", {"values", "vector"}), "values");
   EXPECT_EQ(address.word("force", "none"), "vector");
-}
-
-TEST(DeviceAddress, MissingSettingsHaveTheirDefaults) {
-  const DeviceAddress address("fd", "", kKnown);
-  EXPECT_EQ(address.place(), "");
-  EXPECT_FALSE(address.has("rate"));
-  EXPECT_EQ(address.number("rate", 1000, 1, 4000), 1000);
-  EXPECT_EQ(address.choice("force", {"values", "vector"}), "values");
-  EXPECT_EQ(address.word("force", "none"), "none");
+  EXPECT_EQ(plain.word("force", "none"), "none");
+  EXPECT_EQ(address.refusal("x").what(), std::string("fd:0?rate=500&force=vector: x"));
+  EXPECT_EQ(plain.refusal("x").what(), std::string("fd: x")) << "one colon";
 }
 
 TEST(DeviceAddress, WrongSettingsAreNamed) {
@@ -129,20 +81,7 @@ TEST(DeviceAddress, WrongSettingsAreNamed) {
     EXPECT_HAS(refused(std::string("?rate=") + number), "expected a number from 1 to 4000") << number;
 }
 
-TEST(DeviceAddress, MessagesBeginWithTheAddressAndOneColon) {
-  const auto message = [](const std::string& written) {
-    return refusal([&] { throw DeviceAddress("haply", written, kKnown).refusal("no service"); });
-  };
-  EXPECT_EQ(message(""), "haply: no service");
-  EXPECT_EQ(message("ws://127.0.0.1:10001"), "haply:ws://127.0.0.1:10001: no service");
-}
-
-}  // namespace
-}  // namespace remote_touch::device_address_test
-
 // Connections to a UNIX socket whose queue is full, in the time of the machine.
-namespace remote_touch::deadline_socket_test {
-namespace {
 
 double now_s() {
   return steady_clock().now_s();
@@ -183,33 +122,22 @@ class BusyService {
   std::vector<int> clients_;
 };
 
-TEST(DeadlineSocket, WaitsForRoomInTheQueueOfAService) {
-  const TestFolder folder("queue");
-  const BusyService service((folder / "s").string());
-  std::thread later([&] {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    service.accept_one();
-  });
-  DeadlineSocket socket(steady_clock());
-  EXPECT_EQ(socket.connect_to_path(service.path(), now_s() + 60), "");
-  later.join();
-}
-
-TEST(DeadlineSocket, WaitsForRoomUntilTheDeadline) {
+TEST(DeadlineSocket, WaitsForRoomInTheQueueOfAServiceUntilTheDeadline) {
   const TestFolder folder("queue");
   const BusyService service((folder / "s").string());
   DeadlineSocket socket(steady_clock());
   const double start_s = now_s();
   EXPECT_EQ(socket.connect_to_path(service.path(), start_s + 0.05), std::strerror(ETIMEDOUT));
   EXPECT_GE(now_s() - start_s, 0.05);
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    service.accept_one();
+  });
+  EXPECT_EQ(socket.connect_to_path(service.path(), now_s() + 60), "");
+  later.join();
 }
 
-}  // namespace
-}  // namespace remote_touch::deadline_socket_test
-
 // The hand of a user with a mouse, compared with the closed form of the spring that it follows.
-namespace remote_touch::browser_device_test {
-namespace {
 
 constexpr double kRate_hz = 1000;
 
@@ -234,10 +162,6 @@ class BrowserDeviceTest : public testing::Test {
   const DeviceState start_{.position_W = Vec3(0.1, 0.2, 0.3)};
   BrowserDevice device_{poses_, start_, DevicePlacement(LiveSettings{}), kRate_hz, clock_};
 };
-
-TEST_F(BrowserDeviceTest, IsAtItsStartUntilItIsMoved) {
-  EXPECT_EQ(after(50).position_m, start_.position_W);
-}
 
 // x(t) = d (1 - (1 + w t) e^(-w t)), as long as that is slower than the limit. Steps of a millisecond, the
 // velocity first, are ahead of it by at most a third of w times the step, 2 % of d.
@@ -272,32 +196,24 @@ TEST_F(BrowserDeviceTest, IsNeverFasterThanItsLimits) {
   EXPECT_LT(fastest, 0.9 * SafetyLimits{}.max_speed_m_per_s) << "the safety gate does not mind";
 }
 
-TEST_F(BrowserDeviceTest, TurnsToThePoseAndReportsTheButtons) {
-  DeviceState turned{start_.position_W};
-  turned.orientation_W = Eigen::AngleAxisd(0.5, Vec3(1, 2, 2) / 3);
-  turned.buttons = 3;
-  want(turned);
-  EXPECT_EQ(after(1).buttons, 3u);
-  EXPECT_NEAR(after(1000).orientation.angularDistance(turned.orientation_W), 0, 1e-8);
-}
-
 // The stop and the first motion after it may reach the loop together.
 TEST_F(BrowserDeviceTest, ANewStopHoldsTheHandWhereThatTickHasIt) {
   after(1);
   want({start_.position_W + Vec3(1, 0, 0)});
   const Vec3 there = after(300).position_m;
-  request({{}, {Vec3(0, 0.01, 0)}, 1});
+  request({{}, {}, 1});
+  for (int i = 0; i < 50; ++i)
+    EXPECT_NEAR((after(1).position_m - there).norm(), 0, 1e-12) << i << ": it had a speed";
+  request({{}, {Vec3(0, 0.01, 0)}, 2});
   EXPECT_NEAR((after(500).position_m - there - Vec3(0, 0.01, 0)).norm(), 0, 1e-9);
-  request({{}, {Vec3(0, 0.03, 0)}, 1});
+  request({{}, {Vec3(0, 0.03, 0)}, 2});
   EXPECT_NEAR((after(500).position_m - there - Vec3(0, 0.03, 0)).norm(), 0, 1e-9) << "the same stop";
 }
 
-TEST_F(BrowserDeviceTest, AStopTakesTheSpeedAway) {
-  after(1);
-  want({start_.position_W + Vec3(1, 0, 0)});
-  const Vec3 there = after(300).position_m;
-  request({{}, {}, 1});
-  for (int i = 0; i < 50; ++i) EXPECT_NEAR((after(1).position_m - there).norm(), 0, 1e-12) << i;
+// The pages are limited to 20 m of motion.
+TEST_F(BrowserDeviceTest, NoPoseIsBeyondTheLimitOfPages) {
+  request({{Vec3(-10, 0, 0)}, {Vec3(10, 0, 0)}});
+  EXPECT_NEAR(after(12000).position_m.x(), kMaxHandDistance_m, 1e-9);
 }
 
 // A loop that missed ticks finds the hand where it would be by then.
@@ -311,5 +227,98 @@ TEST_F(BrowserDeviceTest, MovesOnWhileTicksAreMissed) {
   EXPECT_NEAR(reading.position_m.y() - 0.2, 0.004 * (1 - (1 + w * t) * std::exp(-w * t)), kAhead * 0.004);
 }
 
+// The presets of data/devices: experiments with the limits of a haptic device.
+
+const std::filesystem::path kRoot = REMOTE_TOUCH_SOURCE_DIR;
+
+// The device's limits, as its page states them. half_width_m: of a box inside the workspace. No force: an
+// input device.
+struct Preset {
+  const char* name;
+  const char* page;
+  Vec3 half_width_m;
+  double max_force_N, max_stiffness_N_per_m;
+};
+const Preset kPresets[] = {
+    {"falcon", "force_dimension", {0.051, 0.051, 0.051}, 8.9, 3000},
+    {"inverse3", "haply", {0.23, 0.255, 0.115}, 4, 1000},
+    {"omega", "force_dimension", {0.043, 0.043, 0.043}, 12, 5000},  // the cube in a ball of 75 mm radius
+    {"spacemouse", "spacemouse", {0.15, 0.15, 0.15}, 0, 0},
+    {"touch", "touch", {0.08, 0.06, 0.035}, 3.3, 400},
+};
+
+std::string file_of(const Preset& preset) {
+  return std::string("data/devices/") + preset.name + ".json";
+}
+
+Experiment load(const Preset& preset, const std::vector<std::string>& overrides = {}) {
+  return Experiment::load((kRoot / file_of(preset)).string(), overrides);
+}
+
+TEST(DevicePresets, AreOneFileForEachDeviceAndAPageNamesIt) {
+  std::set<std::string> files, known;
+  for (const auto& entry : std::filesystem::directory_iterator(kRoot / "data/devices"))
+    files.insert("data/devices/" + entry.path().filename().string());
+  for (const Preset& preset : kPresets) {
+    known.insert(file_of(preset));
+    std::ifstream page(kRoot / "runners/live/hardware" / (std::string(preset.page) + ".md"));
+    const std::string text{std::istreambuf_iterator<char>(page), {}};
+    EXPECT_NE(text.find(file_of(preset)), std::string::npos) << preset.name;
+  }
+  EXPECT_EQ(files, known);
+}
+
+// The hand of a run yields to the force, so it is not where the trajectory is. Fewer pixels make the run
+// short.
+TEST(DevicePresets, KeepTheHandOfARunInTheWorkspace) {
+  for (const Preset& preset : kPresets) {
+    const Experiment experiment =
+        load(preset, {"scenario.width=160", "scenario.height=120", "scenario.focal_px=131"});
+    const DevicePlacement placement(experiment.live());
+    const auto expect_in_workspace = [&](const Vec3& p_W) {
+      const Vec3 p_D = placement.of_device({.position_W = p_W}).position_m;
+      EXPECT_TRUE((p_D.cwiseAbs().array() <= preset.half_width_m.array()).all())
+          << preset.name << ": " << p_D.transpose();
+    };
+    const Trace trace = simulate(experiment);
+    double yields_m = 0;
+    for (std::size_t i = 0; i < trace.length(); ++i) {
+      expect_in_workspace(trace.hip_position_m[i]), expect_in_workspace(trace.intended_position_m[i]);
+      yields_m = std::max(yields_m, (trace.hip_position_m[i] - trace.intended_position_m[i]).norm());
+    }
+    EXPECT_EQ(yields_m > 0.001, preset.max_force_N > 0) << preset.name << " yields by " << yields_m << " m";
+    const auto scenario = experiment.build_scenario(scenes::kernels());
+    EXPECT_LE(experiment.build_trajectory(*scenario)->duration_s(), experiment.settings().duration_s)
+        << preset.name;
+  }
+}
+
+TEST(DevicePresets, AStiffnessThatIsNoneDoesNotSwitchTheScalingOff) {
+  EXPECT_EQ(force_scale(2400, 1, 600), 0.25);
+  EXPECT_EQ(force_scale(300, 2, 600), 1);
+  EXPECT_EQ(force_scale(1e6, 1, 0), 1) << "the limit of the device is not known";
+  for (const double none : {std::nan(""), -1.0, HUGE_VAL})
+    for (const std::array<double, 3>& a :
+         {std::array{none, 1.0, 600.0}, std::array{2400.0, none, 600.0}, std::array{2400.0, 1.0, none}})
+      EXPECT_HAS(refusal([&] { force_scale(a[0], a[1], a[2]); }), "expected a finite number, 0 or more");
+}
+
+TEST(DevicePresets, AskForNoMoreThanTheDeviceCanExert) {
+  for (const Preset& preset : kPresets) {
+    const Experiment experiment = load(preset);
+    const auto device = [&](const std::string& name) { return experiment.value_at_start("device." + name); };
+    EXPECT_EQ(device("max_force_N").get<double>(), preset.max_force_N) << preset.name;
+    for (const char* axis : {"x", "y", "z"}) {
+      EXPECT_EQ(device(std::string("force_") + axis).get<bool>(), preset.max_force_N > 0) << preset.name;
+      EXPECT_FALSE(device(std::string("torque_") + axis).get<bool>()) << preset.name;
+    }
+    if (preset.max_force_N == 0) continue;
+    EXPECT_LE(experiment.safety().max_force_N, 0.9 * preset.max_force_N) << preset.name;
+    EXPECT_LE(experiment.max_stiffness_N_per_m() * experiment.live().device_scale,
+              preset.max_stiffness_N_per_m)
+        << preset.name;
+  }
+}
+
 }  // namespace
-}  // namespace remote_touch::browser_device_test
+}  // namespace remote_touch::device_table_test

@@ -1,22 +1,47 @@
-// The adapter of Haply's Inverse3 against a service on a simulated clock: what it reads and writes.
+// The adapter of Haply's Inverse3 against a service on a simulated clock: what it reads and writes, what it
+// does if the service fails, and the release of the device. Then the text of the messages.
 #include "runners/live/devices/haply.h"
 
 #include <gtest/gtest.h>
-#include <algorithm>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <string>
 
-#include "runners/evaluation/contract/allocation_counter.h"
+#include "tests/doubles/simulated_haply.h"
 #include "tests/doubles/vendor_devices.h"
-#include "tests/runners/live/devices/haply_ticks.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::haply_test {
 namespace {
 
-using Haply = SimulatedHaplyTest;
+constexpr const char* kLate = "the Haply service does not answer";
+
+Wrench force(const Vec3& force_N) {
+  return {force_N, Vec3::Zero()};
+}
+
+// Returns the text of the fault, or nothing.
+std::string fault_text(const DeviceFault& fault) {
+  return fault ? fault.what : "";
+}
+
+class Haply : public testing::Test {
+ protected:
+  // Runs a tick of one millisecond. Returns its first fault; empty if there was none.
+  std::string tick(HapticDevice& device, const Vec3& force_N = Vec3::Zero()) {
+    const std::int64_t end_ns = clock_.now_ns() + ms(1);
+    const std::string read = fault_text(device.read(reading_)),
+                      written = fault_text(device.write(force(force_N)));
+    clock_.sleep_until_ns(end_ns);
+    return read.empty() ? written : read;
+  }
+  double newest_force_N() const { return service_.sent().back().command.force_N.norm(); }
+
+  SimulatedClock clock_;
+  SimulatedHaply service_{clock_};
+  DeviceReading reading_;
+};
 
 TEST_F(Haply, ConvertsAxesAndUnits) {
   const auto device = service_.open();
@@ -40,10 +65,18 @@ TEST_F(Haply, ConvertsAxesAndUnits) {
 
 TEST_F(Haply, ReadsOrientationAndButtonsOfTheHandle) {
   HaplyWorld& world = service_.world;
-  world.a = world.c = true;
+  world.has_handle = false;
+  EXPECT_EQ(service_.open()->traits().sensed_axes, 3);
+  world.has_handle = world.is_handle_wired = world.a = true;
+  const auto wired = service_.open();
+  ASSERT_EQ(tick(*wired), "");
+  EXPECT_EQ(wired->traits().sensed_axes, 6);
+  EXPECT_EQ(reading_.buttons, 1u);
+
+  world.is_handle_wired = false;
+  world.c = true;
   world.orientation = Eigen::AngleAxisd(0.5, Vec3::UnitZ());  // about the vertical
   const auto device = service_.open();
-  EXPECT_EQ(device->traits().sensed_axes, 6);
   ASSERT_EQ(tick(*device), "");
   EXPECT_EQ(reading_.buttons, 0b101u);
   const Eigen::Quaterniond expected(Eigen::AngleAxisd(0.5, Vec3::UnitY()));
@@ -66,59 +99,45 @@ TEST_F(Haply, ReadsOrientationAndButtonsOfTheHandle) {
   EXPECT_EQ(tick(*device), "the handle is no longer in the states of the service");
 }
 
-TEST_F(Haply, AcceptsNoHandleAndAWiredOne) {
-  service_.world.has_handle = false;
-  EXPECT_EQ(service_.open()->traits().sensed_axes, 3);
-  EXPECT_HAS(refusal([&] { service_.open("?handle=61548"); }), "lists no handle \"61548\"; pair it");
-  service_.world.has_handle = service_.world.is_handle_wired = service_.world.a = true;
-  const auto device = service_.open();
-  ASSERT_EQ(tick(*device), "");
-  EXPECT_EQ(device->traits().sensed_axes, 6);
-  EXPECT_EQ(reading_.buttons, 1u);
-}
-
 TEST_F(Haply, FindsDevicesByName) {
   service_.world.devices = {"049D", "04BA"};
-  {
-    const auto device = service_.open("?device=04BA");
-    ASSERT_EQ(tick(*device), "");
-    EXPECT_EQ(reading_.position_m, Vec3(9, 9, -9));
-    EXPECT_EQ(service_.sent().back().command.device_id, "04BA");
-    service_.world.devices = {"049D"};
-    tick(*device);
-    EXPECT_EQ(tick(*device), "the Inverse3 is no longer in the states of the service");
-  }
-  EXPECT_HAS(refusal([&] { service_.open("?device=04BA"); }), "lists no Inverse3 \"04BA\"; plug it in");
+  const auto device = service_.open("?device=04BA");
+  ASSERT_EQ(tick(*device), "");
+  EXPECT_EQ(reading_.position_m, Vec3(9, 9, -9));
+  EXPECT_EQ(service_.sent().back().command.device_id, "04BA");
+  service_.world.devices = {"049D"};
+  tick(*device);
+  EXPECT_EQ(tick(*device), "the Inverse3 is no longer in the states of the service");
 }
 
+// The service that is silent in the end is given a second.
 TEST_F(Haply, RefusesWhatCannotBeOpened) {
-  const auto refused = [&](const HaplyWorld& world, const std::string& settings = "") {
-    service_.world = world;
-    return refusal([&] { service_.open(settings); });
+  HaplyWorld no_device, no_handle, turned, no_state;
+  no_device.devices.clear(), no_handle.has_handle = false, turned.basis = "XZY", no_state.answer = "{}";
+  struct Refused {
+    HaplyWorld world;
+    std::string settings, message;
   };
-  EXPECT_HAS(refused({}, "?forse=values"), "has no setting \"forse\": expected force");
-  EXPECT_HAS(refused({}, "?force=x"), "haply:?force=x: force is \"x\": expected vector, values");
-  EXPECT_HAS(refused({}, "?rate=nan"), "rate is \"nan\": expected a number from 100 to 8000");
-  HaplyWorld world;
-  world.devices.clear();
-  EXPECT_HAS(refused(world), "lists no Inverse3; plug it in");
-  world = {};
-  world.basis = "XZY";
-  EXPECT_HAS(refused(world), "is set to the basis XZY; set the basis");
-  world = {};
-  world.answer = "{}";
-  EXPECT_HAS(refused(world), "no first state (the Inverse3 is no longer");
+  std::vector<Refused> all = {{{}, "?forse=values", "has no setting \"forse\": expected force"},
+                              {{}, "?force=x", "haply:?force=x: force is \"x\": expected vector, values"},
+                              {{}, "?rate=nan", "rate is \"nan\": expected a number from 100 to 8000"},
+                              {{}, "?device=04BA", "lists no Inverse3 \"04BA\"; plug it in"},
+                              {no_handle, "?handle=61548", "lists no handle \"61548\"; pair it"},
+                              {no_device, "", "lists no Inverse3; plug it in"},
+                              {turned, "", "is set to the basis XZY; set the basis"},
+                              {no_state, "", "no first state (the Inverse3 is no longer"}};
   for (const char* inventory : {"garbage", "[]", "\xff\xff"}) {
-    world = {};
-    world.inventory = inventory;
-    EXPECT_HAS(refused(world), "is this the Inverse service?");
+    all.push_back({{}, "", "is this the Inverse service?"});
+    all.back().world.inventory = inventory;
   }
-}
-
-TEST_F(Haply, AServiceThatIsSilentIsRefusedAfterASecond) {
+  for (const Refused& refused : all) {
+    service_.world = refused.world;
+    EXPECT_HAS(refusal([&] { service_.open(refused.settings); }), refused.message);
+  }
   service_.hang();
+  const std::int64_t start_ns = clock_.now_ns();
   EXPECT_HAS(refusal([&] { service_.open(); }), "an inventory was expected; is this the Inverse service?");
-  EXPECT_EQ(clock_.now_ns(), ms(1000));
+  EXPECT_EQ(clock_.now_ns() - start_ns, ms(1000));
 }
 
 // The rate of commands at the service is that of the loop.
@@ -154,6 +173,200 @@ TEST_F(Haply, AStateThatIsOlderThan20MsIsAskedForAgain) {
   }
 }
 
+class HaplyFault : public Haply {
+ protected:
+  // Duration of a call, in microseconds.
+  std::int64_t takes_us(const std::function<void()>& call) {
+    const std::int64_t start_ns = clock_.now_ns();
+    call();
+    return (clock_.now_ns() - start_ns) / 1000;
+  }
+  // The first tick with a fault among 300 with this force, and the fault. The number is -1 if there is none.
+  struct FirstFault {
+    int tick = -1;
+    std::string text;
+  };
+  FirstFault first_fault(HapticDevice& device, const Vec3& force_N) {
+    for (int i = 0; i < 300; ++i)
+      if (const std::string fault = tick(device, force_N); !fault.empty()) return {i, fault};
+    return {};
+  }
+};
+
+TEST_F(HaplyFault, ClosedConnectionStaysAFault) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device), "");
+  service_.die();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(fault_text(device->read(reading_)), "the Haply service closed the connection");
+    EXPECT_EQ(fault_text(device->write({})), "the Haply service closed the connection");
+  }
+}
+
+// A tick with a hanging service ends well before the 10 ms after which the loop counts as hung.
+TEST_F(HaplyFault, WaitsForALateOrAHangingServiceForABoundedTime) {
+  const auto device = service_.open();
+  service_.answers_after_ns = 5'900'000;
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(fault_text(device->read(reading_)), ""); }), 5900);
+  ASSERT_EQ(fault_text(device->write({})), "");
+  service_.hang();
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(fault_text(device->read(reading_)), kLate); }), 6000);
+  EXPECT_EQ(takes_us([&] { EXPECT_EQ(fault_text(device->write({})), kLate); }), 1500);
+}
+
+// Every tick has a fault while the service hangs, and no command queues up. Then the service is back.
+TEST_F(HaplyFault, AServiceThatHangsAndReturnsSendsItsLatestState) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device, {1, 0, 0}), "");
+  service_.hang();
+  const std::size_t before = service_.sent().size();
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(fault_text(device->read(reading_)), kLate);
+    EXPECT_EQ(fault_text(device->write(force({1, 0, 0}))), kLate);
+  }
+  EXPECT_EQ(service_.sent().size(), before);
+  service_.world.position_m = Vec3(0.5, 0, 0);
+  service_.resume();
+  ASSERT_EQ(fault_text(device->read(reading_)), "");
+  EXPECT_EQ(reading_.position_m, Vec3(0.5, 0, 0)) << "the state from before it hung";
+  EXPECT_EQ(newest_force_N(), 0);
+}
+
+TEST_F(HaplyFault, GarbageInsteadOfAStateIsAFault) {
+  const auto device = service_.open();
+  const auto of_device = [](const std::string& state) {
+    return R"({"inverse3":[{"device_id":"049D","state":{)" + state + "}}]}";
+  };
+  for (const auto& [answer, message] :
+       {std::pair<std::string, std::string>{"garbage", ""},
+        {"{}", ""},
+        {"[]", ""},
+        {of_device(""), ""},
+        {of_device(R"("cursor_position":{"x":NaN,"y":0,"z":0})"), ""},
+        {of_device(R"("cursor_position":{"x":0,"y":0,"z":0})"), "sent no cursor_velocity"}}) {
+    service_.world.answer = answer;
+    tick(*device);
+    reading_.position_m = Vec3(1, 2, 3);
+    const std::string fault = tick(*device);
+    EXPECT_NE(fault, "") << answer;
+    EXPECT_HAS(fault, message);
+    EXPECT_EQ(reading_.position_m, Vec3(1, 2, 3)) << "a reading from a fault";
+  }
+  service_.world.answer.clear();
+  tick(*device);
+  EXPECT_EQ(tick(*device), "");
+}
+
+TEST_F(HaplyFault, ReportsANanForceAndSendsZero) {
+  const auto device = service_.open();
+  const Vec3 none(0, std::numeric_limits<double>::quiet_NaN(), 0);
+  EXPECT_EQ(tick(*device, none), "the commanded force is not finite");
+  EXPECT_EQ(tick(*device), "");
+  for (const auto& sent : service_.sent()) EXPECT_TRUE(sent.command.force_N.isZero());
+}
+
+// The tick that reports a force which has not followed for 50 ms. Ticks begin at 0.2 ms. The answer to the
+// first one, at 0.4 ms, is the last that agrees with the force that was given.
+constexpr int kUnfollowedTick = 51;
+
+TEST_F(HaplyFault, TriesBothForceKeys) {
+  EXPECT_EQ(first_fault(*service_.open(), {0, 1, 0}).tick, -1);
+  const FirstFault values = first_fault(*service_.open("?force=values"), {0, 1, 0});
+  EXPECT_HAS(values.text, "try force=vector");
+  EXPECT_EQ(values.tick, kUnfollowedTick);
+
+  service_.world.force_key = "values";
+  EXPECT_EQ(first_fault(*service_.open("?force=values"), {0, 1, 0}).tick, -1);
+  EXPECT_EQ(service_.sent()[service_.sent().size() - 2].command.key, "values");
+  const FirstFault vector = first_fault(*service_.open("?force=vector"), {0, 1, 0});
+  EXPECT_HAS(vector.text, "try force=values");
+  EXPECT_EQ(vector.tick, kUnfollowedTick);
+  EXPECT_EQ(first_fault(*service_.open("?force=vector&check=off"), {0, 1, 0}).tick, -1);
+  EXPECT_EQ(first_fault(*service_.open("?force=vector"), {0, 0.1, 0}).tick, -1) << "too small a force";
+}
+
+TEST_F(HaplyFault, AForceThatDoesNotFollowTheCommandIsAFault) {
+  HaplyWorld& world = service_.world;
+  world.force_factor = 0.3;  // the gate of the documentation's sample
+  EXPECT_EQ(first_fault(*service_.open(), {0, 3, 0}).tick, -1);
+  world.force_factor = -1;
+  const FirstFault opposite = first_fault(*service_.open(), {0, 1, 0});
+  EXPECT_HAS(opposite.text, "does not apply the force that it is sent");
+  EXPECT_EQ(opposite.tick, kUnfollowedTick);
+  world.force_factor = 1;
+  world.other_N = Vec3(0, 0, 2);
+  EXPECT_HAS(first_fault(*service_.open(), {0, 0, 0}).text, "applies a force that it was not sent");
+  world.reports_force = false;
+  EXPECT_EQ(first_fault(*service_.open(), {0, 1, 0}).tick, -1);
+}
+
+class HaplyRelease : public HaplyFault {
+ protected:
+  // Releases the device at that moment, as another thread would. Stores the duration in took_us_, in
+  // microseconds.
+  void release_at(HapticDevice& device, double moment_s) {
+    clock_.at(moment_s, [&] { took_us_ = takes_us([&] { device.release(); }); });
+  }
+  std::int64_t took_us_ = -1;
+};
+
+TEST_F(HaplyRelease, TheLastCommandIsNoForce) {
+  {
+    const auto device = service_.open();
+    ASSERT_EQ(tick(*device, {3, 0, 0}), "");
+  }
+  EXPECT_EQ(newest_force_N(), 0);
+  EXPECT_EQ(service_.sent()[service_.sent().size() - 2].command.force_N, Vec3(3, 0, 0));
+  EXPECT_TRUE(service_.is_cut());
+}
+
+TEST_F(HaplyRelease, ReleaseBetweenTwoTicksSendsZeroForceAtOnce) {
+  const auto device = service_.open();
+  release_at(*device, 0.0207);
+  std::string last;
+  for (int i = 0; i < 40; ++i) last = tick(*device, {1, 0, 0});
+  EXPECT_EQ(took_us_, 200);  // it waits for the service's answer
+  EXPECT_EQ(last, "the device was released");
+  EXPECT_EQ(service_.sent().back().at_ns, 20'700'000);
+  EXPECT_EQ(newest_force_N(), 0);
+  device->release();
+  EXPECT_EQ(service_.sent().back().at_ns, 20'700'000);
+}
+
+// A thread that hangs between reading and writing sends nothing when it comes back.
+TEST_F(HaplyRelease, SendsZeroForceWhileATickHangs) {
+  const auto device = service_.open();
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(tick(*device, {1, 0, 0}), "");
+  ASSERT_EQ(fault_text(device->read(reading_)), "");
+  release_at(*device, 0.02);
+  clock_.sleep_s(0.1);
+  EXPECT_EQ(fault_text(device->write(force({1, 0, 0}))), "the device was released");
+  EXPECT_EQ(service_.sent().back().at_ns, ms(20));
+  EXPECT_EQ(newest_force_N(), 0);
+}
+
+// The call in progress is given 5 ms. No command can be sent meanwhile, so the connection is cut.
+TEST_F(HaplyRelease, SendsZeroForceWhileAReadWaits) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device, {1, 0, 0}), "");
+  service_.hang();
+  release_at(*device, clock_.now_s() + 0.001);
+  EXPECT_TRUE(device->read(reading_));
+  EXPECT_EQ(took_us_, 5000);
+  EXPECT_TRUE(service_.is_cut());
+  EXPECT_EQ(fault_text(device->write(force({1, 0, 0}))), "the Haply service closed the connection");
+}
+
+TEST_F(HaplyRelease, CutsTheConnectionAfter20MsIfTheServiceHangs) {
+  const auto device = service_.open();
+  ASSERT_EQ(tick(*device, {1, 0, 0}), "");
+  service_.hang();
+  EXPECT_EQ(takes_us([&] { device->release(); }), 20'000);
+  EXPECT_EQ(newest_force_N(), 0);
+  EXPECT_TRUE(service_.is_cut());
+  EXPECT_EQ(fault_text(device->write(force({1, 0, 0}))), "the device was released");
+}
+
 // The text that Haply's service and its client exchange: samples of its documentation, and texts that are no
 // message.
 
@@ -186,29 +399,10 @@ TEST(HaplyMessage, ReadsTheSampleOfTheDocumentation) {
   EXPECT_EQ(message.handle->id, "61548");
   EXPECT_EQ(message.handle->orientation, Eigen::Vector4d(-0.5019531, 0.8632202, -0.048095703, -0.022338867));
   EXPECT_EQ(message.handle->buttons, 0b101u);
-}
-
-TEST(HaplyMessage, FindsDevicesAndHandlesByName) {
-  HaplyMessage message;
-  ASSERT_TRUE(read_haply_message(kState, "04BB", "", message));
+  ASSERT_TRUE(read_haply_message(kState, "04BB", "61549", message));
   ASSERT_TRUE(message.device);
   EXPECT_EQ(message.device->position_m, Vec3(1, 2, 3));
-  EXPECT_FALSE(message.device->force_N);
-  ASSERT_TRUE(read_haply_message(kState, "04BC", "61549", message));
-  EXPECT_FALSE(message.device || message.handle);
-  ASSERT_TRUE(read_haply_message("{}", "", "", message));
-  EXPECT_FALSE(message.device || message.handle);
-}
-
-TEST(HaplyMessage, ReadsAWiredHandleAndTheBasis) {
-  HaplyMessage message;
-  ASSERT_TRUE(read_haply_message(
-      R"({"inverse3":[{"device_id":"1","config":{"basis":{"permutation":"XZY"}},"state":{}}],)"
-      R"("verse_grip":[{"device_id":"2","state":{"button":true,"orientation":{"x":0,"y":0,"z":0,"w":1}}}]})",
-      "", "", message));
-  EXPECT_EQ(message.device->basis, "XZY");
-  EXPECT_FALSE(message.device->position_m || message.device->velocity_m_per_s);
-  EXPECT_EQ(message.handle->buttons, 1u);
+  EXPECT_FALSE(message.device->force_N || message.handle);
 }
 
 std::string with_x(const std::string& x) {
@@ -227,24 +421,8 @@ TEST(HaplyMessage, RefusesWhatIsNotAMessage) {
         R"({"a":tru})", R"({"a":"\)", "{\"a\":\"\n\"}"})
     EXPECT_FALSE(read_haply_message(text, "", "", message)) << text;
   EXPECT_FALSE(read_haply_message("{\"a\":" + std::string(100000, '['), "", "", message));
-}
-
-// Every beginning of a message, and messages with bytes changed, are refused or read within their bounds.
-// Each is in memory of its own, so that the address sanitizer finds a read outside.
-TEST(HaplyMessage, BrokenTextIsReadWithinItsBounds) {
-  HaplyMessage message;
-  for (std::size_t size = 0; size < kState.size(); ++size) {
-    const std::vector<char> part(kState.begin(), kState.begin() + static_cast<std::ptrdiff_t>(size));
-    EXPECT_FALSE(read_haply_message({part.data(), part.size()}, "", "", message)) << size;
-  }
-  std::mt19937 random(1);
-  for (int i = 0; i < 20000; ++i) {
-    std::vector<char> changed(kState.begin(), kState.end());
-    for (int k = 0; k < 3; ++k) changed[random() % changed.size()] = static_cast<char>(random());
-    if (read_haply_message({changed.data(), changed.size()}, "", "", message) && message.device) {
-      EXPECT_TRUE(message.device->position_m.value_or(Vec3::Zero()).allFinite());
-    }
-  }
+  for (std::size_t size = 0; size < kState.size(); ++size)
+    EXPECT_FALSE(read_haply_message(std::string_view(kState).substr(0, size), "", "", message)) << size;
 }
 
 TEST(HaplyForceCommand, IsTheCommandOfTheDocumentation) {
@@ -264,19 +442,6 @@ TEST(HaplyForceCommand, IsTheCommandOfTheDocumentation) {
   EXPECT_FALSE(command.set_device("", HaplyForceKey::vector));
   EXPECT_FALSE(command.set_device("a\"b", HaplyForceKey::vector));
   EXPECT_FALSE(command.set_device(std::string(300, 'a'), HaplyForceKey::vector));
-}
-
-TEST(HaplyMessage, ReadingAndWritingAllocateNothing) {
-  HaplyForceCommand command;
-  ASSERT_TRUE(command.set_device("049D", HaplyForceKey::vector));
-  const double smallest = -std::numeric_limits<double>::denorm_min();
-  HaplyMessage message;
-  const std::size_t before = allocation_count();
-  const bool is_read = read_haply_message(kState, "04BA", "61548", message);
-  const std::size_t length = command.text(Vec3::Constant(smallest)).size();
-  EXPECT_EQ(allocation_count(), before);
-  EXPECT_TRUE(is_read);
-  EXPECT_LT(length, 200u);
 }
 
 }  // namespace

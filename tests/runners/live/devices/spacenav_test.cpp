@@ -1,22 +1,30 @@
 // The adapter of spacenavd: against a socket of the test's own on a simulated clock, and against the stock
-// daemon with a simulated serial mouse (tests/doubles/spacenav_daemon.h).
+// daemon with a simulated serial mouse.
 #include "runners/live/devices/device_table.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <csignal>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "runners/evaluation/contract/allocation_counter.h"
 #include "runners/live/devices/clock.h"
 #include "tests/doubles/simulated_clock.h"
-#include "tests/doubles/spacenav_daemon.h"
-#include "tests/doubles/spacenav_socket.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"
 
@@ -25,6 +33,36 @@ namespace {
 
 constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kMin = std::numeric_limits<std::int32_t>::min();
+
+// The socket of a spacenavd that does not run. A test writes its frames.
+class SpacenavSocket {
+ public:
+  explicit SpacenavSocket(const std::string& path)
+      : listener_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+    EXPECT_EQ(::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address), 0) << path;
+    EXPECT_EQ(::listen(listener_, 4), 0);
+  }
+  ~SpacenavSocket() {
+    close();
+    ::close(listener_);
+  }
+
+  void accept() { connection_ = ::accept(listener_, nullptr, nullptr); }
+  void close() {
+    if (connection_ >= 0) ::close(connection_);
+    connection_ = -1;
+  }
+  void send(const std::vector<std::int32_t>& frame) { send(frame.data(), 4 * frame.size()); }
+  void send(const void* bytes, std::size_t size) {
+    EXPECT_EQ(::send(connection_, bytes, size, MSG_NOSIGNAL), static_cast<ssize_t>(size));
+  }
+
+ private:
+  int listener_, connection_ = -1;
+};
 
 class Spacenav : public testing::Test {
  protected:
@@ -86,12 +124,6 @@ TEST_F(Spacenav, ConvertsAxesAndUnits) {
   EXPECT_TRUE(turned.velocity_m_per_s.isZero());
 }
 
-TEST_F(Spacenav, TheDisplacementIsSpeedTimesTime) {
-  const auto device = open("?speed=1e-3&box=10");
-  server_.send({0, 100, 0, 0, 0, 0, 0, 16});
-  EXPECT_NEAR(read_for(*device, 200).position_m.x(), 0.1 * 0.2, 1e-12);
-}
-
 TEST_F(Spacenav, StaysInTheBoxOfTheWorkspace) {
   const auto device = open("?speed=0.1&box=0.02");
   for (const std::int32_t count : {kMax, kMin}) {
@@ -116,10 +148,11 @@ TEST_F(Spacenav, ADeflectionThatIsNotSentAgainEnds) {
 }
 
 // One reading moves the position by the time since the last one, 0.1 s at most.
-TEST_F(Spacenav, APauseWithoutReadingsCausesNoJump) {
+TEST_F(Spacenav, TheDisplacementIsSpeedTimesTimeWithoutAJumpAfterAPause) {
   const auto device = open("?speed=1e-3&box=10");
   server_.send({0, 100, 0, 0, 0, 0, 0, 16});
-  const double before = read_for(*device, 10).position_m.x();
+  const double before = read_for(*device, 200).position_m.x();
+  EXPECT_NEAR(before, 0.1 * 0.2, 1e-12);
   EXPECT_NEAR(read(*device, 0.3).position_m.x() - before, 0.1 * 0.1, 1e-12);
 }
 
@@ -146,22 +179,21 @@ TEST_F(Spacenav, JoinsFramesThatComeInPieces) {
   EXPECT_FALSE(read_for(*device, 5).velocity_m_per_s.isZero());
 }
 
-TEST_F(Spacenav, ReportsAFaultForWhatIsNoFrame) {
-  const auto device = open();
-  server_.send({-7, 0, 0, 0, 0, 0, 0, 0});
-  DeviceReading reading;
-  EXPECT_TRUE(device->read(reading));
-  EXPECT_STREQ(device->read(reading).what, "the socket sends data that are not spacenavd's messages");
-}
-
-TEST_F(Spacenav, ADaemonThatClosesIsAFault) {
-  const auto device = open();
-  read_for(*device, 5);
-  server_.close();
-  DeviceReading reading;
-  EXPECT_STREQ(device->read(reading).what, "spacenavd has closed the connection");
-  EXPECT_TRUE(device->read(reading));
-  EXPECT_TRUE(device->write({}));
+TEST_F(Spacenav, ADaemonThatClosesOrSendsNoFrameIsAFault) {
+  for (const bool closes : {true, false}) {
+    const auto device = open();
+    read_for(*device, 5);
+    if (closes)
+      server_.close();
+    else
+      server_.send({-7, 0, 0, 0, 0, 0, 0, 0});
+    DeviceReading reading;
+    EXPECT_TRUE(device->read(reading));
+    EXPECT_STREQ(device->read(reading).what, closes
+                                                 ? "spacenavd has closed the connection"
+                                                 : "the socket sends data that are not spacenavd's messages");
+    EXPECT_TRUE(device->write({}));
+  }
 }
 
 TEST_F(Spacenav, ATickAllocatesNothing) {
@@ -189,20 +221,125 @@ TEST_F(Spacenav, UsesTheSocketOfTheEnvironment) {
 
 TEST(SpacenavAddress, RefusesWhatCannotBeOpened) {
   SimulatedClock clock;
-  const auto open = [&](const std::string& address) {
-    return refusal([&] { open_spacenav(address, clock); });
-  };
-  EXPECT_HAS(
-      open("/nowhere/sock"),
-      "spnav:/nowhere/sock: no spacenavd at /nowhere/sock (No such file or directory); install and start");
-  EXPECT_HAS(open("/" + std::string(200, 'a')), "the path is too long for a socket");
-  EXPECT_HAS(open("/tmp"), "no spacenavd at /tmp (");
-  EXPECT_HAS(open("?box=0"), "spnav:?box=0: box is \"0\": expected a number from 0.001 to 10");
-  EXPECT_HAS(open("?speed"), "the setting speed has no value; write speed=VALUE");
-  EXPECT_HAS(open("?box=1&box=2"), "the setting box is given twice");
+  for (const auto& [address, message] :
+       {std::pair<std::string, std::string>{
+            "/nowhere/sock",
+            "spnav:/nowhere/sock: no spacenavd at /nowhere/sock (No such file or "
+            "directory); install and start"},
+        {"/" + std::string(200, 'a'), "the path is too long for a socket"},
+        {"/tmp", "no spacenavd at /tmp ("},
+        {"?speed", "the setting speed has no value; write speed=VALUE"},
+        {"?box=0", "spnav:?box=0: box is \"0\": expected a number from 0.001 to 10"}})
+    EXPECT_HAS(refusal([&, address = address] { open_spacenav(address, clock); }), message);
 }
 
 // --- the stock daemon: in real time, which may take long on a busy machine ---
+
+// A pseudo-terminal that answers like a serial Magellan SpaceMouse. The mouse's frame is x to the right, y
+// up, z towards the user, which are the axes of its packets. A packet holds four bits per character: the
+// manufacturer's letters have the values as their lower halves.
+class SerialMouse {
+ public:
+  SerialMouse() : handle_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+    EXPECT_TRUE(handle_ >= 0 && ::grantpt(handle_) == 0 && ::unlockpt(handle_) == 0) << "no pseudo-terminal";
+    if (const char* const name = ::ptsname(handle_)) terminal = name;
+    thread_ = std::thread([this] { answer(); });
+  }
+  ~SerialMouse() {
+    is_over_ = true;
+    thread_.join();
+    ::close(handle_);
+  }
+
+  std::string terminal;                  // the daemon opens it
+  std::atomic<bool> is_detected{false};  // the daemon has switched its reports on
+
+  // Deflects the mouse along and about x, y and z, in counts.
+  void deflect(const std::array<int, 6>& counts) {
+    std::string packet = "d";
+    for (const int count : counts)
+      for (int shift = 12; shift >= 0; shift -= 4) packet += kNibbles[((count + 0x8000) >> shift) & 15];
+    send(packet);
+  }
+  // buttons: one bit for each that is down.
+  void press(unsigned buttons) {
+    std::string packet = "k";
+    for (int shift = 0; shift < 12; shift += 4) packet += kNibbles[(buttons >> shift) & 15];
+    send(packet);
+  }
+
+ private:
+  static constexpr char kNibbles[] = "0AB3D56GH9:K<MN?";
+
+  // The daemon first sends the commands of a Spaceball, which this mouse is not, and then requests the
+  // version (vQ). It switches the reports on with m3, which the mouse repeats.
+  void answer() {
+    for (std::string command; !is_over_;) {
+      pollfd one{handle_, POLLIN, 0};
+      char c = 0;
+      if (::poll(&one, 1, 20) <= 0 || (one.revents & POLLIN) == 0 || ::read(handle_, &c, 1) != 1) {
+        if ((one.revents & POLLHUP) != 0) ::usleep(1000);  // no program has it open
+        continue;
+      }
+      command += c;
+      if (c != '\r') continue;
+      if (command == "vQ\r") send("vMAGELLAN  Version 6.60  3Dconnexion GmbH 05/11/01");
+      if (command == "m3\r") {
+        send("m3");
+        is_detected = true;
+      }
+      command.clear();
+    }
+  }
+  void send(const std::string& packet) {
+    const std::string line = packet + '\r';
+    EXPECT_EQ(::write(handle_, line.data(), line.size()), static_cast<ssize_t>(line.size())) << "it is full";
+  }
+
+  const int handle_;
+  std::atomic<bool> is_over_{false};
+  std::thread thread_;
+};
+
+// Returns the path of the installed daemon; empty if it is not installed.
+std::string installed_daemon() {
+  for (const char* program : {"/usr/bin/spacenavd", "/usr/sbin/spacenavd", "/usr/local/bin/spacenavd"})
+    if (::access(program, X_OK) == 0) return program;
+  return "";
+}
+
+// The stock daemon in a folder of its own, where it makes its socket.
+class StockDaemon {
+ public:
+  StockDaemon(const TestFolder& folder, const std::string& terminal) {
+    std::filesystem::create_directories(folder / "run");
+    const std::string program = installed_daemon(), log = (folder / "log").string();
+    const std::string settings = folder.write("spnavrc", "serial = " + terminal + "\n").string();
+    child_ = ::fork();
+    if (child_ != 0) return;
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ::unsetenv("DISPLAY");
+    const int out = ::open(log.c_str(), O_WRONLY | O_CREAT, 0600);
+    ::dup2(out, 1), ::dup2(out, 2);
+    if (::chdir(folder.path().c_str()) == 0)
+      ::execl(program.c_str(), program.c_str(), "-d", "-v", "-c", settings.c_str(),
+              static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  ~StockDaemon() { kill(); }
+  StockDaemon(const StockDaemon&) = delete;
+  StockDaemon& operator=(const StockDaemon&) = delete;
+
+  void kill() {
+    if (child_ <= 0) return;
+    ::kill(child_, SIGKILL);
+    ::waitpid(child_, nullptr, 0);
+    child_ = -1;
+  }
+
+ private:
+  pid_t child_ = -1;
+};
 
 // Waits until a reading meets the condition, once the daemon has passed on a packet of the mouse. Returns
 // true if one does.
@@ -213,24 +350,26 @@ bool comes(HapticDevice& device, DeviceReading& reading,
 
 // The daemon queries once which mouse is at its terminal, and waits a quarter of a second for the answer. A
 // busy machine can need more than one daemon until the mouse is found.
-std::unique_ptr<SpacenavDaemon> daemon_with(const SerialMouse& mouse, const std::filesystem::path& folder) {
-  std::unique_ptr<SpacenavDaemon> daemon;
+std::unique_ptr<StockDaemon> daemon_with(const SerialMouse& mouse, const TestFolder& folder) {
+  const std::string socket = (folder / "run/spnav.sock").string();
+  std::unique_ptr<StockDaemon> daemon;
   wait_until([&] {
     daemon.reset();
-    daemon = std::make_unique<SpacenavDaemon>(folder, mouse.terminal());
-    return wait_until([&] { return spacenav_availability(daemon->socket(), steady_clock()).found; }, 10) &&
-           wait_until([&] { return mouse.is_detected(); }, 1);
+    daemon = std::make_unique<StockDaemon>(folder, mouse.terminal);
+    return wait_until([&] { return spacenav_availability(socket, steady_clock()).found; }, 10) &&
+           wait_until([&] { return mouse.is_detected.load(); }, 1);
   });
   return daemon;
 }
 
 TEST(SpacenavDaemon, DeliversASerialMouse) {
-  if (spacenav_daemon_program().empty()) GTEST_SKIP() << "spacenavd is not installed (apt package spacenavd)";
+  if (installed_daemon().empty()) GTEST_SKIP() << "spacenavd is not installed (apt package spacenavd)";
   const TestFolder folder("spacenav_daemon_test");
   SerialMouse mouse;
-  const auto daemon = daemon_with(mouse, folder.path());
-  ASSERT_TRUE(mouse.is_detected()) << bytes_of(folder / "log");
-  const auto device = open_spacenav(daemon->socket() + "?speed=1e-3&turning=1e-3&box=10", steady_clock());
+  const auto daemon = daemon_with(mouse, folder);
+  ASSERT_TRUE(mouse.is_detected) << bytes_of(folder / "log");
+  const auto device =
+      open_spacenav((folder / "run/spnav.sock").string() + "?speed=1e-3&turning=1e-3&box=10", steady_clock());
   DeviceReading reading;
   // The daemon sends what changes, and only to clients that it has accepted by then.
   int moved = 0;

@@ -8,8 +8,7 @@
 
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "runners/experiment/simulation/simulation.h"
-#include "tests/doubles/loaded_opencl_double.h"
+#include "tests/doubles/opencl_double.h"
 #include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/test_files.h"
 #include "tests/support/wait_until.h"
@@ -30,7 +29,6 @@ Experiment at_the_valves(const std::string& device) {
                                "test", {"depth_pipeline.device=" + device});
 }
 
-constexpr double kFails_s = 0.5;
 constexpr const char* kTakeover = "; the CPU processes this frame and all later ones";
 
 class DepthDeviceLoss : public testing::Test {
@@ -39,78 +37,61 @@ class DepthDeviceLoss : public testing::Test {
     setenv("REMOTE_TOUCH_LIBOPENCL", REMOTE_TOUCH_DOUBLE_OPENCL, 1);
     library().reset();
   }
-  // One second on a simulated clock; fail() happens in the middle.
-  LiveResult run(
-      const std::string& device, const std::function<void()>& fail = [] {}) {
-    SimulatedClock clock;
-    SimulatedRun run(clock, at_the_valves(device));
-    run.options.duration_s = 1;
-    run.record(folder_ / (device + ".h5"));
-    run.options.on_frame = [&](const Frame& frame) {
-      frames_.push_back({clock.now_ns(), frame.index, kernel_runs()});
-    };
-    clock.at(kFails_s, fail);
-    LiveResult result = run.run();
-    reported_ = run.reported();
-    return result;
+  // Runs for a second on a simulated clock.
+  void run(RecordedRun& recorded) {
+    recorded.run.options.on_frame = [this](const Frame&) { kernel_runs_.push_back(library().kernel_runs); };
+    recorded.go();
   }
-  static int kernel_runs() { return library().kernel_runs; }
-  static void fail_in(const char* function, int call = 1) {
-    library().calls = 0, library().failing_call = call, library().failing = function;
+  static std::string stored_device(const RecordedRun& recorded) {
+    return attribute(Hdf5Reader(recorded.run.options.record).attributes(), "depth_device");
+  }
+  static void fail_in(const char* function) {
+    library().calls = 0, library().failing_call = 1, library().failing = function;
   }
 
-  struct SeenFrame {
-    std::int64_t at_ns;
-    int index, kernel_runs;
-  };
-  const TestFolder folder_{"depth_device_loss"};
-  std::vector<SimulatedRun::ReportedLine> reported_;
-  std::vector<SeenFrame> frames_;
+  std::vector<int> kernel_runs_;  // number of kernel runs until each frame was processed
 };
 
-// The frame in which the call fails is processed by the CPU, no frame is missing, and the hand feels no
-// difference.
-TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrameWhicheverCallFails) {
-  const LiveResult on_cpu = run("cpu");
-  EXPECT_TRUE(reported_.empty());
-  const std::size_t frames = frames_.size();
-  const std::string expected = digest(on_cpu.log.trace.columns());
-  for (const char* function : kFrameFunctions) {
-    SCOPED_TRACE(function);
-    library().reset(), frames_.clear();
-    const LiveResult result = run("opencl", [&] { fail_in(function); });
-    EXPECT_GT(library().calls, 0) << "was not called";
-    EXPECT_EQ(digest(result.log.trace.columns()), expected);
-    EXPECT_EQ(result.log.missed_ticks, 0);
-    EXPECT_FALSE(result.failed) << result.ended;
-    ASSERT_EQ(frames_.size(), frames);
-    ASSERT_EQ(reported_.size(), 1u);
-    EXPECT_EQ(reported_[0].line, "depth_pipeline.device = opencl:0:0 (double, double) failed: " +
-                                     std::string(function) + ": CL_OUT_OF_RESOURCES (-5)" + kTakeover);
-    // The first frame after the failure is that of 0.5 s, and the next check for messages is 10 ms later at
-    // most.
-    EXPECT_GE(reported_[0].at_ns, ms(500));
-    EXPECT_LE(reported_[0].at_ns, ms(550));
-    // The device did all the work before: from the sensor's numbers to the columns of fixtures.
-    EXPECT_EQ(frames_[1].kernel_runs, frames_[0].kernel_runs + 6);
-    EXPECT_EQ(frames_[frames - 1].kernel_runs, frames_[frames - 2].kernel_runs);
-  }
+// The frame in which a call fails is processed by the CPU, no frame is missing, and the hand feels no
+// difference. opencl_double_test.cpp has each function that can fail.
+TEST_F(DepthDeviceLoss, TheCpuTakesOverWithinTheFrame) {
+  RecordedRun on_cpu(at_the_valves("cpu"), 1), on_device(at_the_valves("opencl"), 1);
+  run(on_cpu);
+  EXPECT_TRUE(on_cpu.lines().empty());
+  EXPECT_EQ(stored_device(on_cpu), "");
+  const std::size_t frames = kernel_runs_.size();
+  kernel_runs_.clear();
+  on_device.clock.at(0.5, [] { fail_in("clFinish"); });
+  run(on_device);
+  EXPECT_GT(library().calls, 0) << "was not called";
+  const LiveResult& result = on_device.result;
+  EXPECT_EQ(digest(result.log.trace.columns()), digest(on_cpu.result.log.trace.columns()));
+  EXPECT_EQ(result.log.missed_ticks, 0);
+  EXPECT_FALSE(result.failed) << result.ended;
+  ASSERT_EQ(on_device.run.reported().size(), 1u);
+  const auto& [at_ns, line] = on_device.run.reported()[0];
+  EXPECT_EQ(line, std::string("depth_pipeline.device = opencl:0:0 (double, double) failed: clFinish: "
+                              "CL_OUT_OF_RESOURCES (-5)") +
+                      kTakeover);
+  // The first frame after the failure is that of 0.5 s, and the next check for messages is 10 ms later at
+  // most.
+  EXPECT_GE(at_ns, ms(500));
+  EXPECT_LE(at_ns, ms(550));
+  // The device did all the work before: from the sensor's numbers to the columns of fixtures.
+  ASSERT_EQ(kernel_runs_.size(), frames);
+  EXPECT_EQ(kernel_runs_[1], kernel_runs_[0] + 6);
+  EXPECT_EQ(kernel_runs_[frames - 1], kernel_runs_[frames - 2]);
 }
 
+// Frames from the disk come as clouds. They go another way through the device, and have the same bits.
 TEST_F(DepthDeviceLoss, TheSessionNamesTheDeviceAndIsReplayedOnIt) {
-  const LiveResult live = run("opencl");
-  EXPECT_TRUE(reported_.empty());
-  // Frames from the disk come as clouds. They go another way through the device, and have the same bits.
-  SimulationOptions offline;
-  offline.kernels = &scenes::kernels(), offline.hash_frames = true;
-  const int before = kernel_runs();
-  const Trace again = simulate(Experiment::load((folder_ / "opencl.h5").string()), offline);
-  EXPECT_GT(kernel_runs(), before);
-  EXPECT_EQ(digest(again.columns()), digest(live.log.trace.columns()));
-  EXPECT_EQ(attribute(Hdf5Reader(folder_ / "opencl.h5").attributes(), "depth_device"),
-            "opencl:0:0 (double, double)");
-  run("cpu");
-  EXPECT_EQ(attribute(Hdf5Reader(folder_ / "cpu.h5").attributes(), "depth_device"), "");
+  RecordedRun live(at_the_valves("opencl"), 1);
+  run(live);
+  EXPECT_TRUE(live.lines().empty());
+  EXPECT_EQ(stored_device(live), "opencl:0:0 (double, double)");
+  const int before = library().kernel_runs;
+  EXPECT_EQ(digest(live.again().columns()), digest(live.result.log.trace.columns()));
+  EXPECT_GT(library().kernel_runs, before);
 }
 
 // The run is in real time, with the threads of a live run. The camera's thread waits 2 s for the driver, but

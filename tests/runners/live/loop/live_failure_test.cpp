@@ -2,11 +2,10 @@
 // force is measured at the device's side, and all times are those of a simulated clock.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
+#include <atomic>
 #include <memory>
 
-#include "tests/runners/live/loop/pressed_hand.h"
+#include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::live_failure_test {
@@ -44,47 +43,25 @@ class PressedDevice : public testing::TestWithParam<const VendorDevice*> {
                     [](const Experiment&, Clock& clock) { return GetParam()->open("", clock); }};
 };
 
-// The tick receives the fault at 300 ms. The user's part of the run checks every 10 ms, and the tick after
-// its check is the last.
-TEST_P(PressedDevice, AReadingThatFailsEndsTheForceInThatTickAndTheRun) {
-  at(kTrouble_s, [](DeviceDouble& device) {
-    device.set([](DeviceDouble::State& state) { state.reading_error = GetParam()->error; });
-  });
-  const LiveResult result = run();
-  expect_gone_at(ms(300));
-  EXPECT_TRUE(result.failed);
-  EXPECT_HAS(result.ended, "the device failed: ");
-  EXPECT_EQ(clock_.now_ns(), ms(310));
-}
-
-TEST_P(PressedDevice, ANanReadingEndsTheForceInThatTick) {
-  at(kTrouble_s, [](DeviceDouble& device) {
-    device.set(
-        [](DeviceDouble::State& state) { state.position[1] = std::numeric_limits<double>::quiet_NaN(); });
-  });
-  const LiveResult result = run();
-  // Entact's readings are one tick old.
-  expect_gone_at(ms(GetParam() == &kEntact ? 301 : 300));
-  EXPECT_TRUE(result.failed);
-}
-
+// The user's part of the run would see the stop or the end at 310 ms: the loop checks them itself, because
+// that part may be held up.
 TEST_P(PressedDevice, AStopEndsTheForceInTheNextTick) {
   std::atomic<bool> stop = false;
   run_.options.stop = &stop;
-  clock_.at(kTrouble_s, [&] { stop = true; });
+  clock_.at(0.303, [&] { stop = true; });
   const LiveResult result = run();
-  expect_gone_at(ms(300));
+  expect_gone_at(ms(303));
   EXPECT_FALSE(result.failed);
   EXPECT_EQ(result.ended, "stopped by a signal");
   EXPECT_FALSE(double_->now().has_motors_on);
 }
 
 TEST_P(PressedDevice, TheEndOfItsDurationEndsTheForceInTheNextTick) {
-  const LiveResult result = run(kTrouble_s);
-  expect_gone_at(ms(300));
+  const LiveResult result = run(0.303);
+  expect_gone_at(ms(303));
   EXPECT_EQ(result.ended, "its duration has elapsed");
   EXPECT_EQ(result.log.missed_ticks, 0);
-  EXPECT_EQ(result.log.trace.length(), 300u);
+  EXPECT_EQ(result.log.trace.length(), 303u);
 }
 
 // The tick of 300 ms hangs in the vendor's call. The watch checks every 2 ms and finds more than 10 ms at 312
@@ -130,30 +107,10 @@ TEST_P(PressedDevice, TheForceKeepsItsLimitsWhateverTheHandDoes) {
   EXPECT_DOUBLE_EQ(force().max_in(ms(300), ms(700)), SafetyLimits{}.max_force_N);
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, PressedDevice, testing::Values(&kForceDimension, &kOpenHaptics, &kEntact),
-                         [](const auto& device) { return device.param->name; });
+INSTANTIATE_TEST_SUITE_P(Vendors, PressedDevice, kVendors, vendor_name);
 
 // OpenHaptics alone reports how stiff a device can be.
-class StiffnessOfADevice : public PressedDevice {
- protected:
-  static double max_rendered_N(const LiveResult& result) {
-    double max_N = 0;
-    const Trace& trace = result.log.trace;
-    for (std::size_t i = 0; i < trace.length(); ++i) max_N = std::max(max_N, trace.force_N[i].norm());
-    return max_N;
-  }
-  static double rendered_at_last_N(const LiveResult& result) {
-    const Trace& trace = result.log.trace;
-    return trace.force_N[trace.length() - 1].norm();
-  }
-};
-
-TEST_P(StiffnessOfADevice, LeavesTheForceAsItIsIfUnknown) {
-  const LiveResult result = run();
-  EXPECT_EQ(result.force_scale, 1);
-  EXPECT_TRUE(run_.reported().empty());
-  EXPECT_NEAR(force().at(ms(499)), rendered_at_last_N(result), 1e-12);
-}
+class StiffnessOfADevice : public PressedDevice {};
 
 TEST_P(StiffnessOfADevice, IsNotExceeded) {
   constexpr double kLimit_N_per_m = 300, kRendered_N_per_m = 600;
@@ -163,12 +120,10 @@ TEST_P(StiffnessOfADevice, IsNotExceeded) {
   ASSERT_EQ(run_.reported().size(), 1u);
   EXPECT_HAS(run_.reported()[0].line,
              "the maximum stiffness of the device is 300 N/m: forces and torques are scaled by 0.5");
-  EXPECT_NEAR(force().at(ms(499)), 0.5 * rendered_at_last_N(result), 1e-12);
-  EXPECT_LT(result.log.max_force_N, 0.5 * max_rendered_N(result) * (1 + 1e-9));
+  EXPECT_NEAR(force().at(ms(499)), 0.5 * result.log.trace.force_N.back().norm(), 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHaptics),
-                         [](const auto& device) { return device.param->name; });
+INSTANTIATE_TEST_SUITE_P(Vendors, StiffnessOfADevice, testing::Values(&kOpenHaptics), vendor_name);
 
 // An adapter, or its vendor's library, that stops calling ticks.
 class DeviceThatLeaves final : public HapticDevice {

@@ -39,21 +39,18 @@ TEST(LiveLogger, AcceptsNoMoreFramesThanCanWait) {
   logger.finish();
 }
 
-TEST(Samples, KeepsAllUpToTheirMaximum) {
+TEST(Samples, KeepAllUpToTheirMaximumAndThenAnEvenPart) {
   Samples samples;
   EXPECT_TRUE(std::isnan(samples.least()));
-  for (int i = 0; i < 1000; ++i) samples.push_back(i % 100);
-  EXPECT_EQ(samples.size(), 1000u);
-  EXPECT_EQ(samples.kept().size(), 1000u);
-  EXPECT_EQ(samples.least(), 0);
-  EXPECT_EQ(samples.greatest(), 99);
-}
-
-TEST(Samples, KeepsAnEvenPartIfThereAreTooMany) {
-  Samples samples;
   const std::size_t all = 5 * Samples::kMax / 2 + 3;
-  for (std::size_t i = 0; i < all; ++i) samples.push_back(static_cast<double>(i));
+  for (std::size_t i = 0; i < all; ++i) {
+    samples.push_back(static_cast<double>(i));
+    if (i == Samples::kMax - 1) {
+      EXPECT_EQ(samples.kept().size(), Samples::kMax);
+    }
+  }
   EXPECT_EQ(samples.size(), all);
+  EXPECT_EQ(samples.least(), 0);
   EXPECT_EQ(samples.greatest(), static_cast<double>(all - 1));
   ASSERT_LE(samples.kept().size(), Samples::kMax);
   ASSERT_GE(samples.kept().size(), Samples::kMax / 2);
@@ -116,34 +113,18 @@ TEST(LiveReport, HasNoValueForWhatWasNotMeasured) {
   EXPECT_TRUE(std::isnan(std::get<std::vector<double>>(figure.tables[1].columns[1].values).back()));
 }
 
-TEST(LiveReport, HasNoPauseWithOneFrame) {
+TEST(LiveReport, HasNoPauseWithOneFrameAndAForceOfZeroWithOneTick) {
   LiveCounts counts;
   counts.camera.received = 3, counts.camera.reversed = 2, counts.camera.processing_s = 0.004;
-  const LiveReport one = live_report({}, counts);
+  LiveLog log;
+  log.append({}, 1000);
+  const LiveReport one = live_report(log, counts);
+  EXPECT_EQ(count_of(one, kMissed), 0);
+  EXPECT_EQ(count_of(one, kForce), 0);
   EXPECT_TRUE(std::isnan(count_of(one, kPause)));
   EXPECT_EQ(count_of(one, kProcessing), 4000);
   counts.camera.received = 4, counts.camera.max_pause_s = 0.5;
   EXPECT_EQ(count_of(live_report({}, counts), kPause), 500);
-}
-
-TEST(LiveReport, ATickWithoutForceIsMeasured) {
-  LiveLog log;
-  log.append({}, 1000);
-  const LiveReport report = live_report(log, {});
-  EXPECT_EQ(count_of(report, kMissed), 0);
-  EXPECT_EQ(count_of(report, kForce), 0);
-}
-
-TEST(LiveLog, CountsTheTicksInWhichTheGateLimits) {
-  LiveLog log;
-  LiveTick tick;
-  for (const bool is_limited : {false, true, true}) {
-    tick.is_limited = is_limited;
-    log.append(tick, 1000);
-    ++tick.number;
-  }
-  EXPECT_EQ(log.limited_ticks, 2);
-  EXPECT_EQ(count_of(live_report(log, {}), "ticks with a force or torque limited for safety"), 2);
 }
 
 TEST(LiveLog, ACloudOfASlowCameraIsStaleAfterTwoAndAHalfPeriods) {
@@ -159,23 +140,18 @@ TEST(LiveLog, ACloudOfASlowCameraIsStaleAfterTwoAndAHalfPeriods) {
   EXPECT_EQ(log.stale_ticks, 1299 - 1250);
 }
 
-TEST(LiveLog, AFrameThatIsNotNewerThanTheOneBeforeIsReversed) {
+TEST(LiveLog, CountsFramesInTheWrongOrderAndTicksInWhichTheGateLimits) {
   LiveLog log;
   LiveTick tick;
   for (const int taken : {3, -1, 4, 4, -1, 2, 5}) {  // -1: no frame
-    tick.taken = taken;
+    tick.taken = taken, tick.is_limited = taken < 3;
     log.append(tick, 1000);
     ++tick.number;
   }
   EXPECT_EQ(log.reversed_frames, 2);
   EXPECT_EQ(log.latency_s.size(), 5u);
+  EXPECT_EQ(count_of(live_report(log, {}), "ticks with a force or torque limited for safety"), 3);
 }
-
-}  // namespace
-}  // namespace remote_touch::live_log_test
-
-namespace remote_touch::live_report_test {
-namespace {
 
 // The recordings that a live run reads.
 
@@ -213,11 +189,6 @@ TEST(LiveInputs, NameTheSceneInWhichAHandIsPlanned) {
   EXPECT_EQ(paths("replay:other.h5", "dir:seen"), (Paths{"ball.obj", "other.h5", "scene", "seen"}));
 }
 
-TEST(LiveInputs, RefuseUnknownSchemes) {
-  EXPECT_HAS(refusal([] { live_inputs(experiment(), "moon:", "sim:", false); }), "--device moon:");
-  EXPECT_HAS(refusal([] { live_inputs(experiment(), "sim:", "moon:", false); }), "--depth moon:");
-}
-
 // A live session on a simulated clock: what it reports at its end and stores in its files.
 
 // A hand that presses 1 cm into a table from 0.2 s on; 40 x 30 pixels at 30 Hz.
@@ -229,57 +200,26 @@ std::string press(const std::string& trajectory) {
 const char* const kPress = R"({"name": "press", "press_at_s": 0.2, "depth_m": 0.01})";
 const char* const kAbove = R"({"name": "waypoints", "waypoints": [[0, 0.3, 0, 0], [0, 0.2, 0, 0.5]]})";
 
-struct Session {
-  LiveResult result;
-  TextAttributes stored;  // attributes of the recording
-};
-
-Session run(const std::string& experiment, double duration_s) {
-  const TestFolder folder("live_notes");
-  SimulatedClock clock;
-  SimulatedRun run(clock, Experiment::from_json(experiment, "test"));
-  run.options.duration_s = duration_s;
-  run.record(folder / "session.h5");
-  Session session{run.run(), {}};
-  session.stored = Hdf5Reader(folder / "session.h5").attributes();
-  return session;
-}
-
-TEST(LiveNotes, AnOrdinarySessionReportsItsFramesAndHasNoNotes) {
-  const Session session = run(press(kPress), 0.5);
-  ASSERT_EQ(session.result.report.inputs.size(), 1u);
-  const std::string& line = session.result.report.inputs[0];
-  const int frames = session.result.counts.camera.received;
-  ASSERT_GT(frames, 10);
-  EXPECT_HAS(line, std::to_string(frames) + " frame(s) from sim:, 40 x 30 pixels at 30 Hz; " +
-                       std::to_string(frames) + " processed: ");
-  EXPECT_HAS(line, " of " + std::to_string(1200 * frames) + " points measured, depth ");
-  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{});
-  EXPECT_EQ(attribute(session.stored, "frames_read"), line);
-  EXPECT_EQ(attribute(session.stored, "notes"), "");
-}
-
-TEST(LiveNotes, ReportASessionWithoutContact) {
-  const Session session = run(press(kAbove), 0.5);
-  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{"no contact"});
-  EXPECT_EQ(attribute(session.stored, "notes"), "no point was touched, and no force was felt");
-}
-
-TEST(LiveNotes, ASessionThatEndsBeforeThePressSaysSo) {
-  const Session session = run(press(kPress), 0.1);
-  EXPECT_EQ(kinds_of(session.result.report.notes), Kinds{"phase not reached"});
-  EXPECT_HAS(attribute(session.stored, "notes"), "before the press begins at 0.2 s");
-}
-
-// The pixels of this focal length see points of the table 11 mm apart, so that a ball of radius 5 mm falls
-// between them.
-TEST(LiveNotes, ASessionOnPointsFarApartSaysSo) {
+// The pixels of the focal length 60 px see points of the table 11 mm apart, so that a ball of radius 5 mm
+// falls between them.
+TEST(LiveNotes, AreMadeAndStoredForWhatASessionLacks) {
   std::string sparse = press(kPress);
   sparse.insert(sparse.find("\"width\""), "\"focal_px\": 60, ");
-  const Session session = run(sparse, 0.5);
-  ASSERT_FALSE(session.result.report.notes.empty());
-  EXPECT_EQ(kinds_of(session.result.report.notes).back(), "wide spacing");
-  EXPECT_HAS(attribute(session.stored, "notes"), "a proxy of contact radius 5 mm can fall through it");
+  struct Noted {
+    std::string experiment;
+    double duration_s;
+    const char *kind, *text;
+  };
+  for (const auto& [experiment, duration_s, kind, text] :
+       {Noted{press(kAbove), 0.5, "no contact", "no point was touched, and no force was felt"},
+        Noted{press(kPress), 0.1, "phase not reached", "before the press begins at 0.2 s"},
+        Noted{sparse, 0.5, "wide spacing", "a proxy of contact radius 5 mm can fall through it"}}) {
+    RecordedRun session(Experiment::from_json(experiment, "test"), duration_s);
+    session.go();
+    ASSERT_FALSE(session.result.report.notes.empty()) << kind;
+    EXPECT_EQ(kinds_of(session.result.report.notes).back(), kind);
+    EXPECT_HAS(attribute(Hdf5Reader(session.run.options.record).attributes(), "notes"), text);
+  }
 }
 
 // The hand at a device of another program moves freely, so the experiment's hand and scene are not used.
@@ -305,7 +245,7 @@ RunReport report_of_counts(const CameraCounts& camera, std::int64_t contact_tick
   return report_of({"k4a:", SensorView{}, SensedPoints{}, camera, log, 1000, {}});
 }
 
-TEST(LiveNotes, ReportFramesThatWereNotUsed) {
+TEST(LiveNotes, ReportFramesThatWereNotUsedAndThatThereWereNone) {
   CameraCounts camera;
   camera.received = 95, camera.skipped = 5, camera.overtaken = 3, camera.incomplete = 2;
   EXPECT_EQ(kinds_of(report_of_counts(camera).notes), Kinds{}) << "10 of 100: single frames";
@@ -315,18 +255,10 @@ TEST(LiveNotes, ReportFramesThatWereNotUsed) {
   EXPECT_EQ(report.notes[0].text,
             "11 of 100 frames were not used: 6 not sent, or replaced before they were processed, "
             "2 without all pixels or colours, 3 replaced before the haptic loop used them");
-}
-
-TEST(LiveNotes, ASessionWithoutFramesSaysSo) {
   EXPECT_EQ(kinds_of(report_of_counts({}, 0, 0).notes), Kinds{"no frame"});
 }
 
-}  // namespace
-}  // namespace remote_touch::live_report_test
-
 // Ticks that count as late, on a simulated clock. `remote-touch jitter` reports how late this machine is.
-namespace remote_touch::jitter_test {
-namespace {
 
 // A rate of 3 kHz has a period of 333333 ns: after 300 ticks the loop is 0.1 us before a grid of 1 / 3000 s.
 TEST(Jitter, NoTickIsLateIfAllComeInTime) {
@@ -358,4 +290,4 @@ TEST(Jitter, AStopEndsIt) {
 }
 
 }  // namespace
-}  // namespace remote_touch::jitter_test
+}  // namespace remote_touch::live_log_test

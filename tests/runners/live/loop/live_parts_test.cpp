@@ -11,8 +11,6 @@
 #include "analysis/trace/contact_measures.h"
 #include "core/dissertation/tool_motion/touch_finder.h"
 #include "runners/evaluation/contract/allocation_counter.h"
-#include "runners/experiment/simulation/simulation.h"
-#include "tests/runners/live/loop/pressed_hand.h"
 #include "tests/runners/live/loop/simulated_run.h"
 #include "tests/support/note_kinds.h"
 #include "tests/support/test_files.h"
@@ -42,48 +40,32 @@ Experiment experiment(const std::string& text) {
   return Experiment::from_json(text, "test");
 }
 
-struct Session {
-  LiveResult result;
-  Trace again;  // the simulation of the recording
-  std::vector<LiveTick> ticks;
-  std::vector<std::string> lines;
-};
-
 // pause_s: how long a tick comes late. depth: the address that the session has for its camera.
-Session session(const std::string& text, double duration_s, double pause_s = 0,
-                const std::string& depth = "sim:") {
-  const TestFolder folder("live_slave");
-  SimulatedClock clock;
-  SimulatedRun run(clock, experiment(text));
-  run.options.duration_s = duration_s, run.options.depth = depth;
-  run.record(folder / "session.h5");
-  Session all;
-  run.options.on_tick = [&](const LiveTick& tick) { all.ticks.push_back(tick); };
-  if (pause_s > 0) clock.at(0.7005, [&] { clock.sleep_s(pause_s); });
-  all.result = run.run();
-  for (const auto& reported : run.reported()) all.lines.push_back(reported.line);
-  SimulationOptions offline;
-  offline.kernels = &scenes::kernels();
-  offline.hash_frames = true;
-  all.again = simulate(Experiment::load((folder / "session.h5").string()), offline);
-  return all;
-}
+struct Session : RecordedRun {
+  Session(const std::string& text, double duration_s, double pause_s = 0, const std::string& depth = "sim:")
+      : RecordedRun(experiment(text), duration_s) {
+    run.options.depth = depth;
+    run.options.on_tick = [&](const LiveTick& tick) { ticks.push_back(tick); };
+    if (pause_s > 0) clock.at(0.7005, [this, pause_s] { clock.sleep_s(pause_s); });
+    go();
+  }
+  std::vector<LiveTick> ticks;
+};
 
 // The replay builds the scene that the slave touched, and leaves out the same ticks.
 TEST(LiveSlave, ARecordingGivesTheSameSlaveOffline) {
   for (const char* force : {"rendered", "none", "slave-force", "passive-slave-force"})
     for (const double pause_s : {0.0, 0.0042, 0.5}) {
       SCOPED_TRACE(std::string(force) + ", a pause of " + std::to_string(pause_s) + " s");
-      const Session s = session(shaken(felt(force)), 1.5, pause_s);
+      const Session s(shaken(felt(force)), 1.5, pause_s);
       ASSERT_FALSE(s.result.failed) << s.result.ended;
       EXPECT_EQ(s.result.log.missed_ticks > 0, pause_s > 0);
       const Trace& trace = s.result.log.trace;
       ASSERT_TRUE(trace.has_slave());
       EXPECT_GT(max_slave_force_N(trace), 1) << "it did not touch";
-      ASSERT_EQ(s.again.length(), trace.length());
-      EXPECT_EQ(digest(s.again.columns()), digest(trace.columns()));
+      EXPECT_EQ(digest(s.again().columns()), digest(trace.columns()));
       if (pause_s > 0.1) continue;  // the device was released
-      EXPECT_EQ(s.lines, std::vector<std::string>{});
+      EXPECT_EQ(s.lines(), std::vector<std::string>{});
       EXPECT_EQ(kinds_of(s.result.report.notes), Kinds{});
     }
 }
@@ -94,18 +76,18 @@ TEST(LiveSlave, TheDeadBandOfFramesDecidesAsOffline) {
   const std::string band = felt("none") + R"(, "frame_link": {"least_motion_m": 0.002}, "duration_s": 2.49)";
   const std::int32_t sent_offline = simulate(experiment(shaken(band))).frame_packets.back();
   for (const double pause_s : {0.0, 0.5}) {
-    const Session s = session(shaken(band), 2.49, pause_s);
+    const Session s(shaken(band), 2.49, pause_s);
     const Trace& trace = s.result.log.trace;
     ASSERT_FALSE(s.result.failed) << s.result.ended;
     const std::int32_t sent = trace.frame_packets.back(), captured = s.result.counts.camera.received;
     EXPECT_EQ(sent + s.result.counts.camera.held_back + s.result.counts.camera.overtaken, captured);
     EXPECT_GT(captured, 70) << pause_s;
     EXPECT_LT(sent, 0.7 * captured) << pause_s;
-    EXPECT_EQ(digest(s.again.columns()), digest(trace.columns())) << pause_s;
+    EXPECT_EQ(digest(s.again().columns()), digest(trace.columns())) << pause_s;
     if (pause_s > 0) continue;
     EXPECT_NEAR(sent, sent_offline, 1);
     EXPECT_GT(sent, 20);
-    EXPECT_EQ(s.lines, std::vector<std::string>{}) << "a frame that is held back is no stalled camera";
+    EXPECT_EQ(s.lines(), std::vector<std::string>{}) << "a frame that is held back is no stalled camera";
     EXPECT_EQ(kinds_of(s.result.report.notes), Kinds{});
   }
 }
@@ -147,26 +129,6 @@ TEST(LiveSlave, SendsFramesWhileItDoesNotKnowWhereTheSlaveIs) {
   EXPECT_FALSE(LiveSlave(experiment(shaken("")), "sim:", scenes::kernels()).places());
 }
 
-// A slave that stood still in the ticks that are missing would be farther from its command afterwards.
-TEST(LiveSlave, TheSlaveMovesInTicksThatAreMissing) {
-  const std::string far =
-      R"({"scenario": {"name": "flat-grid"}, "renderer": {"name": "proxy"},
-      "trajectory": {"name": "waypoints", "waypoints": [[0, 0.2, 0, 0], [0, 0.1, 0, 0.1]]},
-      "slave": {"natural_frequency_hz": 0.5}, "feedback": {"force": "none"}})";
-  const Trace whole = session(far, 1.2).result.log.trace;
-  const Trace held = session(far, 1.2, 0.0152).result.log.trace;
-  std::size_t after = 1;  // the first tick after the gap
-  while (after < held.length() && held.time_s[after] - held.time_s[after - 1] < 0.0015) ++after;
-  ASSERT_LT(after, held.length());
-  const auto then = static_cast<std::size_t>(std::llround(1000 * held.time_s[after]));
-  ASSERT_EQ(whole.time_s[then], held.time_s[after]);
-  const double whole_m = whole.slave_position_m[then].y() - whole.slave_position_m[after - 1].y();
-  const double held_m = held.slave_position_m[after].y() - held.slave_position_m[after - 1].y();
-  EXPECT_LT(whole_m, -1e-3);
-  EXPECT_LT(held_m, 0.5 * whole_m) << "its last command is held";
-  EXPECT_GT(held_m, whole_m);
-}
-
 double max_written_N(const Session& s) {
   double max_N = 0;
   for (const LiveTick& tick : s.ticks) max_N = std::max(max_N, tick.written.force_N.norm());
@@ -175,8 +137,8 @@ double max_written_N(const Session& s) {
 
 // The command passes the gate, which ramps it and limits it.
 TEST(LiveSlave, TheDeviceExertsTheForceOfTheFeedback) {
-  EXPECT_EQ(max_written_N(session(shaken(felt("none")), 1)), 0);
-  const Session free = session(shaken(felt("slave-force")), 1);
+  EXPECT_EQ(max_written_N(Session(shaken(felt("none")), 1)), 0);
+  const Session free(shaken(felt("slave-force")), 1);
   double max_N = 0;
   std::size_t engaged = 0;
   for (const LiveTick& tick : free.ticks) {
@@ -188,27 +150,27 @@ TEST(LiveSlave, TheDeviceExertsTheForceOfTheFeedback) {
   EXPECT_GT(engaged, 10u);
   EXPECT_GT(max_N, 3);
   EXPECT_GT(max_written_N(free), 1);
-  EXPECT_LE(max_written_N(session(shaken(R"(, "feedback": {"force": "slave-force", "gain": 20})"), 1)),
+  EXPECT_LE(max_written_N(Session(shaken(R"(, "feedback": {"force": "slave-force", "gain": 20})"), 1)),
             SafetyLimits{}.max_force_N + 1e-9);
 }
 
-TEST(LiveSlave, WithARealCameraItMovesButTouchesNothing) {
-  const Session s = session(shaken(felt("slave-force")), 1, 0, "k4a:0");
+TEST(LiveSlave, WithoutATrueSurfaceItMovesButTouchesNothing) {
+  const Session s(shaken(felt("slave-force")), 1, 0, "k4a:0");
   const Trace& trace = s.result.log.trace;
-  EXPECT_EQ(s.lines, std::vector<std::string>{"slave without surface: the camera k4a:0 has no true surface, "
-                                              "so the slave moves but cannot touch anything"});
+  EXPECT_EQ(s.lines(),
+            std::vector<std::string>{"slave without surface: the camera k4a:0 has no true surface, "
+                                     "so the slave moves but cannot touch anything"});
   EXPECT_EQ(max_slave_force_N(trace), 0);
   EXPECT_LT(trace.slave_position_m.back().y(), 0);
   EXPECT_TRUE(std::isnan(trace.slave_clearance_m.back()));
   EXPECT_EQ(kinds_of(s.result.report.notes).back(), "slave without surface");
-  EXPECT_EQ(digest(s.again.columns()), digest(trace.columns()));
-}
-
-TEST(LiveSlave, SaysAtTheStartThatAScenarioHasNoTrueSurface) {
-  const LiveSlave points(Experiment::load("fig5.5", {"slave={}"}), "sim:", scenes::kernels());
-  EXPECT_HAS(points.why_untouching(), "slave without surface: this scenario");
-  EXPECT_EQ(LiveSlave(Experiment::load("fig5.5"), "sim:", scenes::kernels()).why_untouching(), "");
-  EXPECT_EQ(LiveSlave(experiment(shaken("")), "sim:", scenes::kernels()).why_untouching(), "");
+  EXPECT_EQ(digest(s.again().columns()), digest(trace.columns()));
+  const auto why = [](const Experiment& experiment) {
+    return LiveSlave(experiment, "sim:", scenes::kernels()).why_untouching();
+  };
+  EXPECT_HAS(why(Experiment::load("fig5.5", {"slave={}"})), "slave without surface: this scenario");
+  EXPECT_EQ(why(Experiment::load("fig5.5")), "");
+  EXPECT_EQ(why(experiment(shaken(""))), "");
 }
 
 // The session of a session touches the same scene.
@@ -266,7 +228,7 @@ TEST(LiveSlave, ATickAllocatesNothingInAnySimulatedScene) {
 // The memory that a live run reserves for the points of its camera, and its end if a frame cannot be used.
 
 // An image in which every pixel is measured gives the most tiles that a renderer keeps.
-TEST(ExpectedPoints, EveryImageHasRoom) {
+TEST(ExpectedPoints, EveryImageAndCloudHasRoom) {
   for (const int width : {1, 7, 8, 17, 64, 100, 641})
     for (const int height : {1, 9, 16, 31, 97}) {
       PointCloud cloud;
@@ -281,13 +243,10 @@ TEST(ExpectedPoints, EveryImageHasRoom) {
       view.camera = cloud.image->camera;
       EXPECT_GE(expected_points(view), tiled.padded_size()) << width << " x " << height;
     }
-}
-
-TEST(ExpectedPoints, ACloudMayGrowToTwiceItsSize) {
   SensorView view;
   view.cloud.emplace();
   view.cloud->expected_points = 1000;
-  EXPECT_GE(expected_points(view), 2000u);
+  EXPECT_GE(expected_points(view), 2000u) << "a cloud may grow to twice its size";
 }
 
 // The simulated hand follows the recording, whose fourth image has another size.

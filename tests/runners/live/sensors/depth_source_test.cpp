@@ -1,13 +1,15 @@
+// The parts that the adapters of depth cameras share: the clock of a sensor, rows of pixels, and the
+// undistortion.
 #include "runners/live/sensors/depth_source.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
 
-#include "tests/doubles/camera_lens.h"
+#include "tests/doubles/camera_double.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::driver_frames_test {
+namespace remote_touch::depth_source_test {
 namespace {
 
 // Stamps of a sensor on the clock of the host.
@@ -58,18 +60,13 @@ TEST(SensorClock, NeverTurnsFramesRound) {
   EXPECT_NEAR(clock.captured_s(6 * kPeriod_s, 10 + 6 * kPeriod_s), 10 + 6 * kPeriod_s, 1e-9);
 }
 
-TEST(SensorClock, BeginsAnewWhenStampsGoBackOrStandStill) {
+// The sensor may send no frame for ten minutes. The offset is then trusted no more than the drift allows.
+TEST(SensorClock, BeginsAnewWhenStampsGoBackOrStandStillAndSurvivesAPause) {
   SensorClock clock;
   EXPECT_EQ(clock.captured_s(100, 10), 10);
   EXPECT_EQ(clock.captured_s(0, 10.5), 10.5);
   EXPECT_EQ(clock.captured_s(0.5, 20), 20);
-}
-
-// The sensor sends no frame for ten minutes. The offset is then trusted no more than the drift allows.
-TEST(SensorClock, SurvivesAPauseOfTheSensor) {
-  SensorClock clock;
-  clock.captured_s(0, kOffset_s);
-  EXPECT_NEAR(clock.captured_s(600, kOffset_s + 600.03), kOffset_s + 600.03, 1e-9);
+  EXPECT_NEAR(clock.captured_s(600.5, 620.03), 620.03, 1e-9);
 }
 
 // Rows of pixels from drivers.
@@ -81,14 +78,6 @@ const CameraIntrinsics kCamera{3, 2, 1, 1, 1, 0.5};
 // Two rows of three pixels, each followed by a pixel that does not belong to the image.
 const Depth kDriver{1, 2, 3, 99, 4, 5, 6, 99};
 
-TEST(PixelRows, ReadDepthWithGapsAndMirrored) {
-  Depth depth{7};
-  ASSERT_TRUE(copy_depth({kDriver.data(), 16, 3, 2, 8}, kCamera, depth));
-  EXPECT_EQ(depth, (Depth{1, 2, 3, 4, 5, 6}));
-  ASSERT_TRUE(copy_depth({kDriver.data(), 16, 3, 2, 8, true}, kCamera, depth));
-  EXPECT_EQ(depth, (Depth{3, 2, 1, 6, 5, 4}));
-}
-
 TEST(PixelRows, ColourIsPacked) {
   const std::vector<std::uint8_t> bytes{1, 2, 3, 4, 5, 6, 7, 8, 9, 255, 0, 128, 0, 255, 0, 10, 11, 12};
   Colour colour;
@@ -99,30 +88,23 @@ TEST(PixelRows, ColourIsPacked) {
 }
 
 // The last row needs no gap behind it.
-TEST(PixelRows, AcceptTheLeastNumberOfBytes) {
-  Depth depth;
-  EXPECT_TRUE(copy_depth({kDriver.data(), 14, 3, 2, 8}, kCamera, depth));
-  EXPECT_FALSE(copy_depth({kDriver.data(), 13, 3, 2, 8}, kCamera, depth));
-}
-
-TEST(PixelRows, OtherSizesAreRefused) {
+TEST(PixelRows, ReadDepthWithGapsAndMirroredAndRefuseOtherSizes) {
   Depth depth{7};
   for (const PixelRows& rows :
-       {PixelRows{kDriver.data(), 16, 2, 2, 8}, PixelRows{kDriver.data(), 16, 3, 1, 8},
-        PixelRows{kDriver.data(), 16, -3, 2, 8}, PixelRows{kDriver.data(), 16, 3, 2, 5},
-        PixelRows{kDriver.data(), 16, 3, 2, 0}, PixelRows{kDriver.data(), 0, 3, 2, 8},
-        PixelRows{nullptr, 16, 3, 2, 8}, PixelRows{}})
+       {PixelRows{kDriver.data(), 13, 3, 2, 8}, PixelRows{kDriver.data(), 16, 2, 2, 8},
+        PixelRows{kDriver.data(), 16, 3, 1, 8}, PixelRows{kDriver.data(), 16, -3, 2, 8},
+        PixelRows{kDriver.data(), 16, 3, 2, 5}, PixelRows{kDriver.data(), 16, 3, 2, 0},
+        PixelRows{kDriver.data(), 0, 3, 2, 8}, PixelRows{nullptr, 16, 3, 2, 8}, PixelRows{}})
     EXPECT_FALSE(copy_depth(rows, kCamera, depth));
   EXPECT_EQ(depth, Depth{7});
   EXPECT_FALSE(copy_depth(PixelRows{}, CameraIntrinsics{}, depth));
+  ASSERT_TRUE(copy_depth({kDriver.data(), 14, 3, 2, 8}, kCamera, depth));
+  EXPECT_EQ(depth, (Depth{1, 2, 3, 4, 5, 6}));
+  ASSERT_TRUE(copy_depth({kDriver.data(), 16, 3, 2, 8, true}, kCamera, depth));
+  EXPECT_EQ(depth, (Depth{3, 2, 1, 6, 5, 4}));
 }
 
-}  // namespace
-}  // namespace remote_touch::driver_frames_test
-
 // Depth images without the distortion of their lens, against closed forms.
-namespace remote_touch::undistortion_test {
-namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -131,6 +113,10 @@ using Image = std::vector<std::uint16_t>;
 Lens described(const CameraLens& lens) {
   return {[lens](const Vector2d& ray) { return lens.pixel_of(ray); },
           [lens](const Vector2d& pixel) { return lens.ray_of(pixel); }};
+}
+
+Undistortion undistortion_of(const CameraLens& lens) {
+  return {"camera", lens.width, lens.height, described(lens)};
 }
 
 // A lens that distorts as strongly as the Azure Kinect's in its wide mode. Its corners see nothing.
@@ -170,7 +156,7 @@ Image pinhole(const CameraLens& lens, const Undistortion& undistortion,
 TEST(Undistortion, ChangesNothingForAPinholeCamera) {
   CameraLens lens = narrow_lens();
   lens.k = {}, lens.p1 = lens.p2 = 0;
-  const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+  const Undistortion undistortion = undistortion_of(lens);
   EXPECT_NEAR(undistortion.camera().fx, lens.fx, 1e-9);
   EXPECT_NEAR(undistortion.camera().fy, lens.fy, 1e-9);
   EXPECT_NEAR(undistortion.camera().cx, lens.cx, 1e-9);
@@ -198,7 +184,7 @@ double expected_depth(const CameraLens& lens, const Vector2d& ray,
 // result. The depth is nearly linear between pixels.
 TEST(Undistortion, KeepsAPlane) {
   for (const CameraLens& lens : {wide_lens(), narrow_lens()}) {
-    const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+    const Undistortion undistortion = undistortion_of(lens);
     for (const Vector3d& normal : {Vector3d(0, 0, 1), Vector3d(0.1, -0.15, 1)}) {
       const auto depth_at = [&](const Vector2d& ray) { return plane_depth(ray, normal, 1000); };
       const Image depth = pinhole(lens, undistortion, depth_at);
@@ -219,7 +205,7 @@ TEST(Undistortion, KeepsAPlane) {
 // The ends of the middle row and of the middle column have the rays that they have in the camera's image.
 TEST(Undistortion, KeepsTheFieldOfView) {
   for (const CameraLens& lens : {wide_lens(), narrow_lens()}) {
-    const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+    const Undistortion undistortion = undistortion_of(lens);
     const CameraIntrinsics& camera = undistortion.camera();
     const int u = (lens.width - 1) / 2, v = (lens.height - 1) / 2;
     EXPECT_NEAR(ray_of(camera, 0, v).x(), lens.ray_of({0, v})->x(), 1e-9);
@@ -232,7 +218,7 @@ TEST(Undistortion, KeepsTheFieldOfView) {
 // Two planes, one behind the other. All depths are those of one of them.
 TEST(Undistortion, PutsNoDepthBetweenTwoSurfaces) {
   const CameraLens lens = narrow_lens();
-  const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+  const Undistortion undistortion = undistortion_of(lens);
   const Image depth = pinhole(lens, undistortion,
                               [](const Vector2d& ray) { return ray.x() + 0.3 * ray.y() < 0.05 ? 500 : 900; });
   int near = 0, far = 0;
@@ -245,9 +231,9 @@ TEST(Undistortion, PutsNoDepthBetweenTwoSurfaces) {
 }
 
 // A missing pixel stays missing: the output pixels to which it is the nearest are missing, and no others.
-TEST(Undistortion, KeepsMissingPixels) {
+TEST(Undistortion, KeepsMissingPixelsAndTheLargestDepths) {
   const CameraLens lens = narrow_lens();
-  const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
+  const Undistortion undistortion = undistortion_of(lens);
   Image seen(static_cast<std::size_t>(lens.width * lens.height), 700), depth;
   seen[100 * 320 + 57] = 0;
   undistortion.apply(seen, depth);
@@ -267,46 +253,37 @@ TEST(Undistortion, KeepsMissingPixels) {
       }
     }
   EXPECT_GE(holes, 1);
-  Image nothing(seen.size(), 0);
+  const Image nothing(seen.size(), 0), farthest(seen.size(), 65535);
   undistortion.apply(nothing, depth);
   EXPECT_TRUE(depth == nothing);
-}
-
-TEST(Undistortion, KeepsTheLargestDepths) {
-  const CameraLens lens = narrow_lens();
-  const Undistortion undistortion("camera", lens.width, lens.height, described(lens));
-  Image depth;
-  undistortion.apply(Image(static_cast<std::size_t>(lens.width * lens.height), 65535), depth);
+  undistortion.apply(farthest, depth);
   for (const std::uint16_t z : depth) EXPECT_TRUE(z == 0 || z == 65535) << z;
 }
 
 TEST(Undistortion, RefusesUnusableCalibrations) {
-  const CameraLens lens = narrow_lens();
-  const Lens good = described(lens);
-  const auto refused = [](int width, int height, const Lens& bad) {
-    return refusal([&] { Undistortion("camera", width, height, bad); });
+  using Ray = std::optional<Vector2d>;
+  const Lens good = described(narrow_lens());
+  const auto nothing = [](const Vector2d&) { return Ray(); };
+  const auto not_finite = [](const Vector2d&) { return Ray(Vector2d(NAN, NAN)); };
+  const auto scaled = [&](double factor) {
+    return [&good, factor](const Vector2d& pixel) { return Ray(factor * *good.ray_of_pixel(pixel)); };
   };
-  const auto nothing = [](const Vector2d&) -> std::optional<Vector2d> { return {}; };
-  EXPECT_HAS(refused(320, 240, {good.pixel_of_ray, nothing}), "camera: has no calibration that can be used");
-  EXPECT_HAS(refused(320, 240, {nothing, good.ray_of_pixel}),
-             "camera: has a calibration that contradicts itself");
-  const auto not_finite = [](const Vector2d&) -> std::optional<Vector2d> { return Vector2d(NAN, NAN); };
-  EXPECT_HAS(refused(320, 240, {good.pixel_of_ray, not_finite}),
-             "camera: has no calibration that can be used");
-  EXPECT_HAS(refused(320, 240, {not_finite, good.ray_of_pixel}),
-             "camera: has a calibration that contradicts itself");
-  const auto turned = [&](const Vector2d& pixel) {
-    return std::optional(Vector2d(-*good.ray_of_pixel(pixel)));
+  struct Refused {
+    Lens lens;
+    const char* message;
+    int width = 320, height = 240;
   };
-  EXPECT_HAS(refused(320, 240, {good.pixel_of_ray, turned}), "camera: has no calibration that can be used");
-  const auto another = [&](const Vector2d& pixel) {
-    return std::optional(Vector2d(1.01 * *good.ray_of_pixel(pixel)));
-  };
-  EXPECT_HAS(refused(320, 240, {good.pixel_of_ray, another}),
-             "camera: has a calibration that contradicts itself");
-  EXPECT_HAS(refused(1, 240, good), "camera: has images of 1 x 240 pixels: expected 2 to 8192 on a side");
-  EXPECT_HAS(refused(320, 2147483647, good), "expected 2 to 8192 on a side");
+  for (const Refused& each :
+       {Refused{{good.pixel_of_ray, nothing}, "has no calibration that can be used"},
+        Refused{{good.pixel_of_ray, not_finite}, "has no calibration that can be used"},
+        Refused{{good.pixel_of_ray, scaled(-1)}, "has no calibration that can be used"},
+        Refused{{nothing, good.ray_of_pixel}, "has a calibration that contradicts itself"},
+        Refused{{not_finite, good.ray_of_pixel}, "has a calibration that contradicts itself"},
+        Refused{{good.pixel_of_ray, scaled(1.01)}, "has a calibration that contradicts itself"},
+        Refused{good, "has images of 1 x 240 pixels: expected 2 to 8192 on a side", 1},
+        Refused{good, "expected 2 to 8192 on a side", 320, 2147483647}})
+    EXPECT_HAS(refusal([&] { Undistortion("camera", each.width, each.height, each.lens); }), each.message);
 }
 
 }  // namespace
-}  // namespace remote_touch::undistortion_test
+}  // namespace remote_touch::depth_source_test

@@ -11,10 +11,13 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <latch>
+#include <thread>
+#ifdef REMOTE_TOUCH_VIRTUAL_OPENNI2
+#include <OpenNI.h>
+#endif
 
 #include "runners/live/devices/clock.h"
-#include "tests/doubles/virtual_openni2/pattern.h"
-#include "tests/doubles/virtual_openni2/recording.h"
 #include "tests/doubles/virtual_openni2/virtual_camera.h"
 #include "tests/support/start_with_libraries.h"
 #include "tests/support/test_files.h"
@@ -26,6 +29,10 @@ namespace {
 namespace fs = std::filesystem;
 using namespace virtual_camera;
 
+void set_camera(const char* words) {
+  setenv("VIRTUAL_CAMERA", words, 1);
+}
+
 class Openni2Camera : public testing::Test {
  protected:
   void SetUp() override {
@@ -35,8 +42,6 @@ class Openni2Camera : public testing::Test {
     ASSERT_EQ(availability.detail, "Virtual camera (virtual-camera)");
   }
   void TearDown() override { unsetenv("VIRTUAL_CAMERA"); }
-
-  static void report_line(const char* words) { setenv("VIRTUAL_CAMERA", words, 1); }
 };
 
 int number_in(const SensorFrame& frame) {
@@ -105,24 +110,19 @@ TEST_F(Openni2Camera, ShowsWhatTheCameraSees) {
   }
 }
 
-TEST_F(Openni2Camera, MirroredImagesAreTurnedRound) {
-  report_line("stays_mirrored");
-  const auto source = open_openni2("any", steady_clock());
-  std::vector<SensorFrame> frames;
-  ASSERT_EQ(take(*source, 5, frames), SensorState::frame) << source->failure();
-  for (const SensorFrame& frame : frames) expect_pattern(frame);
-}
-
-TEST_F(Openni2Camera, HasNoColourIfDepthIsNotRegistered) {
-  report_line("unregistered");
-  const auto source = open_openni2("any", steady_clock());
-  EXPECT_FALSE(source->view().has_colour);
-  expect_camera(source->view().camera, kDepthAcross_rad, kDepthDown_rad);
-  std::vector<SensorFrame> frames;
-  ASSERT_EQ(take(*source, 5, frames), SensorState::frame) << source->failure();
-  for (const SensorFrame& frame : frames) {
-    expect_pattern(frame);
-    EXPECT_TRUE(frame.colour.empty());
+// A mirrored image is turned round, and there is no colour if depth is not registered to it.
+TEST_F(Openni2Camera, ShowsAlsoMirroredAndUnregisteredImages) {
+  for (const std::string words : {"stays_mirrored", "unregistered"}) {
+    set_camera(words.c_str());
+    const auto source = open_openni2("any", steady_clock());
+    EXPECT_EQ(source->view().has_colour, words == "stays_mirrored");
+    if (words == "unregistered") expect_camera(source->view().camera, kDepthAcross_rad, kDepthDown_rad);
+    std::vector<SensorFrame> frames;
+    ASSERT_EQ(take(*source, 5, frames), SensorState::frame) << source->failure();
+    for (const SensorFrame& frame : frames) {
+      expect_pattern(frame);
+      EXPECT_TRUE(frame.colour.empty() || words == "stays_mirrored");
+    }
   }
 }
 
@@ -138,7 +138,7 @@ TEST_F(Openni2Camera, LateReaderGetsTheNewestFrame) {
 }
 
 TEST_F(Openni2Camera, ACameraThatStopsSendingTimesOut) {
-  report_line("stop_after=20");
+  set_camera("stop_after=20");
   const auto source = open_openni2("any", steady_clock());
   ASSERT_TRUE(wait_until([] { return sent_frames() == 20; }));
   SensorFrame frame;
@@ -165,7 +165,7 @@ TEST_F(Openni2Camera, AnUnpluggedCameraIsReported) {
 }
 
 TEST_F(Openni2Camera, AFrameOfAnotherSizeIsRefused) {
-  report_line("small_after=20");
+  set_camera("small_after=20");
   const auto source = open_openni2("any", steady_clock());
   std::vector<SensorFrame> frames;
   EXPECT_EQ(take(*source, 100, frames), SensorState::failed);
@@ -173,30 +173,71 @@ TEST_F(Openni2Camera, AFrameOfAnotherSizeIsRefused) {
   EXPECT_HAS(source->failure(), " is 640 x 240 pixels in 307200 bytes: expected those of the camera's mode");
 }
 
-TEST_F(Openni2Camera, CanBeClosedAndOpenedAgain) {
-  for (int i = 0; i < 5; ++i) {
+// The library remembers every thread that ever called it, and crashes if the memory of one that has ended was
+// freed. The system keeps the stacks of about five threads that have ended; those of more are freed.
+TEST_F(Openni2Camera, MayBeUsedByThreadsThatEnd) {
+  for (int i = 0; i < 4; ++i) {
     const auto source = open_openni2("any", steady_clock());
     std::vector<SensorFrame> frames;
-    ASSERT_EQ(take(*source, i, frames), SensorState::frame) << source->failure();
-    for (const SensorFrame& frame : frames) expect_pattern(frame);
+    std::jthread([&] {
+      EXPECT_EQ(take(*source, 3, frames), SensorState::frame) << source->failure();
+    }).join();
+    std::latch all_have_begun(17);
+    std::vector<std::jthread> others;
+    for (int k = 0; k < 16; ++k) others.emplace_back([&] { all_have_begun.arrive_and_wait(); });
+    all_have_begun.arrive_and_wait();
   }
 }
 
 TEST_F(Openni2Camera, AbsentCamerasAreRefused) {
-  const std::string unknown = refusal([] { open_openni2("1d27/0601@1/5", steady_clock()); });
-  EXPECT_HAS(unknown, "1d27/0601@1/5: neither a file nor a camera that a driver in ");
-  EXPECT_HAS(unknown, "/OpenNI2/Drivers knows: expected any, virtual-camera");
-  EXPECT_HAS(refusal([] { open_openni2("Dummy", steady_clock()); }), "Dummy: neither a file nor a camera");
-  EXPECT_HAS(refusal([] { open_openni2("missing.oni", steady_clock()); }),
-             "missing.oni: neither a file nor a camera");
-  EXPECT_HAS(refusal([] { open_openni2("/tmp", steady_clock()); }), "/tmp: neither a file nor a camera");
-  report_line("absent");
+  const auto refused = [](const std::string& address) {
+    return refusal([&] { open_openni2(address, steady_clock()); });
+  };
+  for (const std::string address : {"1d27/0601@1/5", "Dummy", "missing.oni", "/tmp"})
+    EXPECT_HAS(refused(address), address + ": neither a file nor a camera that a driver in ");
+  EXPECT_HAS(refused("Dummy"), "/OpenNI2/Drivers knows: expected any, virtual-camera");
+  set_camera("absent");
   EXPECT_FALSE(openni2_availability().found);
   EXPECT_HAS(openni2_availability().detail, "no camera that a driver in ");
-  const std::string none = refusal([] { open_openni2("any", steady_clock()); });
-  EXPECT_HAS(none, "openni2: no camera that a driver in ");
-  EXPECT_HAS(none, "/OpenNI2/Drivers knows: expected one that is plugged in");
+  EXPECT_HAS(refused("any"), "openni2: no camera that a driver in ");
+  EXPECT_HAS(refused("any"), "/OpenNI2/Drivers knows: expected one that is plugged in");
 }
+
+// Records depth of the virtual camera with the library's own recorder until so many frames were seen,
+// mirrored as the camera is at first. Returns true if it succeeds.
+#ifdef REMOTE_TOUCH_VIRTUAL_OPENNI2
+bool record(const std::string& file, int frames) {
+  const auto is_ok = [](openni::Status status) { return status == openni::STATUS_OK; };
+  openni::Device device;
+  openni::VideoStream depth;
+  openni::VideoMode mode;
+  openni::Recorder recorder;
+  mode.setPixelFormat(openni::PIXEL_FORMAT_DEPTH_1_MM);
+  mode.setResolution(kWidth, kHeight), mode.setFps(kRate_hz);
+  bool is_good = is_ok(device.open("virtual-camera")) && is_ok(depth.create(device, openni::SENSOR_DEPTH)) &&
+                 is_ok(depth.setVideoMode(mode)) && is_ok(recorder.create(file.c_str())) &&
+                 is_ok(recorder.attach(depth)) && is_ok(recorder.start()) && is_ok(depth.start());
+  for (int i = 0; i < frames && is_good; ++i) {
+    openni::VideoFrameRef frame;
+    is_good = is_ok(depth.readFrame(&frame));
+  }
+  // The stream stops first, because the library's recorder and a frame that comes while it ends can wait for
+  // each other for ever.
+  depth.stop();
+  recorder.stop();
+  return is_good;
+}
+bool has_recorded(const std::string& file) {
+  if (openni::OpenNI::initialize() != openni::STATUS_OK) return false;
+  const bool is_good = record(file, 20);
+  openni::OpenNI::shutdown();
+  return is_good;
+}
+#else
+bool has_recorded(const std::string&) {
+  return false;
+}
+#endif
 
 class Openni2Recording : public Openni2Camera {
  protected:
@@ -204,7 +245,7 @@ class Openni2Recording : public Openni2Camera {
     Openni2Camera::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
     file_ = (folder_ / "recorded.oni").string();
-    ASSERT_EQ(record_virtual_camera(file_, 20), "");
+    ASSERT_TRUE(has_recorded(file_));
   }
 
   TestFolder folder_{"openni2_camera_test"};
@@ -236,7 +277,7 @@ TEST_F(Openni2Recording, PlaysWhatWasRecordedOnce) {
 TEST_F(Openni2Recording, IsNoCamera) {
   const auto source = open_openni2(file_, steady_clock());
   EXPECT_EQ(openni2_availability().detail, "Virtual camera (virtual-camera)");
-  report_line("absent");
+  set_camera("absent");
   EXPECT_HAS(refusal([] { open_openni2("missing", steady_clock()); }),
              "missing: neither a file nor a camera");
 }

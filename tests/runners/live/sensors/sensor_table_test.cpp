@@ -22,43 +22,26 @@
 namespace remote_touch::sensor_table_test {
 namespace {
 
-constexpr int kWidth = 32, kHeight = 24;
-
-class SensorTable : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_.write("camera.json", R"({"width": 32, "height": 24, "fx": 30, "fy": 30, "cx": 15.5, "cy": 11.5,
-      "depth_scale_m": 0.001, "frame_rate_hz": 30})");
-  }
-  void write_image(const std::string& name, std::uint16_t depth) const {
-    const std::vector<std::uint16_t> samples(kWidth * kHeight, depth);
-    folder_.write_png(name, kWidth, kHeight, PNG_FORMAT_LINEAR_Y, samples.data());
-  }
-  // A proxy over the folder as a scenario.
-  Experiment experiment(const std::string& scenario_settings = "",
-                        const std::string& renderer = "proxy") const {
-    return Experiment::from_json(
-        R"({"scenario": {"name": "recording", "path": ")" + folder_.path().string() + "\"" +
-            scenario_settings + R"(}, "renderer": {"name": ")" + renderer +
-            R"("}, "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0.3, 0]]}})",
-        "test");
-  }
-  std::unique_ptr<DepthSource> open(const std::string& uri, const Experiment& of) {
-    return open_sensor(uri, {of, scenes::kernels(), clock_});
-  }
-
-  const TestFolder folder_{"sensor_table"};
-  SimulatedClock clock_;
-};
-
 // The pause of 5 s between the third frame and the fourth is kept, there and back.
-TEST_F(SensorTable, ARecordingIsPlayedAtTheTimesOfItsStamps) {
-  folder_.write("depth.txt",
-                "100.000 depth/0.png\n100.033 depth/1.png\n100.067 depth/2.png\n105.100 depth/3.png\n");
+TEST(SensorTable, ARecordingIsPlayedAtTheTimesOfItsStampsAndAsTheScenario) {
+  const TestFolder folder("sensor_table");
+  folder.write("camera.json", R"({"width": 32, "height": 24, "fx": 30, "fy": 30, "cx": 15.5, "cy": 11.5,
+    "depth_scale_m": 0.001, "frame_rate_hz": 30})");
+  folder.write("depth.txt",
+               "100.000 depth/0.png\n100.033 depth/1.png\n100.067 depth/2.png\n105.100 depth/3.png\n");
+  const std::vector<std::uint16_t> samples(32 * 24, 500);
   for (const char* name : {"depth/0.png", "depth/1.png", "depth/2.png", "depth/3.png"})
-    write_image(name, 500);
-  const Experiment of = experiment();
-  const auto sensor = open("tum:" + folder_.path().string(), of);
+    folder.write_png(name, 32, 24, PNG_FORMAT_LINEAR_Y, samples.data());
+  const Experiment experiment =
+      Experiment::from_json(R"({"scenario": {"name": "recording", "path": ")" + folder.path().string() +
+                                R"(", "max_depth_m": 20}, "renderer": {"name": "proxy"},
+          "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0.3, 0]]}})",
+                            "test");
+  SimulatedClock clock;
+  const auto open = [&](const std::string& uri) {
+    return open_sensor(uri, {experiment, scenes::kernels(), clock});
+  };
+  const auto sensor = open("tum:" + folder.path().string());
   SensorFrame frame;
   int number = 0;
   for (const double due_s : {0.0, 0.033, 0.067, 5.1, 10.133, 10.167, 10.2}) {
@@ -66,46 +49,7 @@ TEST_F(SensorTable, ARecordingIsPlayedAtTheTimesOfItsStamps) {
     EXPECT_EQ(frame.number, number++);
     EXPECT_NEAR(frame.captured_s, due_s, 1e-6);
   }
-}
-
-// Each live frame is the offline one, within half a unit along the longest ray: |(15.5 / 30, 11.5 / 30, 1)| <
-// 1.2.
-TEST_F(SensorTable, TheScenarioHasTheFramesOfASimulatedRun) {
-  for (int i = 0; i < 3; ++i)
-    write_image("depth/" + std::to_string(i) + ".png", static_cast<std::uint16_t>(7000 + i));
-  const Experiment of = experiment(R"(, "max_depth_m": 20)");
-  const auto offline = of.build_scenario(scenes::kernels());
-  const auto sensor = open("sim:", of);
-  EXPECT_EQ(sensor->view().metres_per_unit, 5e-4) << "65535 units of 0.2 mm are 13.1 m";
-  for (int i = 0; i < 3; ++i) {
-    SensorFrame frame;
-    while (sensor->next(frame, 0.001) == SensorState::waiting) continue;
-    const PointCloud live = cloud_of(frame, sensor->view(), sensor->view().X_WC),
-                     expected = offline->cloud(i);
-    ASSERT_EQ(live.size(), expected.size());
-    for (std::size_t p = 0; p < live.size(); ++p)
-      ASSERT_LE((live.point(p) - expected.point(p)).norm(), 0.6 * 5e-4) << "frame " << i << ", point " << p;
-  }
-}
-
-TEST_F(SensorTable, ARecordingThatIsNoImageIsRefusedAsInASimulatedRun) {
-  folder_.write("points.pcd",
-                "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
-                "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n0 0 0.5\n0.001 0 0.5\n");
-  const Experiment of = Experiment::from_json(
-      R"({"scenario": {"name": "recording", "path": ")" + (folder_ / "points.pcd").string() +
-          R"("}, "renderer": {"name": "god-object"}, "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0.3, 0]]}})",
-      "test");
-  EXPECT_HAS(refusal([&] { open("sim:", of); }), "renderer.name = \"god-object\": needs organised points");
-}
-
-TEST(SensorInputs, AreTheRecordingsThatSensorsRead) {
-  for (const std::string scheme : {"dir:", "tum:", "pcd:", "replay:"}) {
-    ASSERT_EQ(sensor_inputs(scheme + "a").size(), 1u) << scheme;
-    EXPECT_EQ(sensor_inputs(scheme + "a")[0].path, "a");
-  }
-  for (const std::string uri : {"sim:", "k4a:0", "freenect:0", "realsense:", "oni:any"})
-    EXPECT_TRUE(sensor_inputs(uri).empty()) << uri;
+  EXPECT_EQ(open("sim:")->view().metres_per_unit, 5e-4) << "65535 units of 0.2 mm are 13.1 m";
 }
 
 // Frames of scenarios as one sensor sends them: decoding gives the same points, or a refusal names the frame.
@@ -150,7 +94,7 @@ double largest_error_m(const PointCloud& a, const PointCloud& b) {
   return error_m;
 }
 
-std::string problem(const PointCloud& first, const PointCloud& later) {
+std::string problem_of(const PointCloud& first, const PointCloud& later) {
   const FrameEncoder encoder({.name = "./scene"}, first);
   SensorFrame frame;
   return refusal([&] { encoder.encode(later, 3, frame); });
@@ -161,19 +105,9 @@ double tolerance_m(const FrameEncoder& encoder) {
   return 0.75 * encoder.view().metres_per_unit + 1e-12;
 }
 
-TEST(FrameEncoder, SendsTheDepthsOfAnImage) {
-  const FrameEncoder encoder({}, wall(0.5));
-  EXPECT_EQ(encoder.view().metres_per_unit, 1e-4);
-  EXPECT_FALSE(encoder.view().cloud);
-  for (const double depth_m : {0.00003, 0.41237, 6.5535}) {
-    const double least_m = depth_m < 1e-4 ? 1.5e-4 : 0;  // rounded up to one unit, so that it stays measured
-    EXPECT_LE(largest_error_m(decoded(encoder, wall(depth_m)), wall(depth_m)),
-              tolerance_m(encoder) + least_m);
-  }
-}
-
-// 65535 units of 0.1, 0.2, 0.5, 1 and 2 mm are 6.55, 13.1, 32.8, 65.5 and 131 m.
-TEST(FrameEncoder, ChoosesTheLeastUnitThatReachesTheMaximumDepth) {
+// 65535 units of 0.1, 0.2, 0.5, 1 and 2 mm are 6.55, 13.1, 32.8, 65.5 and 131 m. A depth below one unit is
+// rounded up to it, so that it stays measured.
+TEST(FrameEncoder, SendsDepthsInTheLeastUnitThatReachesTheMaximum) {
   for (const auto& [max_depth_m, first_m, unit_m] : {std::tuple{3.0, 0.5, 1e-4},
                                                      {0.0, 6.5, 1e-4},
                                                      {6.6, 0.5, 2e-4},
@@ -184,57 +118,59 @@ TEST(FrameEncoder, ChoosesTheLeastUnitThatReachesTheMaximumDepth) {
                                                      {0.0, 130.0, 2e-3}}) {
     const FrameEncoder encoder({.max_depth_m = max_depth_m}, wall(first_m));
     EXPECT_EQ(encoder.view().metres_per_unit, unit_m) << max_depth_m << ", " << first_m;
-    const PointCloud farthest = wall(std::max(max_depth_m, first_m));
-    EXPECT_LE(largest_error_m(decoded(encoder, farthest), farthest), tolerance_m(encoder));
+    EXPECT_FALSE(encoder.view().cloud);
+    for (const double depth_m : {0.00003, 0.41237, std::max(max_depth_m, first_m)}) {
+      const double rounded_up_m = depth_m < unit_m ? 1.5 * unit_m : 0;
+      EXPECT_LE(largest_error_m(decoded(encoder, wall(depth_m)), wall(depth_m)),
+                tolerance_m(encoder) + rounded_up_m);
+    }
   }
   EXPECT_EQ(FrameEncoder({.unit_m = 1e-3}, wall(0.5)).view().metres_per_unit, 1e-3);
 }
 
-TEST(FrameEncoder, RefusesDepthsBeyondItsUnits) {
-  EXPECT_EQ(
-      problem(wall(0.5), wall(7)),
-      "./scene: frame 3 has a point at a depth of 7 m: expected at most 6.5535 m, 65535 units of 0.1 mm");
-  EXPECT_HAS(problem(wall(0.5), wall(-0.5)), "./scene: frame 3 has a point behind its camera");
-}
-
-TEST(FrameEncoder, RefusesAnotherPoseOfTheCamera) {
+TEST(FrameEncoder, RefusesFramesThatTheSensorOfTheFirstOneCannotSend) {
   const RigidTransform shifted = pose() * Eigen::Translation3d(0, 0, 0.2);
-  EXPECT_HAS(problem(wall(0.4), wall(0.4, kCamera, shifted)),
-             "./scene: frame 3 was captured from another pose (0.2 m and 0 deg from the first frame)");
   const RigidTransform turned(pose() * rotation(Vec3(0, kRadiansPerDegree, 0)));
-  EXPECT_HAS(problem(wall(0.4), wall(0.4, kCamera, turned)), "(0 m and 1 deg from the first frame)");
-}
-
-TEST(FrameEncoder, RefusesAnotherCamera) {
   CameraIntrinsics wider = kCamera;
   wider.fx = 10, wider.fy = 10.5;
-  EXPECT_HAS(problem(wall(0.4), wall(0.4, wider)),
-             "./scene: frame 3 has another camera than the first frame");
+  PointCloud shuffled = wall(0.4), regions = grid(0), stiff = grid(0);
+  shuffled.image.reset();
+  std::reverse(shuffled.x.begin(), shuffled.x.end());
+  regions.fixture_radius_m.assign(12, 0.01), stiff.stiffness_N_per_m.assign(12, 100);
+  struct Refused {
+    PointCloud first, later;
+    const char* message;
+  };
+  for (const auto& [first, later, message] :
+       {Refused{wall(0.5), wall(7),
+                "has a point at a depth of 7 m: expected at most 6.5535 m, 65535 units of 0.1 mm"},
+        Refused{wall(0.5), wall(-0.5), "has a point behind its camera"},
+        Refused{wall(0.4), wall(0.4, kCamera, shifted),
+                "was captured from another pose (0.2 m and 0 deg from the first frame)"},
+        Refused{wall(0.4), wall(0.4, kCamera, turned), "(0 m and 1 deg from the first frame)"},
+        Refused{wall(0.4), wall(0.4, wider), "has another camera than the first frame"},
+        Refused{wall(0.4), wall(0.4, {16, 6, 20, 21, 7.3, 5.6}),
+                "has 16 x 6 pixels: expected 16 x 12 pixels"},
+        Refused{wall(0.4), shuffled, "has another camera"},
+        Refused{wall(0.4), grid(0), "has 12 points: expected 16 x 12 pixels"},
+        Refused{grid(4), grid(0),
+                "has no rows and columns: expected rows of 4 points, as the first frame has"},
+        Refused{grid(0), grid(4), "has rows of 4 points: expected no rows and columns"},
+        Refused{grid(4), grid(3), "has rows of 3 points: expected rows of 4 points"},
+        Refused{grid(4), wall(0.4), "has rows of 16 points"},
+        Refused{grid(0), grid(0, true), "has normals, and the first frame has no normals"},
+        Refused{grid(0, true), grid(0), "has no normals, and the first frame has normals"},
+        Refused{grid(0), regions, "has forbidden regions or stiffnesses of its own"},
+        Refused{grid(0), stiff, "has forbidden regions or stiffnesses of its own"}}) {
+    const std::string problem = problem_of(first, later);
+    EXPECT_TRUE(problem.starts_with("./scene: frame 3 ")) << problem;
+    EXPECT_HAS(problem, message);
+  }
   // The fit of a pinhole to the points of a frame may differ by less than a pixel.
   CameraIntrinsics fitted = kCamera;
   fitted.fx *= 1.01, fitted.cx += 0.01;
-  EXPECT_EQ(problem(wall(0.4), wall(0.4, fitted)), "no InputError");
-  EXPECT_HAS(problem(wall(0.4), wall(0.4, {16, 6, 20, 21, 7.3, 5.6})),
-             "frame 3 has 16 x 6 pixels: expected 16 x 12 pixels");
-}
-
-TEST(FrameEncoder, RefusesAFrameOfPointsInNoOrderAfterAnImage) {
-  PointCloud points = wall(0.4);
-  points.image.reset();
-  std::reverse(points.x.begin(), points.x.end());
-  EXPECT_HAS(problem(wall(0.4), points), "frame 3 has another camera");
-  EXPECT_HAS(problem(wall(0.4), grid(0)), "frame 3 has 12 points: expected 16 x 12 pixels");
-}
-
-TEST(FrameEncoder, RefusesAnotherLayoutOfPoints) {
-  EXPECT_EQ(problem(grid(4), grid(4)), "no InputError");
-  EXPECT_HAS(problem(grid(4), grid(0)),
-             "./scene: frame 3 has no rows and columns: expected rows of 4 points, as the first frame has");
-  EXPECT_HAS(problem(grid(0), grid(4)), "frame 3 has rows of 4 points: expected no rows and columns");
-  EXPECT_HAS(problem(grid(4), grid(3)), "frame 3 has rows of 3 points: expected rows of 4 points");
-  EXPECT_HAS(problem(grid(4), wall(0.4)), "frame 3 has rows of 16 points");
-  EXPECT_HAS(problem(grid(0), grid(0, true)), "frame 3 has normals, and the first frame has no normals");
-  EXPECT_HAS(problem(grid(0, true), grid(0)), "frame 3 has no normals, and the first frame has normals");
+  EXPECT_EQ(problem_of(wall(0.4), wall(0.4, fitted)), "no InputError");
+  EXPECT_EQ(problem_of(grid(4), grid(4)), "no InputError");
 }
 
 // Recordings have depth images to which no colour image belongs.
@@ -260,13 +196,6 @@ TEST(FrameEncoder, RefusesAFrameThatTheRulesCannotUse) {
   SensorFrame frame;
   encoder.encode(coloured, 0, frame);
   EXPECT_HAS(refusal([&] { encoder.encode(wall(0.4), 1, frame); }), "fixtures.0: needs colours");
-}
-
-TEST(FrameEncoder, RefusesWhatNoSensorSends) {
-  PointCloud regions = grid(0), stiff = grid(0);
-  regions.fixture_radius_m.assign(12, 0.01), stiff.stiffness_N_per_m.assign(12, 100);
-  EXPECT_HAS(problem(grid(0), regions), "frame 3 has forbidden regions or stiffnesses of its own");
-  EXPECT_HAS(problem(grid(0), stiff), "frame 3 has forbidden regions or stiffnesses of its own");
 }
 
 // No point was measured, so no point can be at a wrong position.
@@ -375,7 +304,7 @@ TEST(ScenarioCamera, ShowsEveryScenarioOfTheCatalog) {
   }
 }
 
-TEST(ScenarioCamera, WaitsNoLongerThanTheGivenTime) {
+TEST(ScenarioCamera, WaitsNoLongerThanTheGivenTimeAndALateReaderGetsTheNewestFrame) {
   SimulatedClock clock;
   ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
   SensorFrame frame;
@@ -385,14 +314,7 @@ TEST(ScenarioCamera, WaitsNoLongerThanTheGivenTime) {
   EXPECT_EQ(clock.now_ns(), 100'000'000);
   EXPECT_EQ(camera.next(frame, 0.1), SensorState::frame);
   EXPECT_EQ(clock.now_ns(), 120'000'000);
-}
-
-TEST(ScenarioCamera, ALateReaderGetsTheNewestFrame) {
-  SimulatedClock clock;
-  ScenarioCamera camera(std::make_unique<SlowRecording>(), clock);
-  SensorFrame frame;
-  EXPECT_EQ(camera.next(frame, 0), SensorState::waiting);
-  clock.sleep_s(SlowRecording::kFirst_s + 3.5 * SlowRecording::kPeriod_s);
+  clock.sleep_s(3.5 * SlowRecording::kPeriod_s);
   ASSERT_EQ(camera.next(frame, 0), SensorState::frame);
   EXPECT_EQ(frame.number, 3);
   EXPECT_EQ(camera.next(frame, 0), SensorState::waiting);

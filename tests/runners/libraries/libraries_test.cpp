@@ -1,5 +1,5 @@
-// The bits of a real OpenCL device compared with those of the CPU. Debian's pocl provides a device on every
-// processor.
+// Threads for calls of libraries, and the bits of a real OpenCL device compared with those of the CPU.
+// Debian's pocl provides a device on every processor.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,12 +17,13 @@
 #include "core/parameters/parameter.h"
 #include "runners/libraries/depth_device.h"
 #include "runners/libraries/opencl_devices.h"
+#include "runners/libraries/shared_library.h"
 #include "scenarios/recordings/recording.h"
 #include "tests/core/dissertation/depth/depth_cases.h"
 #include "tests/runners/libraries/coloured_frames.h"
 #include "tests/support/recorded_data.h"
 
-namespace remote_touch::device_bits_test {
+namespace remote_touch::libraries_test {
 namespace {
 
 using namespace depth_cases;
@@ -61,26 +64,17 @@ scenes::DepthScene with_holes(int width, int height) {
   return scene;
 }
 
-TEST_F(DeviceBits, AreThoseOfTheCpuForOddSizesAndHoles) {
+// The device's compiler takes seconds for each window. opencl_double_test.cpp has the other windows.
+TEST_F(DeviceBits, AreThoseOfTheCpuForOddSizesHolesAndOtherWindows) {
   for (const auto& [width, height] : {std::pair{1, 1}, {7, 3}, {64, 48}, {65, 5}, {161, 121}})
     expect_same({}, with_holes(width, height), some_pose());
-}
-
-// The device's compiler takes seconds for each window. opencl_double_test.cpp has the other windows.
-TEST_F(DeviceBits, AreThoseOfTheCpuForOtherWindows) {
-  for (const int window : {5, 11}) {
-    Settings settings;
-    settings.filter_window = window, settings.normal_window = 16 - window;
-    settings.sigma_f_m = 0.006;
+  Settings without_filter, narrow, wide;
+  without_filter.filter = false;
+  narrow.filter_window = 5, narrow.normal_window = 11, wide.filter_window = 11, wide.normal_window = 5;
+  narrow.sigma_f_m = wide.sigma_f_m = 0.006;
+  for (const Settings& settings : {without_filter, narrow, wide})
     expect_same(settings, with_holes(83, 37), some_pose());
-  }
-}
-
-TEST_F(DeviceBits, AreThoseOfTheCpuWithoutFilter) {
-  Settings settings;
-  settings.filter = false;
-  expect_same(settings, with_holes(83, 37), kIdentity);
-  expect_same(settings, with_holes(83, 37), some_pose());
+  expect_same(without_filter, with_holes(83, 37), kIdentity);
 }
 
 // The device behaves like one whose single-precision divisions and roots are not rounded correctly.
@@ -130,5 +124,41 @@ TEST(DeviceThreads, BeginAtOnceAndHaveTheBitsOfTheCpu) {
   EXPECT_NE(depth_device_of({{}, "opencl"}), "");
 }
 
+// Threads for calls of others' libraries.
+
+std::thread::id id_of(LastingThread& thread) {
+  std::thread::id id;
+  thread.run([&] { id = std::this_thread::get_id(); });
+  return id;
+}
+
+TEST(LastingThread, DoesAllThatItIsGivenInOneThreadOfItsOwn) {
+  const auto thread = lasting_thread();
+  const std::thread::id first = id_of(*thread);
+  EXPECT_NE(first, std::this_thread::get_id());
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(id_of(*thread), first);
+}
+
+TEST(LastingThread, ThrowsWhatTheWorkThrowsAndContinues) {
+  const auto thread = lasting_thread();
+  EXPECT_THROW(thread->run([] { throw std::out_of_range("far"); }), std::out_of_range);
+  int done = 0;
+  thread->run([&] { done = 1; });
+  EXPECT_EQ(done, 1);
+}
+
+// Threads that were given back are used again, and none ends.
+TEST(LastingThread, FreeThreadsAreUsedAgain) {
+  std::set<std::thread::id> used;
+  for (int round = 0; round < 10; ++round) {
+    const std::vector three = {lasting_thread(), lasting_thread(), lasting_thread()};
+    std::set<std::thread::id> now;
+    for (const auto& thread : three) now.insert(id_of(*thread));
+    EXPECT_EQ(now.size(), 3u);
+    used.merge(now);
+  }
+  EXPECT_EQ(used.size(), 3u);
+}
+
 }  // namespace
-}  // namespace remote_touch::device_bits_test
+}  // namespace remote_touch::libraries_test
