@@ -344,6 +344,17 @@ TEST_F(ServoTest, KeepsTheStartOfALongReasonAndNoOtherOne) {
   EXPECT_EQ(servo_->trouble(), trouble);
 }
 
+// The hang is shorter than the 20 ms after which a command is too old, but the device was released.
+TEST_F(ServoTest, AShortHangBeginsTheForceAnew) {
+  limits_.ramp_s = 0;
+  renderer_.on_step = [&](int before) { renderer_.force_N.x() = before < 2 ? 0 : 2; };
+  in_read(8, [&] { return hang(0.015); });
+  device_.max_ticks = 11;
+  run();
+  EXPECT_EQ(device_.rearmed, 1);
+  EXPECT_EQ(device_.written_N, (std::vector<double>{0, 0, 1, 2, 2, 2, 2, 2, 0, 0, 0}));
+}
+
 // A command that took longer than 4 ms to render is too old. The force ends in the tick that writes it, and
 // begins anew only when the command is small.
 TEST_F(ServoTest, AnOldCommandIsNotWritten) {
