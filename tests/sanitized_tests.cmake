@@ -3,9 +3,9 @@
 # Tests of what runs in several threads: all else of the live loop is on a simulated clock, in one thread.
 set(rooms_with_threads runners/live/devices runners/live/loop)
 set(threaded_of_runners_live_loop_tests "LiveRun.*RealTime*:*LiveThreads*:TripleBuffer.*:Ring.*")
-set(threaded_sources_of_runners_live_loop_tests "live_(exchange|run|threads)_test|doubles/")
+set(threaded_sources_of_runners_live_loop_tests "live_(run|threads)_test")
 set(threaded_of_runners_live_devices_tests "*ReleaseBesideTicks*:HaplyLink.*:HaplyOverTheSocket.*")
-set(threaded_sources_of_runners_live_devices_tests "(haply_link|release)_test|doubles/")
+set(threaded_sources_of_runners_live_devices_tests "(haply_link|release)_test")
 # OpenMP has one thread: the thread sanitizer does not know how its threads wait for each other.
 set(properties_under_address LABELS ci)
 set(properties_under_thread LABELS ci ENVIRONMENT OMP_NUM_THREADS=1)

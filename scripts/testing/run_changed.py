@@ -24,7 +24,7 @@ OF_THE_PROGRAM = [
      ["baselines"]),
     (r"runners/(interfaces/cli|presentation|sweep|experiment/(settings|sessions))/",
      ["command_line_.*"]),
-    (r"runners/live/", ["command_line_live", "runners/live/loop.several_cameras_in_one_process"]),
+    (r"runners/live/", ["command_line_live", "runners/live/sensors"]),
     (r"runners/evaluation/(scorecard|figures)/|data/(methods|scenes|scorecard)", ["stored_scorecard", "figures_quick"]),
     (r"runners/presentation/|tests/system/viewer/", ["command_line_view", "viewer_.*"]),
     (r"runners/interfaces/python/|tests/runners/interfaces/python/", ["python_module", "studies_quick"]),

@@ -105,7 +105,7 @@ void wrap_standard_output() {
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
   const std::string nearest = similar_key(word, known);
-  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+  return nearest.empty() ? "" : "; did you mean " + nearest;
 }
 
 }  // namespace remote_touch

@@ -17,7 +17,7 @@ std::string wrapped(std::string_view line, std::size_t width);
 // width of the terminal, or at 80 characters if it does not tell. Nothing changes for a file or a pipe.
 void wrap_standard_output();
 
-// Returns "; did you mean X?" if one of the known words is spelt similarly, else an empty text.
+// Returns "; did you mean X" if one of the known words is spelt similarly, else an empty text.
 std::string suggestion(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace remote_touch
