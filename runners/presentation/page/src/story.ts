@@ -82,7 +82,7 @@ export class EventList {
     for (const other of this.rows) other.tabIndex = other === row ? 0 : -1;
   }
   private move(event: KeyboardEvent): void {
-    const at = this.rows.findIndex((row) => row === document.activeElement), last = this.rows.length - 1;
+    const at = this.rows.indexOf(document.activeElement as HTMLButtonElement), last = this.rows.length - 1;
     const to = ({ ArrowUp: Math.max(at - 1, 0), ArrowDown: Math.min(at + 1, last), Home: 0, End: last } as Record<string, number>)[event.key];
     if (to === undefined) return;
     event.preventDefault();
