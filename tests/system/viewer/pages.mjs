@@ -233,7 +233,7 @@ test("a slave is drawn where its columns say, with the force on it", async () =>
     const shown = await picture(page);
     await page.evaluate(() => { window.remoteTouch.scene.slaves[0].object.visible = false; });
     assert.notEqual((await picture(page)).hash, shown.hash, "it is in the picture");
-    assert.match(await page.textContent(".legend"), /max \d+ mm.*slave: ball, force on it, line to the command it received/);
+    assert.match(await page.textContent(".legend"), /at most \d+ mm.*slave: ball, force on it, line to the command it received/);
     assert.match(await page.textContent("aside"), /force on the slave .*clearance of the slave /);
     // A slave that starts late: as before the first command.
     await page.evaluate(() => {
