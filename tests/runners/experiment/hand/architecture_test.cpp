@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "analysis/theory/haptic_loops.h"
@@ -25,6 +25,10 @@ namespace remote_touch::architecture_test {
 namespace {
 
 constexpr double kTick_s = 0.001;
+
+SlaveScene ground() {
+  return {[](const Vec3& p, double) { return p.y(); }, [](const Vec3&, double) { return Vec3(0, 1, 0); }};
+}
 
 // A hand that moves from `start` to `end`, m above a wall at 0, whose slave meets the wall. The wall may move
 // as a sine from wall_from_s on.
@@ -172,18 +176,6 @@ TEST(Architecture, TheEnergyStaysAboveTheBoundOfItsPredictions) {
   }
 }
 
-// The slave goes where a wrong registration sends it, and packets are lost.
-TEST(Architecture, TheCountersAreTheSumsOverTheSignals) {
-  for (const Feedback force : {Feedback::slave_force, Feedback::passive_slave_force})
-    for (const double delay_s : {0.0, 0.005, 0.1}) {
-      Plant p = plant_with(force, 5, delay_s);
-      if (force == Feedback::slave_force) p.remote.feedback.gain = 0.05;
-      p.remote.registration = {0.01, 20};
-      p.remote.commands.channel.loss_probability = 0.3;
-      EXPECT_LE(balance_of(p, run(p, 3)).miscounted_J, 1e-9) << delay_s;
-    }
-}
-
 Trace steer_robot(std::vector<std::string> set) {
   for (const char* setting :
        {"feedback.force=passive-slave-force", "fixtures=[]", "command_link.delay_s=0.025",
@@ -280,60 +272,25 @@ TEST(Architecture, WavesOfMissedTicksHaveNoEnergyOfTheirOwn) {
   EXPECT_LE(ends.hand->message().wave.energy_J, arrival.message.wave.energy_J);
 }
 
+// Some ticks are missed, so that the slave moves through them at once. Only a slave that sends its force may
+// have a tool.
 TEST(Architecture, AllocatesNothingInATick) {
-  for (const Feedback force :
-       {Feedback::slave_force, Feedback::passive_slave_force, Feedback::position_position, Feedback::wave}) {
-    Teleoperation remote(
-        plant_with(force, 5, 0.02).remote, {}, kTick_s,
-        {[](const Vec3& p, double) { return p.y(); }, [](const Vec3&, double) { return Vec3(0, 1, 0); }});
+  for (const auto& [force, has_tool] : {std::pair(Feedback::slave_force, false),
+                                        {Feedback::slave_force, true},
+                                        {Feedback::passive_slave_force, false},
+                                        {Feedback::position_position, false},
+                                        {Feedback::wave, false}}) {
+    TeleoperationSettings s = plant_with(force, 5, 0.02).remote;
+    if (has_tool) s.tool = SlaveTool{{{0.03, -0.01, 0}}, {1e-4}, 0.02, 0.04};
+    Teleoperation remote(s, {}, kTick_s, ground());
     const auto move = [&](int i) { remote.tick({{0, 0.02 - 1e-4 * i, 0}}, {}, i * kTick_s); };
     for (int i = 0; i < 100; ++i) move(i);
     const std::size_t before = allocation_count();
-    for (int i = 100; i < 300; ++i) move(i);
-    EXPECT_EQ(allocation_count(), before) << static_cast<int>(force);
+    for (int i = 100; i < 300; ++i)
+      if (i % 100 < 90) move(i);
+    EXPECT_EQ(allocation_count(), before) << static_cast<int>(force) << " " << has_tool;
+    EXPECT_GT(remote.state().peak_force_N, 0.1) << static_cast<int>(force);
   }
-}
-
-// 1 / max |(2 zeta w s + w^2) M / (m s^2 + b s + k)|: below this gain the loop gain is below 1 at every
-// frequency and with every delay.
-double small_gain(const Plant& p) {
-  const SlaveSettings& slave = p.remote.slave;
-  const double w = 2 * std::numbers::pi * slave.natural_frequency_hz;
-  double largest = 0;
-  for (double hz = 0.01; hz < 100; hz *= 1.001) {
-    const std::complex<double> s(0, 2 * std::numbers::pi * hz);
-    const std::complex<double> hand =
-        p.hand.mass_kg * s * s + p.hand.damping_Ns_per_m * s + p.hand.stiffness_N_per_m;
-    largest = std::max(largest, std::abs((2 * slave.damping_ratio * w * s + w * w) * slave.mass_kg / hand));
-  }
-  return 1 / largest;
-}
-
-double deviation(const std::vector<Tick>& ticks, double Tick::*of) {
-  double sum = 0, squares = 0;
-  const std::size_t first = ticks.size() * 7 / 8;
-  for (std::size_t i = first; i < ticks.size(); ++i)
-    sum += ticks[i].*of, squares += std::pow(ticks[i].*of, 2);
-  const double n = static_cast<double>(ticks.size() - first);
-  return std::sqrt(std::max(0.0, squares / n - std::pow(sum / n, 2)));
-}
-
-bool is_stable(const std::vector<Tick>& ticks) {
-  return deviation(ticks, &Tick::x) < 5e-4 && deviation(ticks, &Tick::f) < 0.5 &&
-         std::ranges::all_of(ticks, [](const Tick& t) { return std::abs(t.x) < 0.2; });
-}
-
-TEST(Architecture, PositionForceIsStableBelowTheSmallGain) {
-  const std::pair<double, double> limits[] = {{2, 0.289}, {5, 0.0986}, {10, 0.0333}, {20, 0.0090}};
-  for (const auto& [frequency_hz, limit] : limits)
-    for (const double delay_s : {0.0, 0.005, 0.025, 0.05, 0.1, 0.2}) {
-      Plant p = plant_with(Feedback::slave_force, frequency_hz, delay_s);
-      EXPECT_NEAR(small_gain(p) / limit, 1, 0.01);
-      p.remote.feedback.gain = 0.95 * limit;
-      EXPECT_TRUE(is_stable(run(p, 10))) << frequency_hz << " " << delay_s;
-      p.remote.feedback.gain = 1;
-      EXPECT_FALSE(is_stable(run(p, 3))) << frequency_hz << " " << delay_s;
-    }
 }
 
 // The delay at which the force of a slave makes the loop unstable: the simulation against the roots of the
@@ -354,9 +311,7 @@ double growth(const PositionForceLoop& loop, int round_trip_ticks) {
   s.commands.channel.delay_s = round_trip_ticks / 2 * kTick_s;
   s.forces.channel.delay_s = (round_trip_ticks - round_trip_ticks / 2) * kTick_s;
   s.feedback.force = Feedback::slave_force, s.feedback.gain = loop.feedback_gain;
-  const SlaveScene ground{[](const Vec3& p, double) { return p.y(); },
-                          [](const Vec3&, double) { return Vec3(0, 1, 0); }};
-  Teleoperation remote(s, {}, kTick_s, ground);
+  Teleoperation remote(s, {}, kTick_s, ground());
   OperatorSettings person;
   person.mass_kg = loop.mass_kg, person.stiffness_N_per_m = loop.stiffness_N_per_m;
   person.damping_Ns_per_m = loop.damping_Ns_per_m;

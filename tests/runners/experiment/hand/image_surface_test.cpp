@@ -1,3 +1,5 @@
+// The surface that a hand may touch in a depth image: frames that do not fit the first one, the pixels that a
+// device can touch, and closed holes.
 #include "runners/experiment/hand/image_motions.h"
 
 #include <gtest/gtest.h>
@@ -5,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -13,9 +15,6 @@
 
 namespace remote_touch::image_surface_test {
 namespace {
-
-// Frames whose size or camera is not that of the first, for a hand that follows a pixel. The oracle is a
-// plane whose points are computed for each camera.
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr CameraIntrinsics kCamera{100, 80, 100, 100, 49.5, 39.5};
@@ -56,28 +55,28 @@ std::string refusal_of_second(PointCloud second) {
   return refusal([&] { hand.at(kInSecond_s); });
 }
 
-TEST(ImageFrames, RefusesAFrameOfAnotherSize) {
-  const CameraIntrinsics half{50, 40, 50, 50, 24.5, 19.5}, turned{80, 100, 100, 100, 39.5, 49.5};
-  EXPECT_EQ(
-      refusal_of_second(plane(0.5, half)),
-      "trajectory.name = image-press: frame 1 has 50 x 40 pixels: expected 100 x 80 pixels, as frame 0 has");
-  EXPECT_HAS(refusal_of_second(plane(0.5, turned)), "frame 1 has 80 x 100 pixels");
-  EXPECT_HAS(refusal_of_second(without_image(plane(0.5, half))), "frame 1 has 2000 points");
-  PointCloud cut = plane(0.5);
-  cut.x.resize(3000), cut.y.resize(3000), cut.z.resize(3000);
-  EXPECT_HAS(refusal_of_second(cut), "frame 1 has 3000 points") << "fewer points than its layout promises";
+PointCloud cut(PointCloud cloud) {
+  cloud.x.resize(3000), cloud.y.resize(3000), cloud.z.resize(3000);
+  return cloud;
 }
 
 // The ray of the last column moves by 2.5 pixels with f = 105; one pixel is allowed for the fit of a camera.
-TEST(ImageFrames, RefusesAFrameOfAnotherCamera) {
+TEST(ImageFrames, RefusesAFrameOfAnotherSizeOrCamera) {
+  const CameraIntrinsics half{50, 40, 50, 50, 24.5, 19.5}, turned{80, 100, 100, 100, 39.5, 49.5};
   CameraIntrinsics longer = kCamera, shifted = kCamera, fitted = kCamera;
   longer.fx = 105, shifted.cy += 1.1, fitted.cx += 0.5, fitted.fx = 100.5;
-  EXPECT_HAS(
-      refusal_of_second(plane(0.5, longer)),
-      "frame 1 has another camera (f = 105, 100, c = 49.5, 39.5): expected that of frame 0 (f = 100, 100");
-  EXPECT_HAS(refusal_of_second(plane(0.5, shifted)), "frame 1 has another camera");
-  EXPECT_EQ(refusal_of_second(plane(0.5, fitted)), "no InputError");
-  EXPECT_HAS(refusal_of_second(without_image(plane(0.5, longer))), "frame 1 is not an image");
+  const std::pair<PointCloud, const char*> rows[] = {
+      {plane(0.5, half),
+       "trajectory.name = image-press: frame 1 has 50 x 40 pixels: expected 100 x 80 pixels, as frame 0 has"},
+      {plane(0.5, turned), "frame 1 has 80 x 100 pixels"},
+      {without_image(plane(0.5, half)), "frame 1 has 2000 points"},
+      {cut(plane(0.5)), "frame 1 has 3000 points"},  // fewer points than its layout promises
+      {plane(0.5, longer),
+       "frame 1 has another camera (f = 105, 100, c = 49.5, 39.5): expected that of frame 0 (f = 100, 100"},
+      {plane(0.5, shifted), "frame 1 has another camera"},
+      {plane(0.5, fitted), "no InputError"},
+      {without_image(plane(0.5, longer)), "frame 1 is not an image"}};
+  for (const auto& [second, expected] : rows) EXPECT_HAS(refusal_of_second(second), expected);
 }
 
 // Few points may not suffice to fit a camera to a frame of a PCD recording. Their positions show that they
@@ -99,15 +98,6 @@ TEST(ImageFrames, AFrameWithoutPointsIsAnImageOfHoles) {
   }
 }
 
-// A camera on a path, or a scene beyond the range of the sensor, may see nothing.
-TEST(ImageFrames, RefusesAFirstFrameWithoutADepth) {
-  EXPECT_EQ(refusal([&] {
-              ImagePress({}, Frames({plane(kNaN), plane(0.5)}));
-            }),
-            "trajectory.name = image-press: no pixel of the first frame has a depth: expected a camera that "
-            "sees a surface");
-}
-
 // A camera that is carried along faces the ray of the pixel from its new position.
 TEST(ImageFrames, TheCameraMayMove) {
   RigidTransform X_WC = RigidTransform::Identity();
@@ -119,47 +109,39 @@ TEST(ImageFrames, TheCameraMayMove) {
   EXPECT_LT((hand.at(kInSecond_s).position_W - expected_W).norm(), 1e-12);
 }
 
-// Rows and columns alone are no image: an organised cloud of a PCD file may be mirrored.
-TEST(ImageFrames, RefusesAFirstFrameThatNoCameraSees) {
-  PointCloud organised = without_image(plane(0.5));
-  EXPECT_EQ(refusal([&] { first_image(Frames({organised}, "read a.pcd"), "x"); }),
-            "x: the frames are not images: expected a recording with a camera");
+// A camera on a path, or a scene beyond the range of the sensor, may see nothing. Rows and columns alone are
+// no image: an organised cloud of a PCD file may be mirrored. A simulated scene with rows and columns, such
+// as moving-lift, reads no file.
+TEST(ImageFrames, RefusesAFirstFrameThatIsNoImageOrShowsNothing) {
+  EXPECT_EQ(refusal([&] {
+              ImagePress({}, Frames({plane(kNaN), plane(0.5)}));
+            }),
+            "trajectory.name = image-press: no pixel of the first frame has a depth: expected a camera that "
+            "sees a surface");
+  const PointCloud list = without_image(plane(0.5));
+  PointCloud organised = list;
   organised.grid_columns = kCamera.width;
-  EXPECT_EQ(refusal([&] { first_image(Frames({organised}, "read a.pcd"), "x"); }),
-            "x: the rows and columns of the recording are no image of a camera: expected clouds in the frame "
-            "of the camera that are not mirrored");
+  const char* const no_camera =
+      "x: the scene has no camera: expected a scenario with one (recording, mesh-scene, camera-scene, "
+      "beating-heart, valve-tank)";
+  const struct {
+    PointCloud cloud;
+    const char *input, *expected;
+  } rows[] = {{list, "read a.pcd", "x: the frames are not images: expected a recording with a camera"},
+              {organised, "read a.pcd",
+               "x: the rows and columns of the recording are no image of a camera: expected clouds in the "
+               "frame of the camera that are not mirrored"},
+              {list, "", no_camera},
+              {organised, "", no_camera},
+              {cut(plane(0.5)), "", "x: frame 0 has 3000 points: expected 100 x 80 pixels"}};
+  for (const auto& row : rows)
+    EXPECT_HAS(refusal([&] { first_image(Frames({row.cloud}, row.input), "x"); }), row.expected);
 }
 
-// A simulated scene with rows and columns, such as moving-lift, reads no file.
-TEST(ImageFrames, RefusesASceneWithoutACameraByThoseThatHaveOne) {
-  PointCloud grid = without_image(plane(0.5));
-  for (const int columns : {0, kCamera.width}) {
-    grid.grid_columns = columns;
-    EXPECT_EQ(refusal([&] { first_image(Frames({grid}), "x"); }),
-              "x: the scene has no camera: expected a scenario with one (recording, mesh-scene, "
-              "camera-scene, beating-heart, valve-tank)");
-  }
-}
+// --- pixels at which a device can touch, compared with plain loops over all pixels ---
 
-TEST(ImageFrames, TheFirstFrameHasAPointForEachPixel) {
-  PointCloud cut = plane(0.5);
-  cut.x.resize(3000), cut.y.resize(3000), cut.z.resize(3000);
-  const Frames scene({cut});
-  EXPECT_HAS(refusal([&] { first_image(scene, "x"); }),
-             "x: frame 0 has 3000 points: expected 100 x 80 pixels");
-}
-
-}  // namespace
-}  // namespace remote_touch::image_surface_test
-
-namespace remote_touch::surface_support_test {
-namespace {
-
-// The pixels at which a device can touch a depth image, compared with plain loops over all pixels.
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFocal_px = 250;
-const CameraIntrinsics kCamera{.fx = kFocal_px, .fy = kFocal_px};
+const CameraIntrinsics kSquare{.fx = kFocal_px, .fy = kFocal_px};
 const CameraIntrinsics kUnequal{.fx = kFocal_px, .fy = kFocal_px / 2};
 
 std::size_t pixel(const DepthImage& image, int u, int v) {
@@ -219,22 +201,16 @@ TEST(SurfaceSupport, IsTheMedianOfASquareWithoutHolesEdgesAndBorders) {
     }
 }
 
+// The image is followed by rows that are not its own.
 TEST(SurfaceSupport, HasNoDepthOutsideTheImageAndAtTheLens) {
-  DepthImage image{9, 9, std::vector<double>(9 * 9, 1.0)};
-  for (const auto& [u, v] : {std::pair(-1, 4), {9, 4}, {4, -1}, {4, 9}})
-    EXPECT_TRUE(std::isnan(supported_depth(image, u, v, kCamera, {}))) << u << ", " << v;
+  DepthImage image{9, 9, std::vector<double>(9 * 12, 1.0)};
+  EXPECT_EQ(supported_depth(image, 4, 6, kSquare, {}), 1);
+  for (const auto& [u, v] : {std::pair(-1, 4), {9, 4}, {4, -1}, {4, 9}, {4, 7}})
+    EXPECT_TRUE(std::isnan(supported_depth(image, u, v, kSquare, {}))) << u << ", " << v;
   for (const double z_m : {1e-300, 0.0, -1.0}) {  // the margin would be more pixels than an int holds
     image.z_m[pixel(image, 4, 4)] = z_m;
-    EXPECT_TRUE(std::isnan(supported_depth(image, 4, 4, kCamera, {0.01, 0.01}))) << z_m;
+    EXPECT_TRUE(std::isnan(supported_depth(image, 4, 4, kSquare, {0.01, 0.01}))) << z_m;
   }
-}
-
-TEST(SurfaceSupport, ALengthReachesOnePixelAtLeastAndTheImageAtMost) {
-  const DepthImage image{40, 31, {}};
-  EXPECT_EQ(reach_px(image, kFocal_px, 0.01, 0.4), 6);
-  EXPECT_EQ(reach_px(image, kFocal_px, 0.01, 5), 1);
-  EXPECT_EQ(reach_px(image, kFocal_px, 0.01, 1e-300), 40);
-  EXPECT_EQ(reach_px(image, kFocal_px, 0.01, kNaN), 1);
 }
 
 // Compared with the distances of all pixels that the plain loop supports.
@@ -248,20 +224,53 @@ TEST(SurfaceSupport, FindsTheNearestPixelThatCanBeTouched) {
     for (int v = 0; v < image.height; ++v)
       for (int u = 0; u < image.width; ++u)
         if (std::isfinite(plain_depth(image, u, v, 2, 2, 0.006))) least = std::min(least, squared(u, v));
-    const auto found = nearest_supported(image, to, kCamera, {0.006, 0.01});
+    const auto found = nearest_supported(image, to, kSquare, {0.006, 0.01});
     ASSERT_TRUE(found);
     EXPECT_TRUE(std::isfinite(plain_depth(image, found->column, found->row, 2, 2, 0.006)));
     EXPECT_EQ(squared(found->column, found->row), least) << to.row << ", " << to.column;
   }
-  EXPECT_FALSE(nearest_supported(image, {15, 9}, kCamera, {0.006, 0.1})) << "25 pixels in every direction";
+  EXPECT_FALSE(nearest_supported(image, {15, 9}, kSquare, {0.006, 0.1})) << "25 pixels in every direction";
 }
 
-// A whole image in memory, followed by rows that are not its own.
-TEST(SurfaceSupport, ReadsNoRowBelowTheImage) {
-  DepthImage image{9, 9, std::vector<double>(9 * 12, 1.0)};
-  EXPECT_EQ(supported_depth(image, 4, 6, kCamera, {}), 1);
-  EXPECT_TRUE(std::isnan(supported_depth(image, 4, 7, kCamera, {})));
+// bridged() compared with a plain search over all measured pixels for each hole.
+TEST(Bridging, ClosesHolesUpToTheLimit) {
+  std::mt19937 random(7);
+  for (const double p : {0.02, 0.3, 0.9}) {
+    DepthImage image{50, 40, {}};
+    for (int i = 0; i < 50 * 40; ++i)
+      image.z_m.push_back(random() < p * 4294967296.0 ? 0.3 + 0.1 * (random() % 4) : kNaN);
+    // Reaches of 6.8, 5.1, 4.08 and 3.4 pixels along a row, half as many along a column: no distance is
+    // equal.
+    const double focal = 510, hole = 0.008;
+    const DepthImage closed = bridged(image, {.fx = focal, .fy = focal / 2}, hole);
+    int filled = 0;
+    for (int v = 0; v < 40; ++v)
+      for (int u = 0; u < 50; ++u) {
+        const auto at = [&](const DepthImage& i, int x, int y) {
+          return i.z_m[static_cast<std::size_t>(y * 50 + x)];
+        };
+        const double got = at(closed, u, v);
+        if (std::isfinite(at(image, u, v))) {
+          ASSERT_EQ(got, at(image, u, v));
+          continue;
+        }
+        double best = kNaN, least = 1e9;
+        for (int y = 0; y < 40; ++y)
+          for (int x = 0; x < 50; ++x) {
+            const double z = at(image, x, y), d = std::hypot(x - u, 2 * (y - v));
+            bool is_rim = false;
+            for (int b = std::max(0, y - 1); b <= std::min(39, y + 1); ++b)
+              for (int a = std::max(0, x - 1); a <= std::min(49, x + 1); ++a)
+                is_rim = is_rim || std::isnan(at(image, a, b));
+            if (!is_rim || !(d * z / focal <= hole / 2)) continue;
+            if (d < least || (d == least && z < best)) least = d, best = z;
+          }
+        ASSERT_TRUE(got == best || (std::isnan(got) && std::isnan(best))) << u << " " << v << ": " << got;
+        filled += std::isfinite(best);
+      }
+    EXPECT_GT(filled, 100);
+  }
 }
 
 }  // namespace
-}  // namespace remote_touch::surface_support_test
+}  // namespace remote_touch::image_surface_test

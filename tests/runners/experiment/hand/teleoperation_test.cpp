@@ -1,18 +1,23 @@
+// The remote side of a run: what is sent to a slave, with or without a tool, what comes back, and when.
 #include "runners/experiment/hand/teleoperation.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
+#include <string>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "core/kernels/kernels.h"
+#include "core/points/vector.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::teleoperation_test {
 namespace {
-
-// The remote side of a run: what is sent to the slave, what comes back, and when.
 
 constexpr double kTick_s = 0.001;
 
@@ -50,6 +55,19 @@ TeleoperationSettings with(Feedback force, double delay_s = 0) {
   return s;
 }
 
+// A tool of one point, 3 cm beside its centre of mass and 1 cm below.
+TeleoperationSettings with_tool(Feedback force, int delay_ticks = 0) {
+  TeleoperationSettings s = with(force, delay_ticks * kTick_s);
+  s.tool = SlaveTool{{{0.03, -0.01, 0}}, {1e-4}, 0.02, 0.04};
+  return s;
+}
+
+DeviceState device(double y, const Vec3& turn) {
+  DeviceState d;
+  d.position_W = Vec3(0, y, 0), d.orientation_W = rotation(turn);
+  return d;
+}
+
 TEST(Teleoperation, RendersAndSendsTheCommandOfTheRenderer) {
   const std::vector<Tick> ticks = descent(with(Feedback::rendered));
   for (std::size_t i = 0; i < ticks.size(); ++i) {
@@ -60,15 +78,54 @@ TEST(Teleoperation, RendersAndSendsTheCommandOfTheRenderer) {
     EXPECT_EQ(ticks[i].slave.command_packets, static_cast<std::int32_t>(i) + 1) << i;
   }
   EXPECT_NEAR(ticks.back().slave.position_W.y(), 0.006, 1e-4);
+  const std::vector<Tick> unfelt = descent(with(Feedback::none));
+  for (const Tick& tick : unfelt) EXPECT_EQ(tick.felt.force_N, Vec3::Zero());
+  EXPECT_GT(unfelt.back().slave.peak_force_N, 1);
+  EXPECT_EQ(unfelt.back().slave.force_packets, 0);
 }
 
+// The command is that of the renderer, or the hand itself: without a rendered force, and in a renderer with
+// slave_command = hip.
 TEST(Teleoperation, TheCommandIsWhatIsSent) {
   RenderOutput out;
-  out.slave_W = Vec3(1, 2, 3);
-  const DeviceState device{{4, 5, 6}};
-  EXPECT_EQ(Teleoperation(with(Feedback::rendered), {}, kTick_s, ground()).command(device, out), out.slave_W);
-  for (const Feedback force : {Feedback::none, Feedback::slave_force, Feedback::passive_slave_force})
-    EXPECT_EQ(Teleoperation(with(force), {}, kTick_s, ground()).command(device, out), device.position_W);
+  out.tool.emplace().orientation_W = rotation({0, 1, 0});
+  out.proxy_W = out.slave_W = Vec3(1, 2, 3);
+  const DeviceState hand = device(0.5, {1, 0, 0});
+  const Teleoperation rendered(with_tool(Feedback::rendered), {}, kTick_s, ground());
+  EXPECT_EQ(rendered.command(hand, out), out.slave_W);
+  EXPECT_EQ(rendered.command_orientation(hand, out).coeffs(), out.tool->orientation_W.coeffs());
+  for (const Feedback force : {Feedback::none, Feedback::slave_force, Feedback::passive_slave_force}) {
+    const Teleoperation direct(with_tool(force), {}, kTick_s, ground());
+    EXPECT_EQ(direct.command(hand, out), hand.position_W);
+    EXPECT_EQ(direct.command_orientation(hand, out).coeffs(), hand.orientation_W.coeffs());
+  }
+  out.slave_W = hand.position_W;
+  EXPECT_EQ(rendered.command_orientation(hand, out).coeffs(), hand.orientation_W.coeffs());
+}
+
+// The command takes the delay and one tick, in which the slave moves to it. The force takes the delay.
+TEST(Teleoperation, TheForceOfTheSlaveComesBackAfterTheDelays) {
+  for (const bool has_tool : {false, true})
+    for (const int delay : {0, 30}) {
+      TeleoperationSettings s = with_tool(Feedback::slave_force, delay);
+      if (!has_tool) s.tool.reset();
+      s.feedback.gain = 0.5;
+      Teleoperation remote(s, {}, kTick_s, ground());
+      std::vector<SlaveState> states;
+      const auto height = [](int tick) { return std::max(0.02 - 0.05 * tick * kTick_s, -0.01); };
+      for (int i = 0; i < 1500; ++i) {
+        const Wrench felt = remote.tick(device(height(i), Vec3::Zero()), {}, i * kTick_s);
+        states.push_back(remote.state());
+        if (i <= delay) continue;
+        const SlaveState& sent = states[static_cast<std::size_t>(i - delay)];
+        ASSERT_EQ(states.back().command_W.y(), height(i - 1 - delay)) << has_tool << " " << delay << " " << i;
+        ASSERT_EQ(felt.force_N, 0.5 * sent.force_N) << has_tool << " " << delay << " " << i;
+        ASSERT_EQ(felt.torque_Nm, has_tool ? Vec3(0.5 * sent.tool->torque_Nm) : Vec3(Vec3::Zero())) << i;
+      }
+      EXPECT_GT(states.back().force_N.y(), 1) << has_tool << " " << delay;
+      // The arm is along x, the force along y.
+      EXPECT_TRUE(!has_tool || states.back().tool->torque_Nm.z() > 0.02) << delay;
+    }
 }
 
 // An unknown force is not shown as zero, but the hand feels no NaN.
@@ -81,14 +138,6 @@ TEST(Teleoperation, AForceWithoutANormalIsNotKnown) {
   EXPECT_LT(remote.state().clearance_m, 0);
   EXPECT_TRUE(std::isnan(remote.state().peak_force_N));
   EXPECT_TRUE(remote.state().force_N.hasNaN());
-}
-
-TEST(Teleoperation, WithoutFeedbackSendsTheHip) {
-  const std::vector<Tick> ticks = descent(with(Feedback::none));
-  for (const Tick& tick : ticks) EXPECT_EQ(tick.felt.force_N, Vec3::Zero());
-  EXPECT_GT(ticks.back().slave.peak_force_N, 1);
-  EXPECT_EQ(ticks.back().slave.force_packets, 0);
-  EXPECT_EQ(ticks.back().slave.command_W.y(), -0.01);
 }
 
 // The slave goes where the wrong registration sends it; what the hand feels is turned back.
@@ -105,20 +154,6 @@ TEST(Teleoperation, TheRegistrationMovesTheSlaveAndTurnsItsForce) {
   }
   EXPECT_GT(ticks.back().felt.force_N.norm(), 1);
   EXPECT_NEAR(ticks.back().slave.force_N.normalized().y(), 1, 1e-12);  // the ground is where it was
-}
-
-// The command takes the delay and one tick, in which the slave moves to it. The force takes the delay.
-TEST(Teleoperation, TheForceOfTheSlaveComesBackAfterTheDelays) {
-  for (const int delay : {0, 30}) {
-    const std::vector<Tick> ticks = descent(with(Feedback::slave_force, delay * kTick_s));
-    for (int i = delay + 1; i < static_cast<int>(ticks.size()); ++i) {
-      const auto now = static_cast<std::size_t>(i), sent = static_cast<std::size_t>(i - delay);
-      EXPECT_EQ(ticks[now].felt.force_N, ticks[sent].slave.force_N) << delay << " " << i;
-      const double command = std::max(-0.01, 0.02 - 0.05 * (i - 1 - delay) * kTick_s);
-      EXPECT_EQ(ticks[now].slave.command_W.y(), command) << delay << " " << i;
-    }
-    EXPECT_GT(ticks.back().felt.force_N.y(), 1);
-  }
 }
 
 // The packets of the force are lost in bursts. The fates of the packets are known, so each tick tells when
@@ -154,18 +189,14 @@ TEST(Teleoperation, ASilentDeadBandIsNoLoss) {
   for (const double longest_s : {0.0, 0.2}) {
     s.forces.dead_band.longest_silence_s = longest_s;
     s.feedback.hold.hold_s = 0.05;
-    const Vec3 faded = descent(s, 3000).back().felt.force_N;
+    const Tick last = descent(s, 3000).back();
+    const Vec3 faded = last.felt.force_N;
+    EXPECT_LT(last.slave.force_packets, 200);
+    EXPECT_GT(last.slave.force_packets, 5);
     s.feedback.hold.hold_s = 0;
     EXPECT_EQ(faded, descent(s, 3000).back().felt.force_N) << longest_s;
     EXPECT_GT(faded.norm(), 1);
   }
-}
-
-TEST(Teleoperation, TheGainScalesTheForceOfTheSlave) {
-  TeleoperationSettings s = with(Feedback::slave_force);
-  const Vec3 whole = descent(s).back().felt.force_N;
-  s.feedback.gain = 0.25;
-  EXPECT_NEAR((descent(s).back().felt.force_N - 0.25 * whole).norm(), 0, 1e-12);
 }
 
 // A slave waits for the first command that is finite, and starts there at rest, whatever the delay.
@@ -247,39 +278,88 @@ TEST(Teleoperation, TheStiffnessIsThatOfDriveAndContactInSeries) {
   EXPECT_EQ(felt_stiffness_N_per_m(s.slave, s.feedback), 0);
 }
 
-TEST(Teleoperation, ADeadBandSavesPackets) {
-  TeleoperationSettings s = with(Feedback::slave_force);
-  const std::int32_t all = descent(s).back().slave.force_packets;
-  s.forces.dead_band.weber_fraction = 0.1, s.forces.dead_band.least = 0.01;
-  s.commands.dead_band.least = 1e-4;
-  const SlaveState saved = descent(s).back().slave;
-  EXPECT_EQ(all, 1500);
-  EXPECT_LT(saved.force_packets, 200);
-  EXPECT_GT(saved.force_packets, 5);
-  // A command moves by 0.05 mm in a tick, so a packet is sent after the second or third tick.
-  EXPECT_GE(saved.command_packets, 0.03 / 1.5e-4);
-  EXPECT_LE(saved.command_packets, 0.03 / 1e-4 + 2);
-}
+// --- a slave with a tool: orientations that are sent, and torques that come back ---
 
-// The motion of the hand is prescribed, so the controller predicts a tick by the one before. The balance
-// falls below 0 by the errors of this prediction only.
-TEST(Teleoperation, PassivityControlKeepsTheBalanceAtBothPorts) {
-  for (const int delay : {0, 5, 50, 200}) {
-    Teleoperation remote(with(Feedback::passive_slave_force, delay * kTick_s), {}, kTick_s, ground());
-    double lowest = 0, felt = 0;
-    for (int i = 0; i < 4000; ++i) {
-      const double t = i * kTick_s, y = 0.003 + 0.012 * std::sin(7 * t) * std::sin(1.3 * t);
-      felt = std::max(felt, remote.tick({{0, y, 0}}, {}, t).force_N.norm());
-      lowest = std::min({lowest, remote.hand_energy().balance_J(), remote.slave_energy().balance_J()});
+TEST(SteeredTool, TheOrientationTravelsWithTheCommand) {
+  for (const int delay : {0, 30}) {
+    TeleoperationSettings s = with_tool(Feedback::none, delay);
+    s.slave.natural_frequency_hz = 20;
+    Teleoperation remote(s, {}, kTick_s, ground());
+    double largest = 0;
+    for (int i = 0; i < 1500; ++i) {
+      const double t = i * kTick_s;
+      remote.tick(device(1, {0, 0, 0.5 * t}), {}, t);
+      const double late = t - (delay + 1) * kTick_s;  // of the command that the slave has reached
+      const double lag = remote.state().tool->orientation_W.angularDistance(rotation({0, 0, 0.5 * late}));
+      if (i > 1000) largest = std::max(largest, lag);
     }
-    EXPECT_GT(felt, 0.3) << delay;
-    EXPECT_GT(lowest, -2e-3) << delay;
-    EXPECT_GT(remote.hand_energy().received_J, 0) << delay;
-    EXPECT_GT(remote.hand_energy().dissipated_J, 0) << delay;
+    EXPECT_LT(largest, 1e-4) << delay;  // the drive knows the speed of the command
   }
 }
 
-// The link of frames: it judges a frame by where the slave was at its capture, and passes on what it sends.
+TEST(SteeredTool, WaitsForACommandWithAnOrientation) {
+  Teleoperation remote(with_tool(Feedback::none), {}, kTick_s, ground());
+  DeviceState hand = device(1, Vec3::Zero());
+  hand.orientation_W.coeffs().setZero();
+  remote.tick(hand, {}, 0);
+  ASSERT_TRUE(remote.state().tool);
+  EXPECT_TRUE(std::isnan(remote.state().tool->orientation_W.w()));
+  remote.tick(device(1, Vec3::Zero()), {}, kTick_s);
+  EXPECT_EQ(remote.state().tool->orientation_W.w(), 1);
+  remote.tick(hand, {}, 2 * kTick_s);
+  EXPECT_EQ(remote.state().command_packets, 1);
+}
+
+Trace run(const std::vector<std::string>& overrides) {
+  return simulate(Experiment::load("steer-tool", overrides), {});
+}
+
+// Over the surface, the slave without a delay comes to the pose of the rendered tool.
+TEST(SteeredTool, CoincidesWithTheRenderedTool) {
+  const Trace trace = run(
+      {R"(trajectory={"name": "poses", "poses": [[0, 0.05, 0, 0, 0, 0, 0], [0.01, 0.06, 0, 10, 0, 20, 0.2]]})",
+       "duration_s=0.5", "command_link.delay_s=0", "slave.natural_frequency_hz=20"});
+  ASSERT_TRUE(trace.has_slave_tool());
+  const std::size_t last = trace.length() - 1;
+  EXPECT_NEAR((trace.slave_position_m[last] - trace.proxy_position_m[last]).norm(), 0, 1e-4);
+  EXPECT_NEAR(trace.slave_orientation[last].angularDistance(trace.tool_orientation[last]), 0, 1e-4);
+  EXPECT_GT(trace.slave_orientation[last].angularDistance(Eigen::Quaterniond::Identity()), 0.3);
+  EXPECT_EQ(trace.slave_torque_Nm[last], Vec3::Zero());
+}
+
+// The hand only turns, by 20 degrees. The plate reaches about 7 cm, so it may be 1 mm / 7 cm = 0.8 degrees
+// behind.
+TEST(SteeredTool, ADeadBandSendsARotationAlone) {
+  const Trace trace = run(
+      {R"(trajectory={"name": "poses", "poses": [[0, 0.05, 0, 0, 0, 0, 0], [0, 0.05, 0, 0, 0, 20, 0.2]]})",
+       "duration_s=0.7", "command_link.least=0.001", "slave.natural_frequency_hz=20"});
+  const std::size_t last = trace.length() - 1;
+  EXPECT_LT(trace.slave_orientation[last].angularDistance(trace.tool_orientation[last]), 0.03);
+  EXPECT_GT(trace.slave_orientation[last].angularDistance(Eigen::Quaterniond::Identity()), 0.3);
+  EXPECT_GT(trace.command_packets[last], 10);
+  EXPECT_LT(trace.command_packets[last], 100);
+}
+
+// A surface may touch the end of a tool first, far from its origin.
+TEST(SteeredTool, TheDeadBandOfFramesReachesBeyondTheTool) {
+  const auto near_m = [](const std::vector<std::string>& set) {
+    return Experiment::load("steer-tool", set).frame_dead_band().near_m;
+  };
+  const std::string band = "frame_link.least_motion_m=0.001", bar = "renderer.tool_mesh=bar";
+  const double small_m = near_m({band, bar, "renderer.tool_size_m=0.05"});
+  const double large_m = near_m({band, bar, "renderer.tool_size_m=0.1"});
+  EXPECT_GT(small_m, 0.04 + 0.02);
+  EXPECT_NEAR(large_m - 0.04, 2 * (small_m - 0.04), 1e-9);
+}
+
+TEST(SteeredTool, RefusesTooFewStepsOfATick) {
+  EXPECT_HAS(refusal([] {
+               run({"haptic_rate_hz=100", "slave.mass_kg=1", "slave.contact_stiffness_N_per_m=4e5"});
+             }),
+             "slave.steps_per_tick = 10: expected more for this tool");
+}
+
+// --- the link of frames ---
 
 class Receiver final : public FrameReceiver {
  public:
@@ -323,13 +403,6 @@ TEST(FrameLink, SendsNothingTwiceIfFramesOvertakeEachOther) {
   for (int i = 1; i < 10; ++i)
     for (const int late : {0, 2, 1}) link.on_frame(frame(0, 0.1 * i - 0.03 * late));
   EXPECT_EQ(link.sent(), 2);
-}
-
-TEST(FrameLink, PassesEveryFrameOnWithoutADeadBand) {
-  Receiver receiver;
-  FrameLink link({}, receiver, kernels_for(best_isa()));
-  for (int i = 0; i < 3; ++i) link.on_frame(frame(0, 0.03 * i));
-  EXPECT_EQ(receiver.frames.size(), 3u);
 }
 
 }  // namespace

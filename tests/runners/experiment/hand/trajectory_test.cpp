@@ -1,8 +1,10 @@
+// The motions of a scripted hand: along lines, on surfaces, over images, through poses, and at random.
 #include "runners/experiment/hand/trajectory.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/parameters/parameter.h"
@@ -34,24 +36,12 @@ void expect_at(const Vec3& got, const Vec3& want) {
   EXPECT_LT((got - want).norm(), 1e-15) << got.transpose() << " instead of " << want.transpose();
 }
 
-TEST(PolylinePath, EachPieceHasItsSpeed) {
-  PolylinePath path({1, 0, 0});
-  path.go_to({1, 0.3, 0.4}, 0.25);  // 2 s
-  path.go_to({1, 0.3, 0}, 0.8);     // 0.5 s
-  EXPECT_DOUBLE_EQ(path.duration_s(), 2.5);
-  expect_at(path.at(0), {1, 0, 0});
-  expect_at(path.at(1), {1, 0.15, 0.2});
-  expect_at(path.at(2), {1, 0.3, 0.4});
-  expect_at(path.at(2.125), {1, 0.3, 0.3});
-  expect_at(path.at(2.5), {1, 0.3, 0});
-  expect_at(path.end(), {1, 0.3, 0});
-}
-
 TEST(PolylinePath, CanJumpWaitAndEnd) {
   PolylinePath path({0, 0, 0});
   path.wait(1);
   path.go_to({5, 0, 0}, 0);  // a jump at 1 s
   path.wait(0.5);
+  path.go_to({5, 0, 0}, 3);  // a piece of no length takes no time
   path.go_to({5, 1, 0}, 2);
   EXPECT_DOUBLE_EQ(path.duration_s(), 2);
   expect_at(path.at(-3), {0, 0, 0});
@@ -61,15 +51,6 @@ TEST(PolylinePath, CanJumpWaitAndEnd) {
   expect_at(path.at(1.75), {5, 0.5, 0});
   expect_at(path.at(2), {5, 1, 0});
   expect_at(path.at(1e6), {5, 1, 0});
-}
-
-TEST(PolylinePath, PieceOfNoLengthTakesNoTime) {
-  PolylinePath path({0, 0, 0});
-  path.go_to({0, 0, 0}, 1);
-  path.go_to({1, 0, 0}, 1);
-  EXPECT_EQ(path.duration_s(), 1);
-  expect_at(path.at(0), {0, 0, 0});
-  expect_at(path.at(0.5), {0.5, 0, 0});
 }
 
 TEST(Waypoints, ARowIsAPositionAndTheSpeedOfTheMotionToIt) {
@@ -82,9 +63,6 @@ TEST(Waypoints, ARowIsAPositionAndTheSpeedOfTheMotionToIt) {
   expect_at(device.at(2).position_W, {0.1, -0.01, 0});
   expect_at(device.at(4).position_W, {0.1, -0.01, 0.2});
   expect_at(device.at(9).position_W, {0.1, -0.01, 0.3});
-  EXPECT_EQ(validate(Waypoints::Settings{}), "");
-  EXPECT_NE(validate(Waypoints::Settings{{}}), "");
-  EXPECT_NE(validate(Waypoints::Settings{{0, 0, 0, -1}}), "");
 }
 
 // The lift rises with 0.1 m/s from -0.05 m; from frame 15 on its speed grows by 0.1 m/s a frame.
@@ -108,17 +86,6 @@ TEST(Press, FollowsFramesOrTheMovingPlane) {
   expect_at(smooth.at(16 / 30.0).position_W, {0.01, frame_16 - 0.03, 0.03});
   const double sag = 3.0 / 8 / 900;  // sag of the parabola midway between two updates
   expect_at(smooth.at(16.5 / 30).position_W, {0.01, 0.5 * (frame_16 + frame_17) - sag - 0.03, 0.03});
-}
-
-TEST(FollowSurface, KeepsItsDepthAndSpeedOnAFlat) {
-  const FlatGrid scene = made<FlatGrid>();
-  const FollowSurface device({}, scene);
-  const double down = (0.02 + 0.005) / 0.05;  // time from the clearance to the depth, at 5 cm/s
-  EXPECT_NEAR(device.duration_s(), down + 0.2 / 0.05 + down, 1e-12);
-  expect_at(device.at(0).position_W, {-0.1, 0.02, 0});
-  for (const double t : {0.0, 0.3, 1.7, 3.9})
-    EXPECT_LT((device.at(down + t).position_W - Vec3(-0.1 + 0.05 * t, -0.005, 0)).norm(), 1e-13) << t;
-  EXPECT_LT((device.at(99).position_W - Vec3(0.1, 0.02, 0)).norm(), 1e-13);
 }
 
 TEST(FollowSurface, StaysInsideAWaveByItsDepth) {
@@ -190,126 +157,27 @@ TEST(FollowSurface, FollowsASurfaceThatRisesAndSinksAsAWhole) {
   }
 }
 
-TEST(FollowSurface, RefusesASurfaceThatChangesAlongItsLine) {
-  MovingShape::Settings slides, rocks;
-  slides.shape.kind = Shape::Kind::ridge, slides.motion.slide_velocity_m_per_s = 0.01;
-  rocks.motion.rock_deg = 5;
-  for (const auto& settings : {slides, rocks})
-    EXPECT_THROW(FollowSurface({}, MovingShape(settings, NoiseKey{1}, scenes::kernels())), InputError);
-  // The heart beats between the ends and the middle of the line, which are on its table.
-  const BeatingHeart heart({}, NoiseKey{1}, scenes::kernels());
-  EXPECT_THROW(FollowSurface({{-0.15, 0, 0}, {0.25, 0, 0}}, heart), InputError);
-}
-
-// A line of no length has no direction: the hand would be nowhere.
-TEST(FollowSurface, RefusesEndsThatDifferOnlyInHeight) {
-  FollowSurface::Settings s;
-  EXPECT_EQ(validate(s), "");
-  s.from_m = {0.1, 0, 0.2}, s.to_m = {0.1, 0.3, 0.2};
-  EXPECT_EQ(validate(s), "to_m: expected another x or z than that of from_m");
-  s.to_m.x() += 1e-200;  // the square of this length is 0
-  EXPECT_NE(validate(s), "");
-  s.to_m.z() = 0.3;
-  EXPECT_EQ(validate(s), "");
-}
-
-TEST(HeightFields, PressAndFollowSurfaceRefuseOtherScenes) {
-  const PointsOnly scene;
-  EXPECT_THROW(Press({}, scene), InputError);
-  EXPECT_THROW(FollowSurface({}, scene), InputError);
-}
-
-std::size_t pixel(int u, int v) {
-  return static_cast<std::size_t>(v) * 640 + static_cast<std::size_t>(u);
-}
-
-TEST(ImageScan, TouchesWhatWasSeenWithoutGaps) {
-  const CameraScene scene = made<CameraScene>();
-  const PointCloud cloud = scene.cloud(0);
-  const CameraIntrinsics& camera = cloud.image->camera;
-  // Rows 200 and 280 cross ramp and box, with holes beside them.
-  for (const int row : {-1, 200, 280}) {
-    ImageScan::Settings s;
-    s.row = row;
-    const ImageScan scan(s, scene);
-    ASSERT_GE(scan.patches().size(), 2u) << "a part before and one behind a gap";
-    std::vector<bool> touched(640, false);
-    for (const ScanPatch& patch : scan.patches())
-      for (int u = patch.first_column; u <= patch.last_column; ++u) {
-        touched[static_cast<std::size_t>(u)] = true;
-        // 1 cm at the distance of the scene, at most 1.2 m, is more than 4 pixels.
-        for (int v = scan.row() - 4; v <= scan.row() + 4; ++v)
-          for (int x = u - 4; x <= u + 4; ++x)
-            ASSERT_TRUE(cloud.point(pixel(x, v)).allFinite()) << x << " " << v;
-      }
-    // The depth that is followed is the median of a square of 2 cm, at most 9 pixels to each side.
-    const auto deepest = [&](int u) {
-      double z = 0;
-      for (int v = scan.row() - 9; v <= scan.row() + 9; ++v)
-        for (int x = std::max(0, u - 9); x <= std::min(639, u + 9); ++x)
-          z = std::max(z, scene.true_depth().z_m[pixel(x, v)]);
-      return z;
-    };
-    std::vector<double> behind;  // distance of the HIP behind the surface at its pixel
-    for (double t = 0; t < scan.duration_s() + 0.001; t += 0.001) {
-      const Vec3 hip = cloud.image->X_WC.inverse() * scan.at(t).position_W;
-      ASSERT_NEAR(camera.fy * hip.y() / hip.z() + camera.cy, scan.row(), 1e-9) << "along the row";
-      const auto u = static_cast<int>(std::lround(camera.fx * hip.x() / hip.z() + camera.cx));
-      const double surface = scene.true_depth().z_m[pixel(u, scan.row())];
-      behind.push_back(hip.z() - surface);
-      // 2 mm: noise and quantisation of the median.
-      ASSERT_LT(hip.z(), touched[static_cast<std::size_t>(u)] ? deepest(u) + s.depth_m + 0.002 : surface)
-          << u;
-    }
-    EXPECT_NEAR(behind.front(), -s.clearance_m, 0.002);
-    EXPECT_NEAR(behind.back(), -s.clearance_m, 0.002);
-    EXPECT_GT(std::count_if(behind.begin(), behind.end(), [](double d) { return d > 0.008; }), 3000);
-  }
-}
-
-TEST(ImageScan, FindsAnObjectOnTheTableAndObeysGivenColumns) {
-  const CameraScene scene = made<CameraScene>();
-  // The scan finds ramp or box, not the table, which fills most of the image and is nearer at its lower edge.
-  const ImageScan automatic({}, scene);
-  double highest = 0;
-  for (double t = 0; t < automatic.duration_s(); t += 0.001) {
-    const Vec3 hip = automatic.at(t).position_W;
-    highest = std::max(highest, scene.surface_height(hip.x(), hip.z(), 0));
-  }
-  EXPECT_GT(highest, 0.03);
-
+ImageScan::Settings scan_of(int row, int first_column = -1, int last_column = -1) {
   ImageScan::Settings s;
-  s.row = 240, s.first_column = 300, s.last_column = 340;
-  const ImageScan given(s, scene);
+  s.row = row, s.first_column = first_column, s.last_column = last_column;
+  return s;
+}
+
+TEST(ImageScan, ObeysGivenColumns) {
+  const CameraScene scene = made<CameraScene>();
+  const ImageScan given(scan_of(240, 300, 340), scene);
   EXPECT_EQ(given.row(), 240);
   ASSERT_EQ(given.patches().size(), 1u);
   EXPECT_EQ(given.patches()[0].first_column, 300);
   EXPECT_EQ(given.patches()[0].last_column, 340);
 }
 
-TEST(ImageScan, RefusesWhatItCannotScan) {
-  const FlatGrid unorganised = made<FlatGrid>();
-  EXPECT_THROW(ImageScan({}, unorganised), InputError);
-  const CameraScene scene = made<CameraScene>();
-  ImageScan::Settings s;
-  s.row = 480;
-  EXPECT_THROW(ImageScan(s, scene), InputError);
-  s.row = 0;  // border pixels are not supported on all sides
-  EXPECT_THROW(ImageScan(s, scene), InputError);
-  s.row = 240, s.first_column = 20, s.last_column = 10;
-  EXPECT_NE(validate(s), "");
-}
-
-}  // namespace
-}  // namespace remote_touch::trajectory_test
-
-namespace remote_touch::scripted_motions_test {
-namespace {
+// --- poses and random motions ---
 
 const double kDegree = std::acos(-1.0) / 180;
 
 Poses poses(std::vector<double> rows) {
-  return Poses({std::move(rows)}, FlatGrid({}, NoiseKey{}, scenes::kernels()));
+  return Poses({std::move(rows)}, made<FlatGrid>());
 }
 
 void expect_at(const DeviceState& got, const Vec3& place, const Eigen::Quaterniond& orientation) {
@@ -352,28 +220,10 @@ TEST(Poses, TakeTheShorterWayRound) {
   const Eigen::Quaterniond c = about({0, 0, 1}, -160);
   for (double fraction = 0; fraction < 1; fraction += 0.07)
     expect_at(device.at(1 + fraction), {0, 0, 0}, b.slerp(fraction, c));
-  // The rotation has a constant rate.
-  const double first = device.at(0.3).orientation_W.angularDistance(device.at(0.31).orientation_W);
-  const double later = device.at(0.7).orientation_W.angularDistance(device.at(0.71).orientation_W);
-  EXPECT_NEAR(first, later, 1e-8);
-}
-
-TEST(Poses, RefuseWhatIsNotUnique) {
-  EXPECT_EQ(validate(Poses::Settings{}), "");
-  EXPECT_NE(validate(Poses::Settings{{}}), "");
-  EXPECT_NE(validate(Poses::Settings{{0, 0, 0, 0, 0, 0, -1}}), "");
-  const auto turned = [](double degrees, double duration) {
-    return validate(Poses::Settings{{0, 0, 0, 0, 10, 0, 0, 0, 0, 0, 0, 10 + degrees, 0, duration}});
-  };
-  EXPECT_EQ(turned(179, 1), "");
-  EXPECT_NE(turned(180, 1), "");
-  EXPECT_NE(turned(-180, 1), "");
-  EXPECT_EQ(turned(180, 0), "") << "a jump goes no way";
-  EXPECT_EQ(turned(360, 1), "");
 }
 
 RandomMotion motion_of(const RandomMotion::Settings& settings) {
-  return RandomMotion(settings, FlatGrid({}, NoiseKey{}, scenes::kernels()));
+  return RandomMotion(settings, made<FlatGrid>());
 }
 
 TEST(RandomMotion, StaysInItsBoxAndBelowItsSpeed) {
@@ -396,33 +246,73 @@ TEST(RandomMotion, StaysInItsBoxAndBelowItsSpeed) {
   }
   EXPECT_LE(max_speed, s.speed_m_per_s * (1 + 1e-9));
   EXPECT_GT(max_speed, 0.5 * s.speed_m_per_s);
-  const double degree = std::acos(-1.0) / 180;
-  EXPECT_LE(max_rotation, s.max_rotation_deg * degree * (1 + 1e-9));
-  EXPECT_GT(max_rotation, 0.5 * s.max_rotation_deg * degree);
-}
-
-TEST(RandomMotion, EverySeedIsAnotherMotion) {
-  RandomMotion::Settings s;
-  const RandomMotion one = motion_of(s), same = motion_of(s);
+  EXPECT_LE(max_rotation, s.max_rotation_deg * kDegree * (1 + 1e-9));
+  EXPECT_GT(max_rotation, 0.5 * s.max_rotation_deg * kDegree);
+  EXPECT_EQ(device.at(3).position_W, motion_of(s).at(3).position_W);
   s.seed = 2;
-  const RandomMotion other = motion_of(s);
-  for (const double t : {3.0, 0.0, 7.7}) {
-    EXPECT_EQ(one.at(t).position_W, same.at(t).position_W);
-    EXPECT_GT((one.at(t).position_W - other.at(t).position_W).norm(), 1e-3);
-    EXPECT_GT(one.at(t).orientation_W.angularDistance(other.at(t).orientation_W), 1e-2);
-  }
-  EXPECT_EQ(one.at(10).position_W, one.at(1e9).position_W);
-  EXPECT_EQ(one.duration_s(), 10);
+  EXPECT_GT((device.at(3).position_W - motion_of(s).at(3).position_W).norm(), 1e-3);
 }
 
-TEST(RandomMotion, RefusesABoxThatIsTooSmall) {
-  RandomMotion::Settings s;
-  EXPECT_EQ(validate(s), "");
-  s.extent_m = {1e-7, 0, 0};
-  EXPECT_NE(validate(s), "");
-  s.extent_m.setZero();
-  EXPECT_NE(validate(s), "");
+// --- refusals ---
+
+// A motion over a surface needs to know how high it is, and one that does not change along its line. A scan
+// needs pixels that are supported on all sides.
+TEST(Trajectories, RefuseScenesThatTheyCannotFollow) {
+  const PointsOnly points;
+  const FlatGrid unorganised = made<FlatGrid>();
+  const CameraScene image = made<CameraScene>();
+  MovingShape::Settings slides, rocks;
+  slides.shape.kind = Shape::Kind::ridge, slides.motion.slide_velocity_m_per_s = 0.01;
+  rocks.motion.rock_deg = 5;
+  // The heart beats between the ends and the middle of the line, which are on its table.
+  const BeatingHeart heart = made<BeatingHeart>();
+  EXPECT_THROW(Press({}, points), InputError);
+  EXPECT_THROW(FollowSurface({}, points), InputError);
+  EXPECT_THROW(FollowSurface({}, made<MovingShape>(slides)), InputError);
+  EXPECT_THROW(FollowSurface({}, made<MovingShape>(rocks)), InputError);
+  EXPECT_THROW(FollowSurface({{-0.15, 0, 0}, {0.25, 0, 0}}, heart), InputError);
+  EXPECT_THROW(ImageScan({}, unorganised), InputError);
+  EXPECT_THROW(ImageScan(scan_of(480), image), InputError);
+  EXPECT_THROW(ImageScan(scan_of(0), image), InputError);
+}
+
+// A line of no length has no direction, a box of no extent no motion: the hand would be nowhere. The square
+// of 1e-200 is 0.
+TEST(Trajectories, RefuseSettingsThatAreNoMotion) {
+  const auto line_to = [](double x, double z) {
+    return validate(FollowSurface::Settings{{0, 0, 0.2}, {x, 0.3, z}});
+  };
+  const auto turned = [](double degrees, double duration_s) {
+    return validate(Poses::Settings{{0, 0, 0, 0, 10, 0, 0, 0, 0, 0, 0, 10 + degrees, 0, duration_s}});
+  };
+  const auto in_box = [](double x) {
+    RandomMotion::Settings s;
+    s.extent_m = {x, 0, 0};
+    return validate(s);
+  };
+  const auto scanned = [](int first, int last) { return validate(scan_of(240, first, last)); };
+  const struct {
+    const char* what;
+    std::string got;
+    bool is_refused;
+  } rows[] = {{"no waypoints", validate(Waypoints::Settings{{}}), true},
+              {"a negative speed", validate(Waypoints::Settings{{0, 0, 0, -1}}), true},
+              {"a line of no length", line_to(0, 0.2), true},
+              {"a line of next to no length", line_to(1e-200, 0.2), true},
+              {"a line", line_to(0, 0.3), false},
+              {"columns that go back", scanned(20, 10), true},
+              {"no poses", validate(Poses::Settings{{}}), true},
+              {"a negative duration", validate(Poses::Settings{{0, 0, 0, 0, 0, 0, -1}}), true},
+              {"less than half a turn", turned(179, 1), false},
+              {"half a turn", turned(180, 1), true},
+              {"half a turn back", turned(-180, 1), true},
+              {"a jump, which goes no way", turned(180, 0), false},
+              {"next to no box", in_box(1e-7), true},
+              {"no box", in_box(0), true},
+              {"a box", in_box(0.01), false}};
+  for (const auto& row : rows) EXPECT_EQ(row.got != "", row.is_refused) << row.what << ": " << row.got;
+  EXPECT_EQ(line_to(0, 0.2), "to_m: expected another x or z than that of from_m");
 }
 
 }  // namespace
-}  // namespace remote_touch::scripted_motions_test
+}  // namespace remote_touch::trajectory_test
