@@ -1,4 +1,4 @@
-// Settings of a renderer that change during a run.
+// Settings of a renderer that change during a run, where every renderer holds its contact, and the catalog.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/storage/digest.h"
 #include "analysis/trace/contact_measures.h"
 #include "analysis/trace/trace.h"
 #include "core/points/point_cloud.h"
@@ -19,7 +18,6 @@
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/simulation/simulation.h"
 #include "scenarios/files/input_files.h"
-#include "scenarios/simulated/grid_scenes.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
@@ -63,78 +61,8 @@ Experiment lift(const std::string& changes = "[]", std::vector<std::string> more
   more.push_back("changes=" + changes);
   return Experiment::load("fig4.12", more);
 }
-std::string why(const std::string& changes) {
-  return refusal([&] { lift(changes); });
-}
 
-// --- what is refused ---
-
-TEST(RendererChanges, AcceptOnlyLiveParametersInTheirRange) {
-  EXPECT_EQ(
-      why("[" + change("0.1", "renderer.gamma", "0.2") + "]"),
-      "changes.0.parameter = renderer.gamma: expected one of renderer.r1_m, renderer.r2_m, renderer.r3_m, "
-      "renderer.stiffness_N_per_m, renderer.velocity_estimate");
-  EXPECT_HAS(why("[" + change("0.1", "stiffness_N_per_m", "2") + "]"), "expected one of renderer.r1_m");
-  EXPECT_EQ(why("[" + change("0.1", "renderer.stiffness_N_per_m", "10001") + "]"),
-            "changes.0.value = 10001.0: expected 0 to 10000, the range of renderer.stiffness_N_per_m");
-  EXPECT_EQ(why("[" + change("0.1", "renderer.velocity_estimate", "0.5") + "]"),
-            "changes.0.value = 0.5: expected 0 or 1, the range of renderer.velocity_estimate");
-  EXPECT_HAS(why("[" + change("-1", "renderer.r3_m", "0.02") + "]"), "changes.0.time_s");
-  EXPECT_EQ(refusal([] {
-              Experiment::load("fig6.4",
-                               {"renderer.name=tool-penalty",
-                                "changes=[" + change("1", "renderer.stiffness_N_per_m", "2") + "]"});
-            }),
-            "changes.0.parameter = renderer.stiffness_N_per_m: this renderer has no live parameters");
-}
-
-TEST(RendererChanges, TimesDoNotGoBack) {
-  EXPECT_EQ(
-      why("[" + change("0.2", "renderer.r3_m", "0.02") + ", " + change("0.1", "renderer.r3_m", "0.03") + "]"),
-      "changes.1.time_s = 0.1: expected the time of the change before it or later");
-}
-
-// r1 < r2 < r3 has to be true after all changes of one time, not between them.
-TEST(RendererChanges, ChangesOfOneTimeAreCheckedTogether) {
-  const std::string r1 = change("0.1", "renderer.r1_m", "0.00599"),
-                    r2 = change("0.1", "renderer.r2_m", "0.00601");
-  EXPECT_EQ(why("[" + r1 + "]"),
-            "changes.0: after this change renderer.r1_m = 0.00599: expected below r2_m = 0.00501");
-  EXPECT_EQ(lift("[" + r1 + ", " + r2 + "]").changes().size(), 2u);
-}
-
-// The first tick at or after 0.1001 s is that of 0.101 s at 1000 Hz; it makes both changes.
-TEST(RendererChanges, RefusesTwoOfOneParameterInOneTick) {
-  const auto two = [](const char* first_s, const char* second_s, const char* parameter) {
-    return "[" + change(first_s, "renderer.stiffness_N_per_m", "100") + ", " +
-           change("0.1001", "renderer.r3_m", "0.02") + ", " + change(second_s, parameter, "0.02") + "]";
-  };
-  constexpr const char* kStiffness = "renderer.stiffness_N_per_m";
-  EXPECT_EQ(
-      why(two("0.1001", "0.1001", kStiffness)),
-      "changes.2.parameter = renderer.stiffness_N_per_m: changes.0 sets it in the same tick: expected one "
-      "of them");
-  EXPECT_HAS(why(two("0.1001", "0.101", kStiffness)), "changes.0 sets it in the same tick");
-  EXPECT_HAS(why(two("0.1001", "0.101", "renderer.r3_m")), "changes.1 sets it in the same tick");
-  EXPECT_EQ(why(two("0.1", "0.1001", kStiffness)), "no InputError");
-  EXPECT_EQ(why(two("0.1001", "0.1011", kStiffness)), "no InputError");
-}
-
-// 1000 * 2.007 is rounded to a number above 2007, but the run changes the parameter at its tick 2007.
-TEST(RendererChanges, AllowsOneParameterInSuccessiveTicks) {
-  for (int tick = 2000; tick < 2050; ++tick) {
-    const auto at = [](int number) {
-      const std::string time_s = "2." + std::to_string(number).substr(1);
-      return change(time_s.c_str(), "renderer.r3_m", "0.02");
-    };
-    EXPECT_EQ(why("[" + at(tick) + ", " + at(tick + 1) + "]"), "no InputError");
-  }
-}
-
-TEST(RendererChanges, SurviveWritingAndReading) {
-  const Experiment experiment = lift("[" + change("0.25", "renderer.velocity_estimate", "0") + "]");
-  EXPECT_EQ(Experiment::from_json(experiment.to_json(), "again").to_json(), experiment.to_json());
-}
+// --- changes of settings ---
 
 // A device scales forces by the greatest stiffness that will come.
 TEST(RendererChanges, TheGreatestStiffnessIsThatOfAnyTime) {
@@ -165,24 +93,6 @@ TEST(RendererChanges, AStiffnessThatIsNoneIsRefusedForEveryFactory) {
   use_catalog(built_in_catalog());
 }
 
-// --- what they do ---
-
-std::string digest_of(const Experiment& experiment) {
-  return digest(simulate(experiment).columns());
-}
-
-TEST(RendererChanges, ChangesAtTimeZeroAreSettings) {
-  for (const auto& [parameter, value, set] :
-       {std::tuple("stiffness_N_per_m", "900", "900"), std::tuple("r3_m", "0.013", "0.013"),
-        std::tuple("velocity_estimate", "0", "false")}) {
-    const std::string name = std::string("renderer.") + parameter;
-    EXPECT_EQ(digest_of(lift("[" + change("0", name, value) + "]")),
-              digest_of(lift("[]", {name + "=" + set})))
-        << name;
-    EXPECT_NE(digest_of(lift("[" + change("0", name, value) + "]")), digest_of(lift())) << name;
-  }
-}
-
 TEST(RendererChanges, TakeEffectInTheFirstTickAtOrAfterTheirTime) {
   const Trace plain = simulate(lift());
   const auto first_other = [&](const char* time_s) {
@@ -197,16 +107,6 @@ TEST(RendererChanges, TakeEffectInTheFirstTickAtOrAfterTheirTime) {
   ASSERT_LT(touched, 650u);
   EXPECT_EQ(first_other("0.65"), 650u);
   EXPECT_EQ(first_other("0.6501"), 651u);
-}
-
-TEST(RendererChanges, ASpringTwiceAsStiffPushesTwiceAsHard) {
-  const Trace plain = simulate(lift()),
-              changed = simulate(lift("[" + change("0.65", "renderer.stiffness_N_per_m", "1200") + "]"));
-  for (std::size_t tick = 650; tick < 800; ++tick) {
-    EXPECT_EQ(changed.proxy_position_m[tick], plain.proxy_position_m[tick])
-        << "the force does not move the proxy";
-    EXPECT_NEAR((changed.force_N[tick] - 2 * plain.force_N[tick]).norm(), 0, 1e-9) << tick;
-  }
 }
 
 // Once the estimate is off, v_hat is no part of the force (4.15).
@@ -323,15 +223,6 @@ TEST(RendererContacts, APenaltyForceIsJudgedWhereItWouldEnd) {
   EXPECT_NEAR(max_sink_m(pressed(R"({"name": "penalty"})", kDense_m, 0.01)), 0.015, 5e-6);
 }
 
-// The true contact is computed only if a measure needs it.
-TEST(RendererContacts, AreComputedWhereAMeasureAsks) {
-  const Experiment experiment = Experiment::from_json(
-      R"({"scenario": {"name": "flat-grid"}, "renderer": {"name": "proxy"},
-          "trajectory": {"name": "waypoints", "waypoints": [[0, 0.02, 0, 0]]}, "duration_s": 0.01})",
-      "flat");
-  EXPECT_FALSE(simulate(experiment).has_contact());
-}
-
 TEST(Catalog, NamesAreUniqueAndDescribed) {
   const auto check = [](const auto& entries) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -353,46 +244,6 @@ TEST(Catalog, OtherSeedsGiveOtherNoise) {
       other += std::abs(a.y[i] - b.y[i]) > 0 ? 1 : 0;  // false for a pixel that saw nothing
     EXPECT_GT(other, a.size() / 10) << name;
   }
-}
-
-// A wall of all colours, 0.6 m away: too far from the point that near-point has by default.
-TEST(Catalog, FixtureRulesPickPointsWithTheirDefaults) {
-  PointCloud cloud;
-  cloud.image = ImageLayout{{8, 6, 10, 10, 3.5, 2.5}, RigidTransform::Identity(), 0};
-  for (int i = 0; i < 48; ++i) {
-    cloud.append(unproject(cloud.image->camera, i % 8, i / 8, 0.6));
-    cloud.colour.push_back(static_cast<std::uint32_t>(i * 349525));
-  }
-  for (const char* name : {"everywhere", "half-space", "near-point", "hue-range"}) {
-    double sum = 0;
-    for (const double weight : find_entry(fixtures(), name, "fixture").make()->build()->weights(cloud))
-      sum += weight;
-    EXPECT_EQ(sum > 0, name != std::string("near-point")) << name;
-  }
-}
-
-TEST(Catalog, HasTheDirectionOfEveryMeasure) {
-  EXPECT_EQ(directions().size(), measures().size());
-  EXPECT_EQ(directions().at("popped_through"), Better::smaller);
-  EXPECT_EQ(directions().at("max_force"), Better::neither);
-}
-
-TEST(Catalog, AnEntryNeedsAFreeAndPlainName) {
-  Catalog catalog = built_in_catalog();
-  const auto add = [&](const char* name) {
-    catalog.add(scenario_entry<FlatGrid>(name, "one point at rest, for a test"));
-  };
-  EXPECT_TRUE(own_entries(catalog).is_empty());
-  add("mine");
-  EXPECT_EQ(own_entries(catalog).scenarios().size(), 1u);
-  EXPECT_EQ(refusal([&] { add("mine"); }), "scenario \"mine\": is in the catalog already");
-  EXPECT_HAS(refusal([&] { add("flat-grid"); }), "is in the catalog already");
-  EXPECT_HAS(refusal([&] {
-               catalog.add(Measure{"empty", "N", "no function", MeasuredRuns::all, {}});
-             }),
-             "has no function");
-  for (const char* name : {"", "My scene", "a/b", "a=b"})
-    EXPECT_HAS(refusal([&] { add(name); }), "expected a name of lower case letters");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Experiments: stored, from files and with overrides; what they resolve to and what they refuse.
+// Experiments: stored, from files and with overrides; the sections that they have, and what they resolve to.
 #include "runners/experiment/catalog/experiment.h"
 
 #include <gtest/gtest.h>
@@ -6,14 +6,23 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "runners/experiment/catalog/configuration.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "tests/runners/experiment/catalog/whole_experiments.h"
+#include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::experiment_test {
 namespace {
+
+// The resolved configuration of an experiment with these overrides.
+Json resolved(const char* experiment, const std::vector<std::string>& overrides = {}) {
+  return Json::parse(Experiment::from_json(experiment, "test", overrides).to_json());
+}
 
 TEST(Experiments, AllFilesAreStored) {
   const std::filesystem::path folder = std::filesystem::path(REMOTE_TOUCH_SOURCE_DIR) / "data/experiments";
@@ -30,8 +39,8 @@ TEST(Experiments, AllFilesAreStored) {
   EXPECT_EQ(embedded_experiments().size(), files);
 }
 
-void expect_has_all(const Json& resolved, const Json& part) {
-  for (const auto& [name, value] : part.items()) EXPECT_EQ(resolved[name], value) << part << ": " << name;
+void expect_has_all(const Json& whole, const Json& part) {
+  for (const auto& [name, value] : part.items()) EXPECT_EQ(whole[name], value) << part << ": " << name;
 }
 
 TEST(Experiments, SurviveARoundTrip) {
@@ -44,118 +53,45 @@ TEST(Experiments, SurviveARoundTrip) {
     EXPECT_FALSE(experiment.settings().title.empty());
 
     // The resolved configuration contains everything that the file states.
-    const Json file = Json::parse(stored.json), resolved = Json::parse(text);
+    const Json file = Json::parse(stored.json), all = Json::parse(text);
     for (const auto& [key, value] : file.items()) {
       if (key == "fixtures" || key == "sequence") {
-        ASSERT_EQ(resolved[key].size(), value.size());
-        for (std::size_t i = 0; i < value.size(); ++i) expect_has_all(resolved[key][i], value[i]);
+        ASSERT_EQ(all[key].size(), value.size());
+        for (std::size_t i = 0; i < value.size(); ++i) expect_has_all(all[key][i], value[i]);
       } else if (value.is_object()) {
-        expect_has_all(resolved[key], value);
+        expect_has_all(all[key], value);
       } else {
-        EXPECT_EQ(resolved[key], value) << key;
+        EXPECT_EQ(all[key], value) << key;
       }
     }
   }
 }
 
-constexpr const char* kSmall = R"({"seed": 5, "scenario": {"name": "flat-grid", "columns": 7},
-    "renderer": {"name": "proxy", "xi": 0.25}, "trajectory": {"name": "waypoints"}})";
-
-Json resolved(const std::vector<std::string>& overrides) {
-  return Json::parse(Experiment::from_json(kSmall, "small", overrides).to_json());
-}
-
+// The defaults, then the file, then the overrides, of which the last one counts: a whole part, then one of
+// its parameters.
 TEST(Experiments, ApplyDefaultsThenFileThenOverrides) {
-  const Json plain = resolved({});
+  const Json plain = resolved(kSmall);
   EXPECT_EQ(plain["seed"], 5);
   EXPECT_EQ(plain["scenario"]["columns"], 7);
   EXPECT_EQ(plain["scenario"]["rows"], 100);
-  const Json changed = resolved({"scenario.columns=8", "scenario.rows=9", "seed=6"});
+  EXPECT_EQ(plain["fixtures"], Json::array());
+  const Json changed = resolved(
+      kSmall, {"seed=-1", "seed=6", "scenario.columns=8", R"(renderer={"name": "proxy", "gamma": 0.5})",
+               "renderer.steps_per_tick=3", "title=a plain text = with more", "device.torque_z=false",
+               R"(fixtures=[{"name": "half-space", "radius_m": 0.03}, {"name": "everywhere"}])",
+               "fixtures.1.radius_m=0.5", "fixtures.0.normal=[0,1,0]"});
   EXPECT_EQ(changed["seed"], 6);
   EXPECT_EQ(changed["scenario"]["columns"], 8);
-  EXPECT_EQ(changed["scenario"]["rows"], 9);
-  EXPECT_EQ(changed["renderer"], plain["renderer"]);
-}
-
-TEST(Experiments, TheLastOverrideCounts) {
-  EXPECT_EQ(resolved({"seed=6", "seed=7"})["seed"], 7);
-  EXPECT_EQ(resolved({"seed=-1", "seed=7"})["seed"], 7);
-  // A whole part, then one of its parameters.
-  const Json json =
-      resolved({R"(renderer={"name": "proxy", "gamma": 0.5})", "renderer.steps_per_tick=3"})["renderer"];
-  EXPECT_EQ(json["gamma"], 0.5);
-  EXPECT_EQ(json["steps_per_tick"], 3);
-  EXPECT_EQ(json["xi"], resolved({R"(renderer={"name": "proxy"})"})["renderer"]["xi"]);
-}
-
-TEST(Experiments, OverridesAreJsonOrPlainText) {
-  EXPECT_EQ(resolved({"title=a plain text = with more"})["title"], "a plain text = with more");
-  EXPECT_EQ(resolved({"title=\"3\""})["title"], "3");
-  EXPECT_EQ(resolved({"title="})["title"], "");
-  EXPECT_EQ(resolved({"renderer.step_rule=fixed"})["renderer"]["step_rule"], "fixed");
-  EXPECT_EQ(resolved({"trajectory.waypoints=[[0,0.01,0,0],[0.1,0.01,0,1e-2]]"})["trajectory"]["waypoints"],
-            Json::parse("[[0.0, 0.01, 0.0, 0.0], [0.1, 0.01, 0.0, 0.01]]"));
-}
-
-TEST(Experiments, InvalidOverridesAreRefused) {
-  const auto why = [](const std::string& assignment) { return refusal([&] { resolved({assignment}); }); };
-  EXPECT_HAS(why("seed"), "--set seed: expected key=value");
-  EXPECT_HAS(why("=3"), "--set =3: expected key=value");
-  EXPECT_HAS(why("seed.x=3"), "--set seed.x=3: the path continues below a plain value");
-  EXPECT_HAS(why("scenario=3"), "scenario");
-  EXPECT_HAS(why("renderer.=3"), "renderer");
-  EXPECT_HAS(why("title=\xff"), "title");
-  EXPECT_HAS(why("renderer.xi=" + std::string(1000, '[')), "renderer.xi");
-  EXPECT_HAS(why("renderer.xi=" + std::string(1000, '[') + std::string(1000, ']')), "renderer.xi");
-}
-
-TEST(Experiments, RefuseSettingsThatContradictEachOther) {
-  const auto why = [](const std::string& assignment) { return refusal([&] { resolved({assignment}); }); };
-  EXPECT_HAS(why("renderer.r1_m=0.006"), "renderer.r1_m = 0.006: expected below r2_m = 0.00501");
-  EXPECT_HAS(why("renderer.r3_m=0.005"), "renderer.r2_m = 0.00501: expected below r3_m = 0.005");
-  EXPECT_HAS(why("trajectory.waypoints=[]"), "trajectory.waypoints = []");
-  EXPECT_HAS(why("trajectory.waypoints=[[0,0,0,-1]]"), "trajectory.waypoints");
-  EXPECT_HAS(why(R"(scenario={"name":"recording"})"), "scenario.path");
-}
-
-// --- fixture rules ---
-
-TEST(Experiments, FixturesAreAListInOrder) {
-  EXPECT_EQ(resolved({})["fixtures"], Json::array());
-  const std::string two = R"(fixtures=[{"name": "half-space", "radius_m": 0.03}, {"name": "everywhere"}])";
-  const Json changed = resolved({two, "fixtures.1.radius_m=0.5", "fixtures.0.normal=[0,1,0]"})["fixtures"];
-  ASSERT_EQ(changed.size(), 2u);
-  EXPECT_EQ(changed[0]["name"], "half-space");
-  EXPECT_EQ(changed[0]["radius_m"], 0.03);
-  EXPECT_EQ(changed[0]["normal"], Json::parse("[0.0, 1.0, 0.0]"));
-  EXPECT_EQ(changed[1]["name"], "everywhere");
-  EXPECT_EQ(changed[1]["radius_m"], 0.5);
-}
-
-TEST(Experiments, RefuseInvalidFixtures) {
-  const auto why = [](const std::string& list, const std::string& change = "seed=1") {
-    return refusal([&] { resolved({"fixtures=" + list, change}); });
-  };
-  for (const char* list : {"3", "{}", "{\"name\": \"everywhere\"}", "everywhere"})
-    EXPECT_HAS(why(list), "fixtures: expected a list of {") << list;
-  for (const char* list : {"[{}]", "[null]", "[{\"radius_m\": 1}]"})
-    EXPECT_HAS(why(list), "fixtures.0: missing: expected {\"name\"") << list;
-  EXPECT_HAS(why("[3]"), "fixtures.0 = 3: not an object: expected {\"name\"");
-  EXPECT_HAS(why("[[]]"), "fixtures.0 = []: not an object: expected {\"name\"");
-  EXPECT_HAS(why("[\"everywhere\"]"),
-             "fixtures.0 = \"everywhere\": not an object: expected {\"name\": \"everywhere\"}");
-  const std::string one = R"([{"name": "everywhere"}])";
-  EXPECT_HAS(
-      why(one, "fixtures.0.name=moon"),
-      "fixtures.0.name = \"moon\": expected everywhere, half-space, near-point, hue-range, image-mask");
-  EXPECT_HAS(why(one, "fixtures.0.name=3"), "fixtures.0.name = 3");
-  EXPECT_HAS(why(one, "fixtures.0.radius=1"), "fixtures.0.radius: unknown; did you mean fixtures.0.radius_m");
-  EXPECT_HAS(why(one, "fixtures.0.radius_m=2"), "fixtures.0.radius_m = 2: expected -1 to 1");
-  EXPECT_HAS(why(one, "fixtures.0.schedule=[[0,1.5]]"), "fixtures.0.schedule: strength 1.5");
-  EXPECT_HAS(why(one, "fixtures.1.radius_m=1"), "expected an index of the list, 0 to 0");
-  EXPECT_HAS(why("[]", "fixtures.0.radius_m=1"), "fixtures");
-  EXPECT_HAS(why(R"([{"name": "everywhere"}, {"name": "half-space", "normal": [0, 0, 0]}])"),
-             "fixtures.1.normal: expected longer than 0");
+  EXPECT_EQ(changed["title"], "a plain text = with more");
+  EXPECT_EQ(changed["renderer"]["gamma"], 0.5);
+  EXPECT_EQ(changed["renderer"]["steps_per_tick"], 3);
+  EXPECT_NE(changed["renderer"]["xi"], 0.25) << "the whole part of the file was replaced";
+  EXPECT_EQ(changed["device"]["torque_z"], false) << "a section that the file does not have is made";
+  ASSERT_EQ(changed["fixtures"].size(), 2u);
+  EXPECT_EQ(changed["fixtures"][0]["radius_m"], 0.03);
+  EXPECT_EQ(changed["fixtures"][0]["normal"], Json::parse("[0.0, 1.0, 0.0]"));
+  EXPECT_EQ(changed["fixtures"][1]["name"], "everywhere");
+  EXPECT_EQ(changed["fixtures"][1]["radius_m"], 0.5);
 }
 
 TEST(Experiments, DefaultsFitTogether) {
@@ -171,117 +107,139 @@ TEST(Experiments, DefaultsFitTogether) {
       expect_no_contradiction(renderers()), expect_no_contradiction(trajectories());
 }
 
-TEST(Experiments, RefuseWithTheMessageOfTheManual) {
-  EXPECT_EQ(refusal([] { Experiment::load("fig4.11", {"renderer.stiffness_N_per_m=-3"}); }),
-            "renderer.stiffness_N_per_m = -3: expected 0 to 10000");
-  EXPECT_EQ(refusal([] { Experiment::load("fig4.11", {"haptic_rate_hz=fast"}); }),
-            "haptic_rate_hz = \"fast\": expected a number from 100 to 10000");
+// --- sections ---
+
+TEST(Sections, HaveNamesOfTheirOwnAndASentence) {
+  std::set<std::string> keys;
+  for (const ExperimentSection& section : experiment_sections()) {
+    EXPECT_TRUE(keys.insert(section.key).second) << section.key << " is there twice";
+    EXPECT_GT(std::string(section.summary).size(), 10u) << section.key;
+    ASSERT_FALSE(section.entries().empty()) << section.key;
+    for (const SectionEntry& entry : section.entries()) {
+      EXPECT_EQ(entry.name.empty(), section.heading == nullptr) << section.key;
+      EXPECT_TRUE(entry.name.empty() || !keys.contains(entry.name)) << entry.name << ": describe finds two";
+      EXPECT_FALSE(entry.make()->settings().empty()) << section.key << " " << entry.name;
+    }
+  }
 }
 
-TEST(Experiments, AnUnknownKeyIsRefusedWithTheNearest) {
-  const auto nearest = [](const std::string& assignment) {
-    return refusal([&] { Experiment::load("fig4.11", {assignment}); });
+std::vector<std::string> keys_of(const Json& object) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) keys.push_back(key);
+  return keys;
+}
+
+TEST(Sections, AreWrittenInTheOrderOfTheTable) {
+  std::vector<std::string> expected;
+  for (const ExperimentSection& section : experiment_sections())
+    if (section.is_top_level)
+      for (const Parameter& p : section.entries().front().make()->settings()) expected.push_back(p.name);
+    else
+      expected.push_back(section.key);
+  const std::string text = Experiment::from_json(kAll, "all").to_json();
+  EXPECT_EQ(keys_of(Json::parse(text)), expected);
+  EXPECT_EQ(Experiment::from_json(text, "again").to_json(), text);
+}
+
+TEST(Sections, AreWrittenCompletely) {
+  const Json whole = resolved(kAll);
+  for (const ExperimentSection& section : experiment_sections()) {
+    if (section.is_top_level) continue;
+    const Json& written = whole[section.key];
+    const Json& one = written.is_array() ? written.at(0) : written;
+    for (const SectionEntry& entry : section.entries()) {
+      if (!entry.name.empty() && one["name"] != entry.name) continue;
+      const auto made = entry.make();
+      EXPECT_EQ(one.size(), made->settings().size() + !entry.name.empty()) << section.key;
+      for (const Parameter& p : made->settings()) EXPECT_TRUE(one.contains(p.name)) << section.key << p.name;
+    }
+  }
+}
+
+// An optional section may be left out or null, with the same result. A required one is reported as missing in
+// both cases.
+TEST(Sections, LeftOutAndNullAreTheSame) {
+  for (const ExperimentSection& section : experiment_sections()) {
+    if (section.is_top_level) continue;
+    const auto written = [&](bool is_null) {
+      Json json = Json::parse(kAll);
+      json.erase("sequence");  // its steps name a fixture
+      if (is_null)
+        json[section.key] = nullptr;
+      else
+        json.erase(section.key);
+      if (section.key == std::string("fixtures")) json.erase("guidance");  // guidance needs a fixture
+      if (section.key == std::string("slave"))
+        for (const char* needing : {"command_link", "force_link", "frame_link", "feedback", "registration"})
+          json.erase(needing);
+      return Experiment::from_json(json).to_json();
+    };
+    SCOPED_TRACE(section.key);
+    const std::string missing = refusal([&] { written(false); });
+    EXPECT_EQ(refusal([&] { written(true); }), missing);
+    if (missing == "no InputError") {
+      EXPECT_EQ(written(true), written(false));
+    } else {
+      EXPECT_HAS(missing, std::string(section.key) + ": missing");
+    }
+  }
+}
+
+TEST(Sections, TheOverrideThatRemovesTheSlaveRemovesItsLinks) {
+  const Json all = Json::parse(Experiment::load("steer-robot", {"slave=null"}).to_json());
+  for (const char* section :
+       {"slave", "command_link", "force_link", "frame_link", "feedback", "registration"})
+    EXPECT_TRUE(!all.contains(section) || all[section].is_null()) << section;
+}
+
+// Every setting of the live loop reaches the field of its name.
+TEST(Sections, OfTheLiveLoopReachTheLoop) {
+  const Experiment set = Experiment::from_json(
+      kTask, "task",
+      {R"(live={"device_position_m": [1, 1, 1], "device_rotation_deg": [2, 2, 2], "device_scale": 3,
+                "camera_position_m": [4, 4, 4], "camera_rotation_deg": [5, 5, 5]})",
+       R"(safety={"max_force_N": 1, "max_torque_Nm": 2, "force_slew_N_per_s": 300,
+                  "torque_slew_Nm_per_s": 400, "max_speed_m_per_s": 5, "max_angular_speed_rad_per_s": 6,
+                  "engage_force_N": 7, "ramp_s": 8, "max_command_age_s": 0.9, "max_frame_age_s": 10})"});
+  const LiveSettings& live = set.live();
+  EXPECT_EQ(live.device_position_m, Vec3::Constant(1));
+  EXPECT_EQ(live.device_rotation_deg, Vec3::Constant(2));
+  EXPECT_EQ(live.device_scale, 3);
+  EXPECT_EQ(live.camera_position_m, Vec3::Constant(4));
+  EXPECT_EQ(live.camera_rotation_deg, Vec3::Constant(5));
+  const SafetyLimits& s = set.safety();
+  const double limits[] = {s.max_force_N,        s.max_torque_Nm,
+                           s.force_slew_N_per_s, s.torque_slew_Nm_per_s,
+                           s.max_speed_m_per_s,  s.max_angular_speed_rad_per_s,
+                           s.engage_force_N,     s.ramp_s,
+                           s.max_command_age_s,  s.max_frame_age_s};
+  const double expected[] = {1, 2, 300, 400, 5, 6, 7, 8, 0.9, 10};
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(limits[i], expected[i]) << i;
+  EXPECT_EQ(Experiment::from_json(kTask, "task").safety().max_force_N, SafetyLimits{}.max_force_N);
+}
+
+TEST(Sections, AreNotWrittenUnlessGiven) {
+  const Json json = Json::parse(Experiment::load("fig4.11", {"sequence=[]"}).to_json());
+  for (const char* section : {"faults", "guidance", "sequence", "operator", "device", "live", "safety"})
+    EXPECT_FALSE(json.contains(section));
+}
+
+TEST(Sections, OnlyAnExperimentWithATaskOrGuidanceIsGuided) {
+  const auto guided = [](const std::vector<std::string>& overrides) {
+    const auto renderer = Experiment::from_json(kTask, "task", overrides).build_renderer(scenes::kernels());
+    return renderer->step({}, 0).guidance.has_value();
   };
-  EXPECT_EQ(nearest("renderer.stiffnes=3"),
-            "renderer.stiffnes: unknown; did you mean renderer.stiffness_N_per_m");
-  EXPECT_HAS(nearest("renderer.stifness_N_per_m=3"), "renderer.stiffness_N_per_m");
-  EXPECT_HAS(nearest("renderer.r1=3"), "did you mean renderer.r1_m");
-  EXPECT_HAS(nearest("scenario.colums=3"), "did you mean scenario.columns");
-  EXPECT_HAS(nearest("trajectory.waypoint=3"), "did you mean trajectory.waypoints");
-  EXPECT_HAS(nearest("duration=3"), "duration: unknown; did you mean duration_s");
-  EXPECT_HAS(nearest("sede=3"), "did you mean seed");
-  // Sections are searched together with the parameters of the run.
-  EXPECT_HAS(nearest("fixturs=3"), "fixturs: unknown; did you mean fixtures");
-  EXPECT_HAS(nearest("saftey.ramp_s=3"), "did you mean safety");
-  EXPECT_HAS(nearest("renderer.nam=proxy"), "did you mean renderer.name");
-  EXPECT_HAS(nearest("run.seed=3"), "run: unknown");
-  // A key without its section is named with it.
-  EXPECT_HAS(nearest("spacing_m=0.001"), "spacing_m: unknown; did you mean scenario.spacing_m");
-  EXPECT_HAS(nearest("r1_m=0.001"), "r1_m: unknown; did you mean renderer.r1_m");
+  EXPECT_TRUE(guided({}));
+  EXPECT_TRUE(guided({"sequence=[]"}));
+  EXPECT_TRUE(guided({"fixtures=[]", "guidance=null", R"(sequence=[{"action": "wait"}])"}));
+  EXPECT_FALSE(guided({"sequence=[]", "fixtures=[]", "guidance=null"}));
 }
 
-TEST(Experiments, AnotherNameKeepsNoParameterThatOnlyTheFormerEntryHas) {
-  EXPECT_EQ(refusal([] { Experiment::load("fig4.12", {"scenario.name=flat-grid"}); }),
-            "scenario.acceleration_m_per_s2: flat-grid has no such parameter: expected --set "
-            "'scenario={\"name\": \"flat-grid\"}', which replaces the whole object");
-  EXPECT_EQ(refusal([] { Experiment::load("fig4.12", {"scenario={\"name\": \"flat-grid\"}"}); }),
-            "no InputError");
-  EXPECT_HAS(refusal([] { Experiment::load("fig4.12", {"scenario.name=moon"}); }),
-             "scenario.name = \"moon\"");
-  EXPECT_HAS(refusal([] {
-               Experiment::load("fig4.12", {"scenario.name=flat-grid", "scenario.x_m=1"});
-             }),
-             "flat-grid has no such parameter");
-}
-
-TEST(Experiments, ASweepIsRefusedByItsCommand) {
-  EXPECT_EQ(refusal([] { Experiment::from_json(R"({"experiment": "fig4.12", "axes": []})", "mine.json"); }),
-            "mine.json: is a sweep: expected `remote-touch sweep mine.json -o FILE`");
-}
-
-TEST(Experiments, RefuseTextThatIsNoExperiment) {
-  const auto why = [](const std::string& text) {
-    return refusal([&] { Experiment::from_json(text, "file.json"); });
-  };
-  for (const char* text : {"", "{", "[", "{\"seed\": NaN}", "{\"seed\": 1e999}", "nonsense", "{} {}", "\xff"})
-    EXPECT_HAS(why(text), "file.json: ") << text;
-  for (const char* text : {"[]", "3", "null", "\"text\""})
-    EXPECT_HAS(why(text), "file.json: not an object") << text;
-  EXPECT_HAS(why(std::string(100000, '[')), "file.json: nested too deep");
-  EXPECT_HAS(why("{}"), "scenario: missing");
-  EXPECT_EQ(
-      why(R"({"scenario": "flat-grid"})"),
-      "scenario = \"flat-grid\": not an object: expected {\"name\": \"flat-grid\"}, with parameters beside "
-      "the name");
-  EXPECT_HAS(why(R"({"scenario": {"columns": 3}})"), "scenario: missing");
-  EXPECT_HAS(why(R"({"scenario": {"name": "moon"}})"), "scenario.name = \"moon\": expected flat-grid, ");
-  EXPECT_HAS(why(R"({"scenario": {"name": "flat-grid"}})"), "renderer: missing");
-  EXPECT_HAS(why(R"({"scenario": {"name": "flat-grid"}, "renderer": {"name": "proxy"}})"),
-             "trajectory: missing");
-}
-
-TEST(Experiments, AreLoadedByNameOrFile) {
-  const TestFolder folder("experiment_test");
-  const std::string file = folder.write("small.json", kSmall).string();
-  EXPECT_EQ(Experiment::load(file).to_json(), Experiment::from_json(kSmall, "small").to_json());
-  EXPECT_EQ(Experiment::load(file, {"seed=9"}).settings().key.seed, 9u);
-  const std::string missing = (folder / "missing.json").string();
-  EXPECT_HAS(refusal([&] { Experiment::load(missing); }), missing + ": ");
-  EXPECT_HAS(refusal([&] { Experiment::load(folder.path().string()); }), folder.path().string() + ": ");
-  EXPECT_HAS(refusal([&] { Experiment::load(folder.write("cut.json", "{\"see").string()); }), "cut.json: ");
-}
-
-TEST(Experiments, AnErrorInAFileBeginsWithItsName) {
-  const TestFolder folder("experiment_file_test");
-  const std::string file = (folder / "mine.json").string();
-  const auto why = [&](const std::string& text, const std::vector<std::string>& overrides = {}) {
-    folder.write("mine.json", text);
-    return refusal([&] { Experiment::load(file, overrides); });
-  };
-  const std::string rest = R"("renderer": {"name": "proxy"}, "trajectory": {"name": "waypoints"}})";
-  const std::string wrong = R"({"scenario": {"name": "flat-grid", "spacing_m": 7}, )" + rest;
-  EXPECT_TRUE(why(wrong).starts_with(file + ": scenario.spacing_m = 7: expected ")) << why(wrong);
-  EXPECT_TRUE(why(wrong, {"seed=9"}).starts_with(file + ": scenario.spacing_m = 7: expected "));
-  EXPECT_EQ(why(wrong, {"scenario.spacing_m=0.002"}), "no InputError");
-  EXPECT_TRUE(why("{}").starts_with(file + ": scenario: missing"));
-  EXPECT_TRUE(why("[]").starts_with(file + ": not an object"));
-  EXPECT_TRUE(why("{").starts_with(file + ": parse error"));
-}
-
-TEST(Experiments, ARefusalOfAnOverrideDoesNotNameTheFile) {
-  const TestFolder folder("experiment_override_test");
-  const auto why = [&](const std::string& text, const std::string& assignment) {
-    const std::string file = folder.write("mine.json", text).string();
-    return refusal([&] { Experiment::load(file, {assignment}); });
-  };
-  EXPECT_TRUE(why(kSmall, "scenario.spacing_m=7").starts_with("scenario.spacing_m = 7: expected "));
-  EXPECT_TRUE(why(kSmall, "seed=-1").starts_with("seed = -1: expected "));
-  EXPECT_TRUE(why(kSmall, "seed").starts_with("--set seed: expected "));
-  EXPECT_TRUE(why(kSmall, "renderer.r1_m=0.0051").starts_with("renderer.r1_m = "));
-  // This holds even if the text of the file is wrong.
-  EXPECT_TRUE(why("{}", "scenario=3").starts_with("scenario = 3: "));
-  EXPECT_TRUE(why("{}", "=3").starts_with("--set =3: "));
-  EXPECT_TRUE(why(R"({"seed": 3})", "seed.x=1").starts_with("--set seed.x=1: "));
+// A result must state the settings that it was made with, also those that were left out.
+TEST(Sections, GuidanceThatIsLeftOutIsStoredWithItsDefaults) {
+  const Json left_out = resolved(kTask, {"guidance=null"})["guidance"];
+  EXPECT_EQ(left_out, resolved(kTask, {"guidance={}"})["guidance"]);
+  EXPECT_EQ(left_out["standoff_m"], GuidanceSettings{}.standoff_m);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // written and read.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <iterator>
@@ -119,16 +118,6 @@ TEST(Parameters, NumbersCarryTheirUnit) {
     if (is_number(p)) names = {p.name};
     if (const auto* rows = std::get_if<Rows>(&p.value)) names = rows->columns;
     for (const std::string& name : names) EXPECT_TRUE(carries_unit(name)) << name;
-  });
-}
-
-TEST(Parameters, DefaultsAreAllowedAndSurviveARoundTrip) {
-  for_each_owner([](const auto& make) {
-    const auto owner = make(), again = make();
-    const Json defaults = written(*owner);
-    EXPECT_EQ(defaults.size(), owner->settings().size());
-    ASSERT_NO_THROW(read_parameters(Json::parse(defaults.dump()), again->settings(), "part"));
-    EXPECT_EQ(written(*again), defaults);
   });
 }
 
