@@ -1,11 +1,11 @@
+// Recorded sessions: a recording is read back bit for bit, a file that is no recording is refused in one
+// line. The settings of the live loop that a recording has.
 #include "runners/experiment/sessions/session_file.h"
 
 #include <gtest/gtest.h>
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -14,112 +14,51 @@
 #include "tests/runners/experiment/sessions/small_session.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::live_settings_test {
-namespace {
-
-// The placement of device and camera, as settings.
-
-// Every parameter sets the field of its name.
-TEST(LiveSettings, ParametersReachTheSettings) {
-  LiveSettings s;
-  std::vector<std::string> names;
-  for (const Parameter& p : parameters(s)) {
-    names.push_back(p.name);
-    const auto number = static_cast<double>(names.size());
-    if (const auto* vector = std::get_if<Vec3*>(&p.value)) {
-      EXPECT_LT(p.low, 0) << p.name;
-      EXPECT_GT(p.high, 0) << p.name;
-      **vector = Vec3::Constant(number);
-    } else {
-      EXPECT_GT(p.low, 0) << p.name;
-      *std::get<double*>(p.value) = number;
-    }
-  }
-  EXPECT_EQ(names, (std::vector<std::string>{"device_position_m", "device_rotation_deg", "device_scale",
-                                             "camera_position_m", "camera_rotation_deg"}));
-  EXPECT_EQ(s.device_position_m, Vec3::Constant(1));
-  EXPECT_EQ(s.device_rotation_deg, Vec3::Constant(2));
-  EXPECT_EQ(s.device_scale, 3);
-  EXPECT_EQ(s.camera_position_m, Vec3::Constant(4));
-  EXPECT_EQ(s.camera_rotation_deg, Vec3::Constant(5));
-  EXPECT_EQ(validate(s), "");
-}
-
-// The camera is turned first, and then moved. A quarter turn about z maps x to y.
-TEST(LiveSettings, ACameraIsTurnedAndMoved) {
-  EXPECT_EQ(camera_registration({}).matrix(), Eigen::Matrix4d::Identity());
-  LiveSettings s;
-  s.camera_position_m = Vec3(1, 2, 3), s.camera_rotation_deg = Vec3(0, 0, 90);
-  EXPECT_LT((camera_registration(s) * Vec3(0.5, 0, 0) - Vec3(1, 2.5, 3)).norm(), 1e-15);
-  EXPECT_LT((camera_registration(s) * Vec3(0, 0.5, 0.25) - Vec3(0.5, 2, 3.25)).norm(), 1e-15);
-  EXPECT_EQ(camera_registration(s).translation(), Vec3(1, 2, 3));
-}
-
-TEST(LiveSettings, PositionOfTheDeviceDoesNotMoveTheCamera) {
-  LiveSettings s;
-  s.device_position_m = Vec3(1, 2, 3), s.device_rotation_deg = Vec3(0, 0, 90), s.device_scale = 2;
-  EXPECT_EQ(camera_registration(s).matrix(), Eigen::Matrix4d::Identity());
-}
-
-// The limits of a live run's safety gate, as settings.
-
-TEST(SafetyLimits, ParametersReachFieldsOfTheirOwnAndAllowTheDefaults) {
-  SafetyLimits s;
-  std::set<std::string> names;
-  for (const Parameter& p : parameters(s)) {
-    names.insert(p.name);
-    double& value = *std::get<double*>(p.value);
-    EXPECT_TRUE(p.low <= value && value <= p.high) << p.name;
-    EXPECT_FALSE(p.help.empty()) << p.name;
-    value = static_cast<double>(names.size());
-  }
-  EXPECT_EQ(names.size(), 10u);
-  const double set[] = {s.max_force_N,        s.max_torque_Nm,
-                        s.force_slew_N_per_s, s.torque_slew_Nm_per_s,
-                        s.max_speed_m_per_s,  s.max_angular_speed_rad_per_s,
-                        s.engage_force_N,     s.ramp_s,
-                        s.max_command_age_s,  s.max_frame_age_s};
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(set[i], i + 1);
-}
-
-// Any force must fall to zero within 10 ms: 5 N at 500 N/s.
-TEST(SafetyLimits, ASlewRateThatCannotReleaseIsRefused) {
-  EXPECT_EQ(validate(SafetyLimits{}), "");
-  SafetyLimits force;
-  force.force_slew_N_per_s = 500;
-  EXPECT_EQ(validate(force), "");
-  force.force_slew_N_per_s = std::nextafter(500, 0);
-  EXPECT_HAS(validate(force), "force_slew_N_per_s = 500");
-  force.force_slew_N_per_s = 499;
-  EXPECT_EQ(validate(force),
-            "force_slew_N_per_s = 499.000000: expected max_force_N / 0.01 s = 500.000000 or more, "
-            "so that the maximum can fall to 0 in that time");
-  SafetyLimits torque;
-  torque.torque_slew_Nm_per_s = 20;
-  EXPECT_EQ(validate(torque), "");
-  torque.torque_slew_Nm_per_s = 19;
-  EXPECT_HAS(validate(torque),
-             "torque_slew_Nm_per_s = 19.000000: expected max_torque_Nm / 0.01 s = 20.000000");
-}
-
-TEST(SafetyLimits, ALargerForceNeedsAFasterSlewRate) {
-  SafetyLimits s;
-  s.max_force_N = 10;
-  EXPECT_EQ(validate(s), "");
-  s.max_force_N = 10.1;
-  EXPECT_HAS(validate(s), "force_slew_N_per_s = 1000");
-  s.max_force_N = 0, s.max_torque_Nm = 0.41;
-  EXPECT_HAS(validate(s), "torque_slew_Nm_per_s = 40");
-}
-
-}  // namespace
-}  // namespace remote_touch::live_settings_test
-
-// A recording is read back bit for bit; a file that is no recording is refused in one line.
 namespace remote_touch::session_file_test {
 namespace {
 
 namespace fs = std::filesystem;
+
+// --- settings of the live loop ---
+
+// The camera is turned first, and then moved. A quarter turn about z maps x to y. The position of the device
+// does not move it.
+TEST(LiveSettings, ACameraIsTurnedAndMoved) {
+  LiveSettings s;
+  s.device_position_m = Vec3(1, 2, 3), s.device_rotation_deg = Vec3(0, 0, 90), s.device_scale = 2;
+  EXPECT_EQ(camera_registration(s).matrix(), Eigen::Matrix4d::Identity());
+  s.camera_position_m = Vec3(1, 2, 3), s.camera_rotation_deg = Vec3(0, 0, 90);
+  EXPECT_LT((camera_registration(s) * Vec3(0.5, 0, 0) - Vec3(1, 2.5, 3)).norm(), 1e-15);
+  EXPECT_LT((camera_registration(s) * Vec3(0, 0.5, 0.25) - Vec3(0.5, 2, 3.25)).norm(), 1e-15);
+}
+
+// Any force must fall to zero within 10 ms: 5 N at 500 N/s.
+TEST(SafetyLimits, ASlewRateThatCannotReleaseIsRefused) {
+  const struct {
+    void (*change)(SafetyLimits&);
+    const char* expected;  // a part of the refusal
+  } rows[] = {
+      {[](SafetyLimits& s) { s.force_slew_N_per_s = 500; }, ""},
+      {[](SafetyLimits& s) { s.force_slew_N_per_s = std::nextafter(500, 0); }, "force_slew_N_per_s = 500"},
+      {[](SafetyLimits& s) { s.force_slew_N_per_s = 499; },
+       "force_slew_N_per_s = 499.000000: expected max_force_N / 0.01 s = 500.000000 or more, so that the "
+       "maximum can fall to 0 in that time"},
+      {[](SafetyLimits& s) { s.max_force_N = 10; }, ""},
+      {[](SafetyLimits& s) { s.max_force_N = 10.1; }, "force_slew_N_per_s = 1000"},
+      {[](SafetyLimits& s) { s.torque_slew_Nm_per_s = 20; }, ""},
+      {[](SafetyLimits& s) { s.torque_slew_Nm_per_s = 19; },
+       "torque_slew_Nm_per_s = 19.000000: expected max_torque_Nm / 0.01 s = 20.000000"},
+      {[](SafetyLimits& s) { s.max_force_N = 0, s.max_torque_Nm = 0.41; }, "torque_slew_Nm_per_s = 40"}};
+  for (const auto& row : rows) {
+    SafetyLimits s;
+    row.change(s);
+    const std::string problem = validate(s);
+    EXPECT_EQ(problem.empty(), std::string(row.expected).empty()) << problem;
+    EXPECT_HAS(problem, row.expected);
+  }
+}
+
+// --- what was written ---
 
 template <class Numbers>
 bool same_bits(const Numbers& a, const Numbers& b) {
@@ -147,8 +86,6 @@ void expect_same(const SessionReader& read, const SmallSession& written) {
     EXPECT_EQ(frame.colour, written.frames[i].colour);
   }
 }
-
-// --- what was written ---
 
 // Numbers that a careless writer would change: ends of ranges, no decimal fraction, the sign of zero.
 TEST(SessionFile, GivesBackTheTicksToTheBit) {
@@ -185,9 +122,9 @@ TEST(SessionFile, GivesBackChangesOfParameters) {
 // Ticks are written to the disk a thousand at a time, and the last ones at the end.
 TEST(SessionFile, GivesBackThousandsOfTicks) {
   const TestFolder folder("session_file");
-  for (const int count : {999, 1000, 1001, 2000, 4500}) {
+  for (const int count : {0, 999, 1000, 1001, 2000, 4500}) {
     SmallSession session;
-    session.add_frame(0, 0);
+    if (count > 0) session.add_frame(0, 0);
     for (int i = 0; i < count; ++i) session.add_tick(i + i / 7, i == 10 ? 0 : -1);
     expect_same(SessionReader(session.write(folder / "session.h5")), session);
   }
@@ -235,27 +172,6 @@ TEST(SessionFile, GivesBackTheViewToTheBit) {
   }
 }
 
-TEST(SessionFile, ASessionMayHaveNoTicksAndNoFrames) {
-  const TestFolder folder("session_file");
-  const SessionReader read(SmallSession{}.write(folder / "session.h5"));
-  EXPECT_EQ(read.tick_count(), 0u);
-  EXPECT_EQ(read.frame_count(), 0u);
-}
-
-TEST(SessionFile, AnUnfinishedSessionLeavesNoFile) {
-  const TestFolder folder("session_file");
-  SmallSession session;
-  session.add_frame(0, 0);
-  for (int i = 0; i < 1500; ++i) session.add_tick(i);
-  {
-    SessionWriter writer(folder / "session.h5", session.view, session.registered,
-                         {{"config", session.config}});
-    session.fill(writer);
-    EXPECT_FALSE(fs::exists(folder / "session.h5")) << "before it is whole";
-  }
-  EXPECT_TRUE(files_in(folder.path()).empty());
-}
-
 // --- what is refused ---
 
 std::string why_not(const fs::path& file) {
@@ -263,22 +179,6 @@ std::string why_not(const fs::path& file) {
     const SessionReader read(file);
     for (std::size_t i = 0; i < read.frame_count(); ++i) read.frame(i);
   });
-}
-
-TEST(SessionFile, ACutOrChangedFileIsRefused) {
-  const TestFolder folder("session_file");
-  SmallSession session;
-  session.add_frame(0, 0);
-  for (int i = 0; i < 100; ++i) session.add_tick(i);
-  const std::string good = bytes_of(session.write(folder / "session.h5"));
-  for (std::size_t i = 0; i < 12; ++i) {
-    const fs::path cut = folder.write("cut.h5", good.substr(0, i * good.size() / 12));
-    EXPECT_EQ(why_not(cut).find(cut.string() + ": "), 0u) << why_not(cut);
-    std::string bytes = good;
-    bytes[i * (good.size() - 1) / 11] ^= 1;
-    const fs::path changed = folder.write("changed.h5", bytes);
-    EXPECT_EQ(why_not(changed).find(changed.string() + ": "), 0u) << why_not(changed);
-  }
 }
 
 TEST(SessionFile, AFileOfAnotherKindIsRefused) {
@@ -352,10 +252,72 @@ struct Damage {
   const char* says;
 };
 
-void expect_refused(const std::vector<Damage>& damages) {
+constexpr const char *kLengths = "its columns differ in length", *kTicks = "its ticks are out of order",
+                     *kFrames = "its frames are out of order",
+                     *kChanges = "its changes of parameters are not possible",
+                     *kSize = "/frames/depth is of another size",
+                     *kPixels = "/frames/depth has values that no pixel has",
+                     *kAttributes = "its attributes view and config cannot be read";
+
+const Damage kDamages[] = {
+    {[](RawSession& s) { s.position.resize(6); }, kLengths},
+    {[](RawSession& s) { s.orientation.resize(16); }, kLengths},
+    {[](RawSession& s) { s.buttons.pop_back(); }, kLengths},
+    {[](RawSession& s) { s.taken.pop_back(); }, kLengths},
+    {[](RawSession& s) { s.frame_number.push_back(7); }, kLengths},
+    {[](RawSession& s) { s.fixtures_off.clear(); }, kLengths},
+    {[](RawSession& s) { s.left_out = "/ticks/position"; }, "/ticks/position is missing"},
+    {[](RawSession& s) { s.left_out = "/frames/number"; }, "/frames/number is missing"},
+    {[](RawSession& s) { s.changed.pop_back(); }, kLengths},
+    {[](RawSession& s) { s.value.push_back(1); }, kLengths},
+    {[](RawSession& s) { s.left_out = "/changes/value"; }, "/changes/value is missing"},
+    {[](RawSession& s) { s.changed_at[0] = 5; }, kChanges},
+    {[](RawSession& s) { s.changed_at[1] = std::uint64_t{1} << 31; }, kChanges},
+    {[](RawSession& s) { s.changed[0] = 2; }, kChanges},
+    {[](RawSession& s) { s.changed[1] = -1; }, kChanges},
+    {[](RawSession& s) { s.live_parameters = "[]"; }, kChanges},
+    {[](RawSession& s) { s.live_parameters = "[3, 4]"; }, "its attribute live_parameters cannot be read"},
+    {[](RawSession& s) { s.value[1] = std::numeric_limits<double>::infinity(); }, kChanges},
+    {[](RawSession& s) { s.number[1] = 3; }, kTicks},
+    {[](RawSession& s) { s.number[2] = std::uint64_t{1} << 31; }, kTicks},
+    {[](RawSession& s) { s.taken[2] = 2; }, kTicks},
+    {[](RawSession& s) { s.taken[1] = 0; }, kTicks},
+    {[](RawSession& s) { s.frame_number[0] = 6; }, kFrames},
+    {[](RawSession& s) { s.captured[0] = 0.1; }, kFrames},
+    {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::quiet_NaN(); }, kFrames},
+    {[](RawSession& s) { s.buttons[2] = -1; }, "/ticks/buttons has values that are not button states"},
+    {[](RawSession& s) { s.buttons[2] = 1e10; }, "/ticks/buttons has values that are not button states"},
+    {[](RawSession& s) { s.width = 2, s.depth.resize(8), s.colour.resize(8); }, kSize},
+    {[](RawSession& s) { s.height = 3, s.depth.resize(18), s.colour.resize(18); }, kSize},
+    {[](RawSession& s) { s.depth[7] = 65536; }, kPixels},
+    {[](RawSession& s) { s.depth[7] = -1; }, kPixels},
+    {[](RawSession& s) { s.colour[7] = 1e10; }, "/frames/colour has values that no pixel has"},
+    {[](RawSession& s) { s.left_out = "/frames/depth"; }, "/frames/depth is missing"},
+    {[](RawSession& s) { s.left_out = "/frames/colour"; }, "/frames/colour is missing"},
+    {[](RawSession& s) { s.view = ""; }, kAttributes},
+    {[](RawSession& s) { s.view = "[1]"; }, kAttributes},
+    {[](RawSession& s) { s.view_with("true", "1"); }, kAttributes},
+    {[](RawSession& s) { s.view_with(", 0]", "]"); }, kAttributes},
+    {[](RawSession& s) { s.config = ""; }, kAttributes},
+    {[](RawSession& s) { s.config = "{}"; }, kAttributes},
+    {[](RawSession& s) { s.config = R"({"haptic_rate_hz": 0})"; }, "haptic_rate_hz = 0"},
+    // Their product is as many pixels as the images have.
+    {[](RawSession& s) { s.view_with("3, \"height\": 2", "-3, \"height\": -2"); }, "width = -3"},
+    {[](RawSession& s) { s.view_with("\"width\": 3", "\"width\": 1e99"); }, "width = 1e+99"},
+    {[](RawSession& s) { s.view_with("\"fx\": 100", "\"fx\": 0"); }, "fx = 0"},
+    {[](RawSession& s) { s.view_with("\"fy\": 100", "\"fy\": -100"); }, "fy = -100"},
+    {[](RawSession& s) { s.view_with("\"metres_per_unit\": 0.001", "\"metres_per_unit\": 0"); },
+     "metres_per_unit = 0"},
+    {[](RawSession& s) { s.view_with("\"frame_rate_hz\": 30", "\"frame_rate_hz\": -30"); },
+     "frame_rate_hz = -30"},
+    {[](RawSession& s) { s.view_with("[1, 0", "[2, 0"); }, "X_WC is not a pose"},
+    {[](RawSession& s) { s.view_with("[1, 0", "[-1, 0"); }, "X_WC is not a pose"},
+};
+
+TEST(SessionFile, RefusesWhatNoLoopRecords) {
   const TestFolder folder("session_file");
   ASSERT_EQ(why_not(RawSession{}.write(folder / "good.h5")), "no InputError");
-  for (const Damage& damage : damages) {
+  for (const Damage& damage : kDamages) {
     RawSession session;
     damage.make(session);
     const fs::path file = session.write(folder / "damaged.h5");
@@ -372,102 +334,11 @@ TEST(SessionFile, OneWithoutAListOfChangesIsRead) {
   EXPECT_TRUE(SessionReader(session.write(folder / "old.h5")).changes().empty());
 }
 
-TEST(SessionFile, ColumnsThatDoNotFitAreRefused) {
-  const char* lengths = "its columns differ in length";
-  expect_refused({
-      {[](RawSession& s) { s.position.resize(6); }, lengths},
-      {[](RawSession& s) { s.orientation.resize(16); }, lengths},
-      {[](RawSession& s) { s.buttons.pop_back(); }, lengths},
-      {[](RawSession& s) { s.taken.pop_back(); }, lengths},
-      {[](RawSession& s) { s.frame_number.push_back(7); }, lengths},
-      {[](RawSession& s) { s.fixtures_off.clear(); }, lengths},
-      {[](RawSession& s) { s.left_out = "/ticks/position"; }, "/ticks/position is missing"},
-      {[](RawSession& s) { s.left_out = "/frames/number"; }, "/frames/number is missing"},
-      {[](RawSession& s) { s.changed.pop_back(); }, lengths},
-      {[](RawSession& s) { s.value.push_back(1); }, lengths},
-      {[](RawSession& s) { s.left_out = "/changes/value"; }, "/changes/value is missing"},
-  });
-}
-
-TEST(SessionFile, RefusesWhatNoLoopRecords) {
-  const char *ticks = "its ticks are out of order", *frames = "its frames are out of order",
-             *changes = "its changes of parameters are not possible";
-  expect_refused({
-      {[](RawSession& s) { s.changed_at[0] = 5; }, changes},
-      {[](RawSession& s) { s.changed_at[1] = std::uint64_t{1} << 31; }, changes},
-      {[](RawSession& s) { s.changed[0] = 2; }, changes},
-      {[](RawSession& s) { s.changed[1] = -1; }, changes},
-      {[](RawSession& s) { s.live_parameters = "[]"; }, changes},
-      {[](RawSession& s) { s.live_parameters = ""; }, "its attribute live_parameters cannot be read"},
-      {[](RawSession& s) { s.live_parameters = "[3, 4]"; }, "its attribute live_parameters cannot be read"},
-      {[](RawSession& s) { s.value[1] = std::numeric_limits<double>::infinity(); }, changes},
-      {[](RawSession& s) { s.number[1] = 3; }, ticks},
-      {[](RawSession& s) { s.number[1] = 2; }, ticks},
-      {[](RawSession& s) { s.number[2] = std::uint64_t{1} << 31; }, ticks},
-      {[](RawSession& s) { s.number[2] = ~std::uint64_t{0}; }, ticks},
-      {[](RawSession& s) { s.taken[1] = -2; }, ticks},
-      {[](RawSession& s) { s.taken[2] = 2; }, ticks},
-      {[](RawSession& s) { s.taken[1] = 0; }, ticks},
-      {[](RawSession& s) { s.taken[0] = 1, s.taken[2] = 0; }, ticks},
-      {[](RawSession& s) { s.frame_number[0] = 6; }, frames},
-      {[](RawSession& s) { s.frame_number[0] = 7; }, frames},
-      {[](RawSession& s) { s.captured[0] = 0.1; }, frames},
-      {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::quiet_NaN(); }, frames},
-      {[](RawSession& s) { s.captured[1] = std::numeric_limits<double>::infinity(); }, frames},
-      {[](RawSession& s) { s.buttons[2] = -1; }, "/ticks/buttons has values that are not button states"},
-      {[](RawSession& s) { s.buttons[2] = 1e10; }, "/ticks/buttons has values that are not button states"},
-  });
-}
-
-TEST(SessionFile, ImagesThatAreNotThoseOfTheViewAreRefused) {
-  const char *size = "/frames/depth is of another size",
-             *pixels = "/frames/depth has values that no pixel has";
-  expect_refused({
-      {[](RawSession& s) { s.width = 2, s.depth.resize(8), s.colour.resize(8); }, size},
-      {[](RawSession& s) { s.height = 3, s.depth.resize(18), s.colour.resize(18); }, size},
-      {[](RawSession& s) { s.view_with("\"width\": 3", "\"width\": 30"); }, size},
-      {[](RawSession& s) { s.depth[7] = 65536; }, pixels},
-      {[](RawSession& s) { s.depth[7] = -1; }, pixels},
-      {[](RawSession& s) { s.colour[7] = 1e10; }, "/frames/colour has values that no pixel has"},
-      {[](RawSession& s) { s.left_out = "/frames/depth"; }, "/frames/depth is missing"},
-      {[](RawSession& s) { s.left_out = "/frames/colour"; }, "/frames/colour is missing"},
-  });
-}
-
 TEST(SessionFile, FewerImagesThanFramesAreRefused) {
   const TestFolder folder("session_file");
   RawSession session;
   session.depth.resize(6);
   EXPECT_HAS(why_not(session.write(folder / "damaged.h5")), "damaged.h5: damaged (");
-}
-
-TEST(SessionFile, AViewThatNoCameraHasIsRefused) {
-  const char* attributes = "its attributes view and config cannot be read";
-  expect_refused({
-      {[](RawSession& s) { s.view = ""; }, attributes},
-      {[](RawSession& s) { s.view = "{"; }, attributes},
-      {[](RawSession& s) { s.view = "[1]"; }, attributes},
-      {[](RawSession& s) { s.view_with("\"fx\": 100", "\"fx\": null"); }, attributes},
-      {[](RawSession& s) { s.view_with("true", "1"); }, attributes},
-      {[](RawSession& s) { s.view_with(", 0]", "]"); }, attributes},
-      {[](RawSession& s) { s.config = "5"; }, attributes},
-      {[](RawSession& s) { s.config = ""; }, attributes},
-      {[](RawSession& s) { s.config = "{}"; }, attributes},
-      {[](RawSession& s) { s.config = R"({"haptic_rate_hz": 0})"; }, "haptic_rate_hz = 0"},
-      {[](RawSession& s) { s.config = R"({"haptic_rate_hz": -1})"; }, "haptic_rate_hz = -1"},
-      // Their product is as many pixels as the images have.
-      {[](RawSession& s) { s.view_with("3, \"height\": 2", "-3, \"height\": -2"); }, "width = -3"},
-      {[](RawSession& s) { s.view_with("\"width\": 3", "\"width\": 1e99"); }, "width = 1e+99"},
-      {[](RawSession& s) { s.view_with("\"height\": 2", "\"height\": 0"); }, "height = 0"},
-      {[](RawSession& s) { s.view_with("\"fx\": 100", "\"fx\": 0"); }, "fx = 0"},
-      {[](RawSession& s) { s.view_with("\"fy\": 100", "\"fy\": -100"); }, "fy = -100"},
-      {[](RawSession& s) { s.view_with("\"metres_per_unit\": 0.001", "\"metres_per_unit\": 0"); },
-       "metres_per_unit = 0"},
-      {[](RawSession& s) { s.view_with("\"frame_rate_hz\": 30", "\"frame_rate_hz\": -30"); },
-       "frame_rate_hz = -30"},
-      {[](RawSession& s) { s.view_with("[1, 0", "[2, 0"); }, "X_WC is not a pose"},
-      {[](RawSession& s) { s.view_with("[1, 0", "[-1, 0"); }, "X_WC is not a pose"},
-  });
 }
 
 }  // namespace

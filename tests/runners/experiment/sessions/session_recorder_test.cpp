@@ -1,3 +1,5 @@
+// Recordings that do not come to their end: they can be read up to their last whole block, and are then, row
+// by row, the beginning of the whole recording.
 #include "runners/experiment/sessions/session_file.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +16,10 @@
 #include <limits>
 #include <new>
 #include <random>
+#include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "analysis/storage/hdf5_file.h"
 #include "tests/runners/experiment/sessions/small_session.h"
@@ -23,12 +28,15 @@
 namespace remote_touch::session_recorder_test {
 namespace {
 
-// A recording that does not come to its end can be read up to its last whole block, and is then, row by row,
-// the beginning of the whole recording.
-
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kParameters{"renderer.r1_m", "scenario.noise_per_m"};
+
+SessionTick tick(std::int64_t number, int taken = -1) {
+  SessionTick made;
+  made.number = number, made.taken = taken;
+  return made;
+}
 
 // A session with ticks that are all different, a frame for every 33 of them, taken 5 ticks after it came, and
 // a change of a parameter now and then.
@@ -43,15 +51,14 @@ struct Recorded {
     const auto number = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
     for (int i = 0; i < ticks; ++i) {
       if (i % kTicksOfAFrame == 0) add_frame(i / kTicksOfAFrame, random);
-      SessionTick tick;
-      tick.number = i + i / 50, tick.taken = i % kTicksOfAFrame == 5 ? i / kTicksOfAFrame : -1;
-      tick.device = {{number(), number(), number()},
+      SessionTick made = tick(i + i / 50, i % kTicksOfAFrame == 5 ? i / kTicksOfAFrame : -1);
+      made.device = {{number(), number(), number()},
                      {number(), number(), number(), number()},
                      static_cast<std::uint32_t>(random())};
-      tick.written = {{number(), number(), number()}, {number(), number(), number()}};
-      tick.gate = i % 4;
-      session.ticks.push_back(tick);
-      if (i % 70 == 69) changes.push_back({static_cast<std::uint64_t>(tick.number), i % 2, number()});
+      made.written = {{number(), number(), number()}, {number(), number(), number()}};
+      made.gate = i % 4;
+      session.ticks.push_back(made);
+      if (i % 70 == 69) changes.push_back({static_cast<std::uint64_t>(made.number), i % 2, number()});
     }
   }
 
@@ -159,6 +166,9 @@ class SessionRecorderOf : public testing::TestWithParam<bool> {
 
 TEST_P(SessionRecorderOf, MakesTheFileThatTheWriterMakes) {
   const TestFolder folder("session_recorder");
+  const Recorded none(0, view());
+  none.recorder(folder / "x.h5");
+  EXPECT_TRUE(files_in(folder.path()).empty()) << "nothing was recorded";
   for (const int ticks : {0, 1, 99, 100, 101, 1234}) {
     const Recorded recorded(ticks, view());
     const Hdf5Content whole = recorded.whole(folder);
@@ -290,11 +300,7 @@ TEST(SessionRecorder, ATickIsNotWholeBeforeTheFrameThatItTook) {
   SmallSession session;
   session.add_frame(0, 0);
   SessionRecorder recorder(folder / "x.h5", session.view, session.registered, {{"config", session.config}});
-  for (int i = 0; i < 150; ++i) {
-    SessionTick tick;
-    tick.number = i, tick.taken = i == 120 ? 0 : -1;
-    recorder.append(tick);
-  }
+  for (int i = 0; i < 150; ++i) recorder.append(tick(i, i == 120 ? 0 : -1));
   EXPECT_EQ(read_unfinished(folder / "x.h5.unfinished").ticks, 100u);
   recorder.keep();
   EXPECT_EQ(read_unfinished(folder / "x.h5.unfinished").ticks, 120u)
@@ -310,10 +316,7 @@ TEST(SessionRecorder, DoesNotFinishWithoutAllTicksAndChanges) {
   session.add_frame(0, 0);
   SessionRecorder recorder(folder / "x.h5", session.view, session.registered, {{"config", session.config}},
                            kParameters);
-  SessionTick tick;
-  recorder.append(tick);
-  tick.number = 1, tick.taken = 0;
-  recorder.append(tick);
+  recorder.append(tick(0)), recorder.append(tick(1, 0));
   EXPECT_HAS(refusal([&] { recorder.finish({}); }),
              "x.h5: lacks 1 ticks and 0 changes: expected every frame");
   EXPECT_FALSE(fs::exists(folder / "x.h5"));
@@ -321,17 +324,9 @@ TEST(SessionRecorder, DoesNotFinishWithoutAllTicksAndChanges) {
   recorder.append(session.frames[0], 0, 0);
   recorder.append(SessionChange{2, 0, 0.5});
   EXPECT_HAS(refusal([&] { recorder.finish({}); }), "x.h5: lacks 0 ticks and 1 changes");
-  tick.number = 2, tick.taken = -1;
-  recorder.append(tick);
+  recorder.append(tick(2));
   recorder.finish({});
   EXPECT_EQ(SessionReader(folder / "x.h5").tick_count(), 3u);
-}
-
-TEST(SessionRecorder, LeavesNothingWhereNothingWasRecorded) {
-  const TestFolder folder("session_recorder");
-  const Recorded recorded(0, images());
-  { SessionRecorder recorder = recorded.recorder(folder / "x.h5"); }
-  EXPECT_TRUE(files_in(folder.path()).empty());
 }
 
 // The recording ended, but its file could not be written. The whole is recovered, with the attributes of its
@@ -373,12 +368,6 @@ JournalBlock block(SessionBlock kind, std::string content) {
   return {static_cast<std::uint32_t>(kind), std::move(content)};
 }
 
-SessionTick tick(std::int64_t number, int taken = -1) {
-  SessionTick made;
-  made.number = number, made.taken = taken;
-  return made;
-}
-
 class UnfinishedSessionFile : public testing::Test {
  protected:
   const TestFolder folder_{"unfinished_session"};
@@ -417,99 +406,91 @@ class UnfinishedSessionFile : public testing::Test {
   }
 };
 
+// SessionReader refuses some of the changes, so that a recording with them could not be read.
 TEST_F(UnfinishedSessionFile, LeavesOutBlocksThatNoRecordingHas) {
-  expect_left_out(start());
-  expect_left_out(frame(0));
-  expect_left_out({77, "of another kind"});
-  expect_left_out(ticks({tick(3)}));
-  expect_left_out(ticks({tick(-1)}));
-  expect_left_out(ticks({tick(std::int64_t{1} << 31)}));
-  expect_left_out(ticks({tick(4, 0)}));
-  expect_left_out(ticks({tick(4, 1)}));
-  expect_left_out(ticks({tick(4, -2)}));
-  expect_left_out(ticks({tick(5), tick(4)}));
-  expect_left_out(block(SessionBlock::ticks, ""));
-  expect_left_out(block(SessionBlock::ticks, std::string(16, '\xff')));
-  expect_left_out(block(SessionBlock::ticks, ticks({tick(4)}).content + "x"));
-  expect_left_out(block(SessionBlock::frame, ""));
-  expect_left_out(block(SessionBlock::frame, frame(1).content + "x"));
-  expect_left_out(block(SessionBlock::end, "x"));
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<JournalBlock> blocks = {start(),
+                                      frame(0),
+                                      {77, "of another kind"},
+                                      ticks({tick(3)}),
+                                      ticks({tick(-1)}),
+                                      ticks({tick(std::int64_t{1} << 31)}),
+                                      ticks({tick(4, 0)}),
+                                      ticks({tick(4, 1)}),
+                                      ticks({tick(4, -2)}),
+                                      ticks({tick(5), tick(4)}),
+                                      changes({{5, 0, 0.1}, {4, 0, 0.1}}),
+                                      changes({{std::uint64_t{1} << 31, 0, 0.1}}),
+                                      changes({{4, 1, 0.1}}),
+                                      changes({{4, -1, 0.1}}),
+                                      changes({{4, 0, kInfinity}}),
+                                      block(SessionBlock::ticks, ""),
+                                      block(SessionBlock::ticks, std::string(16, '\xff')),
+                                      block(SessionBlock::ticks, ticks({tick(4)}).content + "x"),
+                                      block(SessionBlock::frame, ""),
+                                      block(SessionBlock::frame, frame(1).content + "x"),
+                                      block(SessionBlock::end, "x")};
   StoredFrame stored;
   stored.number = 1;
-  expect_left_out(block(SessionBlock::frame, packed_frame(stored)));
+  blocks.push_back(block(SessionBlock::frame, packed_frame(stored)));
   for (const std::size_t pixels : {0u, 5u, 7u, 1000000u}) {
-    const std::vector<std::uint16_t> depth(pixels);
-    stored.depth = deflated_row(depth.data(), pixels, 2);
-    expect_left_out(block(SessionBlock::frame, packed_frame(stored)));
+    stored.depth = deflated_row(std::vector<std::uint16_t>(pixels).data(), pixels, 2);
+    blocks.push_back(block(SessionBlock::frame, packed_frame(stored)));
   }
   stored.depth = "no image";
-  expect_left_out(block(SessionBlock::frame, packed_frame(stored)));
+  blocks.push_back(block(SessionBlock::frame, packed_frame(stored)));
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    SCOPED_TRACE(i);
+    expect_left_out(blocks[i]);
+  }
 }
 
-// SessionReader refuses such changes, so that a recording with them could not be read.
-TEST_F(UnfinishedSessionFile, LeavesOutChangesThatNoRecordingHas) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  expect_left_out(changes({{5, 0, 0.1}, {4, 0, 0.1}}));
-  expect_left_out(changes({{std::uint64_t{1} << 31, 0, 0.1}}));
-  expect_left_out(changes({{4, 1, 0.1}}));
-  expect_left_out(changes({{4, -1, 0.1}}));
-  expect_left_out(changes({{4, 0, kInfinity}}));
-}
-
-TEST_F(UnfinishedSessionFile, KeepsTheTickInWhichTheDeviceFailed) {
-  SessionTick failed = tick(4);
+TEST_F(UnfinishedSessionFile, KeepsPossibleChangesAndTheTickInWhichTheDeviceFailed) {
+  SessionTick failed = tick(5);
   failed.device.position_W.setConstant(std::nan(""));
-  const std::vector<JournalBlock> all{start(), ticks({failed})};
-  recover_session(folder_.write("x", block_bytes(folder_, all)), folder_ / "r.h5");
-  ASSERT_EQ(SessionReader(folder_ / "r.h5").tick_count(), 1u);
-  EXPECT_TRUE(std::isnan(SessionReader(folder_ / "r.h5").device(0).position_W.x()));
-}
-
-TEST_F(UnfinishedSessionFile, KeepsPossibleChanges) {
-  const std::vector<JournalBlock> all{start(), changes({{4, 0, 0.1}, {4, 0, 0.2}})};
+  const std::vector<JournalBlock> all{start(), changes({{4, 0, 0.1}, {4, 0, 0.2}}), ticks({failed})};
   const UnfinishedSession found =
       recover_session(folder_.write("x", block_bytes(folder_, all)), folder_ / "r.h5");
   EXPECT_EQ(found.changes, 2u);
-  EXPECT_EQ(SessionReader(folder_ / "r.h5").changes().size(), 2u);
+  const SessionReader read(folder_ / "r.h5");
+  EXPECT_EQ(read.changes().size(), 2u);
+  ASSERT_EQ(read.tick_count(), 2u);
+  EXPECT_TRUE(std::isnan(read.device(1).position_W.x()));
 }
 
 TEST_F(UnfinishedSessionFile, RefusesWhatIsNoSession) {
-  const auto why = [&](const std::vector<JournalBlock>& blocks) {
-    const fs::path file = folder_.write("x", block_bytes(folder_, blocks));
-    return refusal([&] { recover_session(file, folder_ / "r.h5"); });
-  };
-  EXPECT_HAS(why({start()}), "x: holds no whole tick and no whole frame");
-  EXPECT_HAS(why({frame(0), start()}), "x: damaged (its first block is not whole)");
-  EXPECT_HAS(why({block(SessionBlock::start, "")}), "its first block is not whole");
-  EXPECT_HAS(why({block(SessionBlock::start, start().content + "x")}), "its first block is not whole");
-  SessionLayout layout = layout_;
-  layout.width = 0;
-  EXPECT_HAS(why({block(SessionBlock::start, packed_start(layout, {}))}), "its first block is not whole");
-  layout.width = 70000;
-  EXPECT_HAS(why({block(SessionBlock::start, packed_start(layout, {}))}), "its first block is not whole");
-  EXPECT_HAS(why({block(SessionBlock::start, packed_start(layout_, {{"schema", "remote-touch-session/9"}}))}),
-             "is of schema remote-touch-session/9: expected remote-touch-session/3");
-  EXPECT_FALSE(fs::exists(folder_ / "r.h5"));
-  const std::string opening(kJournalOpening);
-  const auto refused = [&](const std::string& bytes) {
-    return refusal([&] { recover_session(folder_.write("x", bytes), folder_ / "r.h5"); });
-  };
-  EXPECT_HAS(refused(""), "x: is not an unfinished recording");
-  EXPECT_HAS(refused(opening), "its first block is not whole");
-  EXPECT_HAS(refused(opening + std::string(1000, '\x5a')), "its first block is not whole");
+  SessionLayout narrow = layout_, wide = layout_;
+  narrow.width = 0, wide.width = 70000;
+  const std::string opening(kJournalOpening), no_start = "x: damaged (its first block is not whole)";
+  const auto of = [&](const std::vector<JournalBlock>& blocks) { return block_bytes(folder_, blocks); };
+  const std::pair<std::string, std::string> rows[] = {
+      {of({start()}), "x: holds no whole tick and no whole frame"},
+      {of({frame(0), start()}), no_start},
+      {of({block(SessionBlock::start, "")}), no_start},
+      {of({block(SessionBlock::start, start().content + "x")}), no_start},
+      {of({block(SessionBlock::start, packed_start(narrow, {}))}), no_start},
+      {of({block(SessionBlock::start, packed_start(wide, {}))}), no_start},
+      {of({block(SessionBlock::start, packed_start(layout_, {{"schema", "remote-touch-session/9"}}))}),
+       "is of schema remote-touch-session/9: expected remote-touch-session/3"},
+      {"", "x: is not an unfinished recording"},
+      {opening, no_start},
+      {opening + std::string(1000, '\x5a'), no_start}};
+  for (const auto& row : rows) {
+    const fs::path file = folder_.write("x", row.first);
+    EXPECT_HAS(refusal([&] { recover_session(file, folder_ / "r.h5"); }), row.second);
+    EXPECT_FALSE(fs::exists(folder_ / "r.h5")) << row.second;
+  }
 }
 
-TEST_F(UnfinishedSessionFile, IsNotRecoveredWhileItIsRecorded) {
-  SessionRecorder recorder(folder_ / "x.h5", session_.view, session_.registered,
-                           {{"config", session_.config}});
-  for (int i = 0; i < 100; ++i) recorder.append(tick(i));
-  EXPECT_TRUE(read_unfinished(folder_ / "x.h5.unfinished").is_growing);
-  EXPECT_HAS(refusal([&] { recover_session(folder_ / "x.h5.unfinished", folder_ / "r.h5"); }),
-             "x.h5.unfinished: is being recorded");
-}
-
-TEST_F(UnfinishedSessionFile, IsNamedByTheReaderOfSessions) {
-  { SessionRecorder(folder_ / "x.h5", session_.view, session_.registered, {}).append(tick(0)); }
+TEST_F(UnfinishedSessionFile, IsNeitherRecoveredWhileItIsRecordedNorReadAsASession) {
+  {
+    SessionRecorder recorder(folder_ / "x.h5", session_.view, session_.registered,
+                             {{"config", session_.config}});
+    for (int i = 0; i < 100; ++i) recorder.append(tick(i));
+    EXPECT_TRUE(read_unfinished(folder_ / "x.h5.unfinished").is_growing);
+    EXPECT_HAS(refusal([&] { recover_session(folder_ / "x.h5.unfinished", folder_ / "r.h5"); }),
+               "x.h5.unfinished: is being recorded");
+  }
   EXPECT_HAS(refusal([&] { SessionReader(folder_ / "x.h5.unfinished"); }), "is an unfinished recording");
   EXPECT_HAS(refusal([&] { SessionReader(folder_ / "x.h5"); }), "its unfinished recording is there");
 }

@@ -1,4 +1,4 @@
-// A recorded session as a scenario, as a trajectory, and as an experiment.
+// A recorded session as a scenario, as a trajectory, and as an experiment; the points of its frames.
 #include <gtest/gtest.h>
 #include <bit>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/sessions/session_scene.h"
 #include "tests/runners/experiment/sessions/small_session.h"
+#include "tests/support/note_kinds.h"
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
@@ -71,63 +72,46 @@ TEST_F(SessionSceneTest, FramesAreThoseOfTheFile) {
   EXPECT_TRUE(std::isnan(scene.signed_distance(Vec3::Zero(), 0))) << "there is no truth";
 }
 
-// Frames of 3 x 2 pixels: 500 units of 0.5 mm and more. The renderer received the first and the last.
+// Frames of 3 x 2 pixels: 500 units of 0.5 mm and more. The renderer received the first and the last; the
+// frame that was overtaken belongs to no run.
 TEST_F(SessionSceneTest, ReportsTheFramesThatWereRead) {
-  const SessionScene scene = this->scene();
-  scene.cloud(0), scene.points(0);
-  EXPECT_EQ(scene.input(), file_.string() +
+  const std::string unused = file_.string() + ": 1 of 2 frames were not used: ";
+  const SessionScene first = scene(), last({file_.string()}, {}, scenes::kernels());
+  first.cloud(0), first.points(0), last.points(2);
+  EXPECT_EQ(first.input(), file_.string() +
                                ": 3 frame(s) of a live session, 3 x 2 pixels; 1 read: "
                                "100 % of 6 points measured, depth 0.25 to 0.253 m, without colours");
-  ASSERT_EQ(scene.input_notes().size(), 1u);
-  EXPECT_EQ(scene.input_notes()[0].kind, "frames unused");
-  EXPECT_EQ(scene.input_notes()[0].text,
-            file_.string() + ": 1 of 2 frames were not used: the run ended before them");
-  scene.points(2);
-  EXPECT_TRUE(scene.input_notes().empty()) << "the frame that was overtaken belongs to no run";
-  EXPECT_HAS(scene.input(), "2 read: 100 % of 12 points measured, depth 0.25 to 0.35");
+  ASSERT_EQ(kinds_of(first.input_notes()), Kinds{"frames unused"});
+  EXPECT_EQ(first.input_notes()[0].text, unused + "the run ended before them");
+  ASSERT_EQ(kinds_of(last.input_notes()), Kinds{"frames unused"});
+  EXPECT_EQ(last.input_notes()[0].text, unused + "newer frames replaced them, or they were lost");
+  first.points(2);
+  EXPECT_TRUE(first.input_notes().empty());
+  EXPECT_HAS(first.input(), "2 read: 100 % of 12 points measured, depth 0.25 to 0.35");
 }
 
-TEST_F(SessionSceneTest, AReplacedFrameIsNotReportedAsBeyondTheEnd) {
-  const SessionScene scene = this->scene();
-  scene.points(2);
-  ASSERT_EQ(scene.input_notes().size(), 1u);
-  EXPECT_EQ(scene.input_notes()[0].text,
-            file_.string() + ": 1 of 2 frames were not used: newer frames replaced them, or they were lost");
-}
-
-TEST_F(SessionSceneTest, IsRefusedIfThereAreNoFrames) {
-  session_.frames.clear(), session_.ticks.clear();
+TEST_F(SessionSceneTest, IsRefusedIfThereAreNoFramesOrTicks) {
+  session_.ticks.clear();
+  EXPECT_EQ(refusal([this] { hand(); }), file_.string() + ": has no ticks: expected a session with some");
+  session_.frames.clear();
   EXPECT_EQ(refusal([this] { scene(); }), file_.string() + ": has no frames: expected a session with some");
-  session_.write(file_);
   EXPECT_HAS(refusal([this] { SessionScene({(folder_ / "none.h5").string()}, {}, scenes::kernels()); }),
              "none.h5: no such recording");
+  EXPECT_HAS(validate(SessionSettings{}), "path = \"\": expected a file of remote-touch live --record");
+  EXPECT_EQ(input_files(SessionSettings{"session.h5"}), InputPart{"session.h5"});
 }
 
 // --- the hand ---
 
+// The hand is that of the tick, or of the one before; of the first one before the session, and of the last
+// one after it. Ticks that are not there were missed.
 TEST_F(SessionSceneTest, TheHandIsThatOfTheTickOrTheOneBefore) {
   const SessionHand hand = this->hand();
-  const auto tick_at = [&](double number) { return hand.at(number / 500).position_W.x(); };
-  EXPECT_EQ(tick_at(3), 3);
-  EXPECT_EQ(tick_at(4), 4);
-  EXPECT_EQ(tick_at(5), 4);
-  EXPECT_EQ(tick_at(6), 4);
-  EXPECT_EQ(tick_at(7), 7);
-  EXPECT_EQ(tick_at(8), 7);
-  EXPECT_EQ(tick_at(11), 9);
-  EXPECT_EQ(tick_at(12), 12);
-  for (const double rounding : {-0.4, -1e-9, 1e-9, 0.4}) EXPECT_EQ(tick_at(7 + rounding), 7) << rounding;
-}
-
-TEST_F(SessionSceneTest, TheHandIsConstantBeforeAndAfterTheSession) {
-  const SessionHand hand = this->hand();
-  for (const double number : {-1e9, -1.0, 0.0, 2.0})
-    EXPECT_EQ(hand.at(number / 500).position_W.x(), 3) << number;
-  for (const double number : {13.0, 1e9}) EXPECT_EQ(hand.at(number / 500).position_W.x(), 12) << number;
-}
-
-TEST_F(SessionSceneTest, TicksThatAreNotThereWereMissed) {
-  const SessionHand hand = this->hand();
+  const std::pair<double, double> rows[] = {
+      {-1e9, 3},     {0, 3},        {2, 3},       {3, 3}, {4, 4},  {5, 4},   {6, 4},   {7 - 0.4, 7}, {7, 7},
+      {7 - 1e-9, 7}, {7 + 1e-9, 7}, {7 + 0.4, 7}, {8, 7}, {11, 9}, {12, 12}, {13, 12}, {1e9, 12}};
+  for (const auto& [number, position_m] : rows)
+    EXPECT_EQ(hand.at(number / 500).position_W.x(), position_m) << number;
   for (int number = 0; number <= 13; ++number) {
     const bool is_there = number == 3 || number == 4 || number == 7 || number == 9 || number == 12;
     EXPECT_EQ(hand.is_missed(number / 500.0), !is_there) << number;
@@ -140,24 +124,6 @@ TEST_F(SessionSceneTest, ASessionOfOneTickHasAHand) {
   const SessionHand hand = this->hand();
   for (const double number : {0.0, 3.0, 5.0}) EXPECT_EQ(hand.at(number / 500).position_W.x(), 3) << number;
   EXPECT_EQ(hand.duration_s(), 4 / 500.0);
-}
-
-TEST_F(SessionSceneTest, HandIsRefusedIfThereAreNoTicks) {
-  session_.ticks.clear();
-  EXPECT_EQ(refusal([this] { hand(); }), file_.string() + ": has no ticks: expected a session with some");
-}
-
-// --- both as settings ---
-
-TEST(SessionSettings, AreThePathOfAFile) {
-  SessionSettings s;
-  EXPECT_HAS(validate(s), "path = \"\": expected a file of remote-touch live --record");
-  const Parameters list = parameters(s);
-  ASSERT_EQ(list.size(), 1u);
-  EXPECT_EQ(list[0].name, "path");
-  *std::get<std::string*>(list[0].value) = "session.h5";
-  EXPECT_EQ(validate(s), "");
-  EXPECT_EQ(input_files(s), InputPart{"session.h5"});
 }
 
 // --- the experiment ---
@@ -197,9 +163,8 @@ TEST_F(SessionSceneTest, AnExperimentOfNoSessionIsRefused) {
   EXPECT_HAS(refusal([this] { session_experiment(session_.write(file_)); }), "nested too deep");
 }
 
-// Recordings of a sensor that sends clouds of points.
+// --- clouds of points: every frame has its own number of them ---
 
-// The sensor sends clouds, and every frame has its own number of points.
 TEST(SessionCloud, GivesBackCloudsWithAndWithoutNormalsAndColour) {
   for (const bool more : {false, true}) {
     const TestFolder folder("session_file");
@@ -254,7 +219,7 @@ TEST(SessionCloud, AFrameWithHalfAPointIsNotComplete) {
   EXPECT_TRUE(is_complete(frame, view));
 }
 
-// The positions of the points of a sensor's frame.
+// --- the points of a sensor's frame ---
 
 // The pixels are not square, and the centre is not in the middle.
 const SensorView kView{{4, 3, 200, 250, 1.25, 0.75}, 0.0005, 30, false, RigidTransform::Identity()};
@@ -271,11 +236,14 @@ RigidTransform somewhere() {
   return X_WC.rotate(rotation({0.4, -1.1, 2.3}));
 }
 
-// x = (u - cx) z / fx, y = (v - cy) z / fy, with z along the optical axis.
+// x = (u - cx) z / fx, y = (v - cy) z / fy, with z along the optical axis. The pose is the one that was
+// given, not the one that the source knows.
 TEST(SensorCloud, IsTheClosedFormOfItsPixels) {
-  const SensorFrame frame = frame_of(1000);
+  SensorFrame frame = frame_of(1000);
+  SensorView view = kView;
+  view.X_WC = RigidTransform(Eigen::Translation3d(9, 9, 9));
   for (const RigidTransform& X_WC : {RigidTransform::Identity(), somewhere()}) {
-    const PointCloud cloud = cloud_of(frame, kView, X_WC);
+    const PointCloud cloud = cloud_of(frame, view, X_WC);
     ASSERT_EQ(cloud.size(), 12u);
     for (int v = 0; v < 3; ++v)
       for (int u = 0; u < 4; ++u) {
@@ -285,19 +253,14 @@ TEST(SensorCloud, IsTheClosedFormOfItsPixels) {
         EXPECT_LT((cloud.point(static_cast<std::size_t>(4 * v + u)) - expected_W).norm(), 1e-15)
             << u << " " << v;
       }
+    ASSERT_TRUE(cloud.image);
+    EXPECT_EQ(cloud.image->camera.fy, 250);
+    EXPECT_EQ(cloud.image->X_WC.matrix(), X_WC.matrix());
+    EXPECT_EQ(cloud.columns(), 4);
+    EXPECT_TRUE(cloud.colour.empty());
   }
-}
-
-// The pose is the one that was given, not the one that the source knows.
-TEST(SensorCloud, HasTheCameraAndTheGivenPose) {
-  SensorView view = kView;
-  view.X_WC = RigidTransform(Eigen::Translation3d(9, 9, 9));
-  const PointCloud cloud = cloud_of(frame_of(1000), view, somewhere());
-  ASSERT_TRUE(cloud.image);
-  EXPECT_EQ(cloud.image->camera.width, 4);
-  EXPECT_EQ(cloud.image->camera.fy, 250);
-  EXPECT_EQ(cloud.image->X_WC.matrix(), somewhere().matrix());
-  EXPECT_EQ(cloud.columns(), 4);
+  for (std::uint32_t i = 0; i < 12; ++i) frame.colour.push_back(0xff8000u + i);
+  EXPECT_EQ(cloud_of(frame, kView, somewhere()).colour, frame.colour);
 }
 
 TEST(SensorCloud, ZeroIsAHoleAndOneIsTheNearestThereIs) {
@@ -312,14 +275,7 @@ TEST(SensorCloud, ZeroIsAHoleAndOneIsTheNearestThereIs) {
   EXPECT_EQ(cloud.z[6], 65535 * 0.0005);
 }
 
-TEST(SensorCloud, KeepsTheColours) {
-  SensorFrame frame = frame_of(1000);
-  EXPECT_TRUE(cloud_of(frame, kView, somewhere()).colour.empty());
-  for (std::uint32_t i = 0; i < 12; ++i) frame.colour.push_back(0xff8000u + i);
-  EXPECT_EQ(cloud_of(frame, kView, somewhere()).colour, frame.colour);
-}
-
-// The statistics of a sensor's frames.
+// --- the statistics of a sensor's frames ---
 
 TEST(SensedPoints, CountTheMeasuredPixelsOfImages) {
   SensorView view{{4, 1, 100, 100, 2, 0.5}, 0.0005, 30, true, RigidTransform::Identity()};
