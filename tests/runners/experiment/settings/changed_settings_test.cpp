@@ -1,6 +1,9 @@
+// Settings as JSON: changes that --set and the like make, differences between configurations, numbers of the
+// second implementation, and the folder of the cache.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <array>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -15,23 +18,18 @@
 #include "runners/experiment/settings/json_parameters.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::changed_settings_test {
 namespace {
 
-// Reads the stored table without second_number().
-nlohmann::json stored_chapter_4() {
+// --- numbers of the second implementation ---
+
+// Read without second_number(). A loop over a part of a table that no longer exists would read wrong values,
+// or none.
+TEST(SecondImplementation, GivesTheNumbersOfItsTables) {
   std::ifstream file(REMOTE_TOUCH_SOURCE_DIR "/data/second_implementation/chapter_4.json");
-  return nlohmann::json::parse(file);
-}
-
-TEST(SecondImplementation, GivesTheNumberAtAPlace) {
+  const nlohmann::json table = nlohmann::json::parse(file), rows = table["map"]["regions"];
   EXPECT_EQ(second_number("chapter_4", "/lifts/noisy/survived"),
-            stored_chapter_4()["lifts"]["noisy"]["survived"].get<double>());
-}
-
-// A loop over a part of a table that no longer exists would read wrong values, or none.
-TEST(SecondImplementation, GivesAColumnOfEveryRow) {
-  const nlohmann::json table = stored_chapter_4(), rows = table["map"]["regions"];
+            table["lifts"]["noisy"]["survived"].get<double>());
   ASSERT_GT(rows.size(), 20U);
   for (const auto& [name, value] : rows[0].items()) {
     if (!value.is_number()) continue;
@@ -43,52 +41,41 @@ TEST(SecondImplementation, GivesAColumnOfEveryRow) {
 }
 
 // A number of a claim comes from the program itself, whatever files there are.
-TEST(SecondImplementation, ReadsNoFile) {
+TEST(SecondImplementation, RefusesWhatIsNotThere) {
   const char* const file = REMOTE_TOUCH_SOURCE_DIR "/data/second_implementation/chapter_4.json";
   EXPECT_THROW(second_number(file, "/lifts/noisy/survived"), InputError);
-}
-
-TEST(SecondImplementation, RefusesWhatIsNotThere) {
   EXPECT_THROW(second_number("chapter_0", "/lifts"), InputError);
   EXPECT_THROW(second_number("chapter_4", "/lifts/nothing"), std::exception);
   EXPECT_THROW(second_column("chapter_4", "/map/regions", "nothing"), std::exception);
 }
 
-}  // namespace
-}  // namespace remote_touch
-
-namespace remote_touch::changed_settings_test {
-namespace {
-
-// Changes that --set and the like make to a configuration: refused, named, and stated in the title.
+// --- changes: refused, named, and stated in the title ---
 
 using Texts = std::vector<std::string>;
 
 constexpr const char* kScene = R"(scenario={"name": "flat-grid", "columns": 30})";
 const std::string kNone = "no InputError";
 
-std::string why(const Texts& assignments) {
-  return refusal([&] { refuse_discarded(assignments); });
-}
-
 TEST(DiscardedSettings, AreRefusedWithBothPaths) {
-  EXPECT_EQ(why({"scenario.noise_sigma_m=0.01", kScene}),
-            "--set scenario.noise_sigma_m=0.01: is overwritten by --set scenario: expected one of them");
-  EXPECT_HAS(why({"scenario.columns=40", kScene}), "--set scenario.columns=40: is overwritten by ");
-  EXPECT_HAS(why({"seed=3", "faults.dropout_probability=0.5", "faults=null"}),
-             "--set faults.dropout_probability=0.5: is overwritten by --set faults: ");
-  EXPECT_HAS(why({"fixtures.0.radius_m=0.1", "fixtures=[]"}),
-             "--set fixtures.0.radius_m=0.1: is overwritten by --set fixtures: ");
-  EXPECT_HAS(why({"set.seed=1", "set={}"}), "--set set.seed=1: is overwritten by --set set: ");
-  EXPECT_HAS(why({"trajectory.start_m.01=1", "trajectory.start_m=[0, 2, 0]"}), "is overwritten by ");
-}
-
-TEST(DiscardedSettings, AreNoneWhereTheLaterOneKeepsTheValue) {
-  EXPECT_EQ(why({"scenario.columns=30", kScene}), kNone);
-  EXPECT_EQ(why({"trajectory.start_m.1=2", "trajectory.start_m=[0, 2, 0]"}), kNone);
-  EXPECT_EQ(why({kScene, "scenario.noise_sigma_m=0.01"}), kNone);
-  EXPECT_EQ(why({"scenario.columns=30", "scenario_.x={}", "scenario.rows=4"}), kNone);
-  EXPECT_EQ(why({"seed=1", "seed=2"}), kNone);  // named, see below
+  const struct {
+    Texts assignments;
+    std::string expected;
+  } rows[] = {{{"scenario.noise_sigma_m=0.01", kScene},
+               "--set scenario.noise_sigma_m=0.01: is overwritten by --set scenario: expected one of them"},
+              {{"scenario.columns=40", kScene}, "--set scenario.columns=40: is overwritten by "},
+              {{"seed=3", "faults.dropout_probability=0.5", "faults=null"},
+               "--set faults.dropout_probability=0.5: is overwritten by --set faults: "},
+              {{"fixtures.0.radius_m=0.1", "fixtures=[]"},
+               "--set fixtures.0.radius_m=0.1: is overwritten by --set fixtures: "},
+              {{"set.seed=1", "set={}"}, "--set set.seed=1: is overwritten by --set set: "},
+              {{"trajectory.start_m.01=1", "trajectory.start_m=[0, 2, 0]"}, "is overwritten by "},
+              // The later one keeps the value.
+              {{"scenario.columns=30", kScene}, kNone},
+              {{"trajectory.start_m.1=2", "trajectory.start_m=[0, 2, 0]"}, kNone},
+              {{kScene, "scenario.noise_sigma_m=0.01"}, kNone},
+              {{"scenario.columns=30", "scenario_.x={}", "scenario.rows=4"}, kNone},
+              {{"seed=1", "seed=2"}, kNone}};  // named, see below
+  for (const auto& row : rows) EXPECT_HAS(refusal([&] { refuse_discarded(row.assignments); }), row.expected);
 }
 
 TEST(ReplacedSettings, AreNamedInALineEach) {
@@ -108,25 +95,34 @@ std::string titled(const char* configuration, const Texts& assignments) {
   return json.value("title", std::string("none"));
 }
 
+// The titles of the user are kept. No value is longer than 40 characters.
 TEST(Titles, NameWhatWasChanged) {
-  constexpr const char* kLift = R"({"title": "a lift", "seed": 1, "scenario": {"noise_sigma_m": 0.006}})";
-  EXPECT_EQ(titled(kLift, {"scenario.noise_sigma_m=0", "scenario.path=my/hand"}),
-            "a lift, changed: scenario.noise_sigma_m=0, scenario.path=my/hand");
-  EXPECT_EQ(titled(kLift, {}), "a lift");
-  EXPECT_EQ(titled(kLift, {"seed=1", "scenario.noise_sigma_m=6e-3"}), "a lift");  // the values do not change
-  EXPECT_EQ(titled(kLift, {"seed=2", "seed=3"}), "a lift, changed: seed=3");
-  EXPECT_EQ(titled(R"({"title": "a lift, changed: seed=3"})", {"duration_s=2"}),
-            "a lift, changed: seed=3, duration_s=2");
+  constexpr const char *kLift = R"({"title": "a lift", "seed": 1, "scenario": {"noise_sigma_m": 0.006}})",
+                       *kShort = R"({"title": "a"})";
+  const std::string list = Json(std::vector<int>(100, 7)).dump();
+  const struct {
+    const char* configuration;
+    Texts assignments;
+    std::string title;
+  } rows[] = {
+      {kLift,
+       {"scenario.noise_sigma_m=0", "scenario.path=my/hand"},
+       "a lift, changed: scenario.noise_sigma_m=0, scenario.path=my/hand"},
+      {kLift, {}, "a lift"},
+      {kLift, {"seed=1", "scenario.noise_sigma_m=6e-3"}, "a lift"},  // the values do not change
+      {kLift, {"seed=2", "seed=3"}, "a lift, changed: seed=3"},
+      {R"({"title": "a lift, changed: seed=3"})", {"duration_s=2"}, "a lift, changed: seed=3, duration_s=2"},
+      {kLift, {"seed=2", "title=mine"}, "mine"},
+      {R"({"title": ""})", {"seed=2"}, ""},
+      {"{}", {"seed=2"}, "none"},
+      {kShort,
+       {"scenario.path=" + std::string(300, 'x') + "/sr305_hand_flex"},
+       "a, changed: scenario.path=..." + std::string(24, 'x') + "/sr305_hand_flex"},
+      {kShort, {"w=" + list}, "a, changed: w=" + list.substr(0, 40) + "..."}};
+  for (const auto& row : rows) EXPECT_EQ(titled(row.configuration, row.assignments), row.title);
 }
 
-TEST(Titles, TitlesOfTheUserAreKept) {
-  EXPECT_EQ(titled(R"({"title": "a lift"})", {"seed=2", "title=mine"}), "mine");
-  EXPECT_EQ(titled(R"({"title": ""})", {"seed=2"}), "");
-  EXPECT_EQ(titled("{}", {"seed=2"}), "none");
-  EXPECT_EQ(titled("{}", {"seed=2", "title=mine"}), "mine");
-}
-
-// A title has at most 120 characters of changes, then the count of the others. No value is longer than 40.
+// A title has at most 120 characters of changes, then the count of the others.
 TEST(Titles, HaveALimitedLength) {
   Texts many;
   for (int i = 0; i < 100; ++i)
@@ -135,10 +131,6 @@ TEST(Titles, HaveALimitedLength) {
   EXPECT_HAS(title, "a lift, changed: scenario.parameter_0=0, scenario.parameter_1=1, ");
   EXPECT_HAS(title, " more");
   EXPECT_LE(title.size(), std::string("a lift, changed:  and 100 more").size() + 120);
-  EXPECT_EQ(titled(R"({"title": "a"})", {"scenario.path=" + std::string(300, 'x') + "/sr305_hand_flex"}),
-            "a, changed: scenario.path=..." + std::string(24, 'x') + "/sr305_hand_flex");
-  const std::string list = Json(std::vector<int>(100, 7)).dump();
-  EXPECT_EQ(titled(R"({"title": "a"})", {"w=" + list}), "a, changed: w=" + list.substr(0, 40) + "...");
 }
 
 // A character of several bytes is kept whole, or is left out.
@@ -151,56 +143,42 @@ TEST(Titles, AreUtf8) {
   }
 }
 
-// Differences between configurations: by path, without titles.
+// --- differences between configurations: by path, without titles ---
 
+// A title describes a configuration and does not change what it does. The limit of 57 bytes is in the middle
+// of the 28th of these characters, behind a quotation mark and a letter. Long values that differ only after
+// their beginning are shown from shortly before the difference on.
 TEST(ConfigurationDifferences, AreOneTextEach) {
-  EXPECT_EQ(
-      configuration_differences(R"({"seed": 1, "renderer": {"r1_m": 1}})", R"({"renderer": {"r1_m": 2}})"),
-      (Texts{"seed 1 against absent", "renderer.r1_m 1 against 2"}));
-}
-
-// A title describes a configuration and does not change what it does.
-TEST(ConfigurationDifferences, LeaveOutTitles) {
-  EXPECT_TRUE(configuration_differences(R"({"title": "a"})", R"({"title": "b"})").empty());
-  EXPECT_TRUE(configuration_differences(R"({"title": "a", "experiment": {"title": "c", "seed": 1}})",
-                                        R"({"title": "b", "experiment": {"title": "d", "seed": 1}})")
-                  .empty());
-  EXPECT_EQ(
-      configuration_differences(R"({"scenario": {"title": "a"}})", R"({"scenario": {"title": "b"}})").size(),
-      1u);
-}
-
-// The limit of 57 bytes is in the middle of the 28th of these characters, behind a quotation mark and a
-// letter.
-TEST(ConfigurationDifferences, DoNotCutACharacter) {
-  std::string umlauts;
+  const std::string folder(100, 'a'), tail(20, 'a');
+  std::string umlauts,
+      axes = R"({"axes": [{"from": 0, "parameter": "scenario.acceleration_m_per_s2", "to": )";
   for (int i = 0; i < 40; ++i) umlauts += "\xc3\xa4";
-  const Texts found = configuration_differences(R"({"path": "x)" + umlauts + R"("})", R"({"path": 1})");
-  EXPECT_EQ(found, (Texts{"path \"x" + umlauts.substr(0, 54) + "... against 1"}));
+  const struct {
+    std::string before, after;
+    Texts found;
+  } rows[] = {
+      {R"({"seed": 1, "renderer": {"r1_m": 1}})",
+       R"({"renderer": {"r1_m": 2}})",
+       {"seed 1 against absent", "renderer.r1_m 1 against 2"}},
+      {R"({"title": "a", "experiment": {"title": "c", "seed": 1}})",
+       R"({"title": "b", "experiment": {"title": "d", "seed": 1}})",
+       {}},
+      {R"({"scenario": {"title": "a"}})",
+       R"({"scenario": {"title": "b"}})",
+       {R"(scenario.title "a" against "b")"}},
+      {R"({"path": "x)" + umlauts + R"("})",
+       R"({"path": 1})",
+       {"path \"x" + umlauts.substr(0, 54) + "... against 1"}},
+      {R"({"path": ")" + folder + R"(/one"})",
+       R"({"path": ")" + folder + R"("})",
+       {"path \"..." + tail + "/one\" against \"..." + tail + "\""}},
+      {axes + "1, \"count\": 3}]}",
+       axes + "2, \"count\": 3}]}",
+       {"axes [...tion_m_per_s2\",\"to\":1,\"count\":3}] against [...tion_m_per_s2\",\"to\":2,\"count\":3}]"}}};
+  for (const auto& row : rows) EXPECT_EQ(configuration_differences(row.before, row.after), row.found);
 }
 
-// Long values that differ only after their beginning are shown from shortly before the difference on.
-TEST(ConfigurationDifferences, ShowThePartThatDiffers) {
-  const std::string folder(100, 'a');
-  EXPECT_EQ(
-      configuration_differences(R"({"path": ")" + folder + R"(/one"})", R"({"path": ")" + folder + R"("})"),
-      (Texts{"path \"..." + std::string(20, 'a') + "/one\" against \"..." + std::string(20, 'a') + "\""}));
-  std::string count =
-      R"({"axes": [{"from": 0, "parameter": "scenario.acceleration_m_per_s2", "to": 1, "count": 3}]})";
-  std::string other = count;
-  other.replace(other.find("\"to\": 1"), 7, "\"to\": 2");
-  EXPECT_EQ(
-      configuration_differences(count, other),
-      (Texts{
-          "axes [...tion_m_per_s2\",\"to\":1,\"count\":3}] against [...tion_m_per_s2\",\"to\":2,\"count\":3}]"}));
-}
-
-}  // namespace
-}  // namespace remote_touch::changed_settings_test
-
-// Settings from the command line.
-namespace remote_touch::json_parameters_test {
-namespace {
+// --- settings from the command line ---
 
 Json with(const std::string& json, const std::string& assignment) {
   Json configuration = Json::parse(json);
@@ -212,17 +190,18 @@ std::string refused(const std::string& json, const std::string& assignment) {
   return refusal([&] { with(json, assignment); });
 }
 
+// Numbers are taken as they are typed.
 TEST(ApplyOverride, SetsWhatAPathLeadsTo) {
-  EXPECT_EQ(with(R"({"a": 1})", "b.c=[2]").dump(), R"({"a":1,"b":{"c":[2]}})");
-  EXPECT_EQ(with(R"({"a": [{"b": 1}]})", "a.0.b=quick").dump(), R"({"a":[{"b":"quick"}]})");
-  EXPECT_EQ(with(R"({"a": null})", "a.b=1").dump(), R"({"a":{"b":1}})");
-}
-
-TEST(ApplyOverride, TakesNumbersAsTheyAreTyped) {
-  EXPECT_EQ(with("{}", "a=.3").dump(), R"({"a":0.3})");
-  EXPECT_EQ(with("{}", "a=-.25").dump(), R"({"a":-0.25})");
-  EXPECT_EQ(with("{}", "a=3.").dump(), R"({"a":3.0})");
-  EXPECT_EQ(with("{}", "a=1e-3").dump(), R"({"a":0.001})");
+  const std::array<const char*, 3> rows[] = {
+      {R"({"a": 1})", "b.c=[2]", R"({"a":1,"b":{"c":[2]}})"},
+      {R"({"a": [{"b": 1}]})", "a.0.b=quick", R"({"a":[{"b":"quick"}]})"},
+      {R"({"a": null})", "a.b=1", R"({"a":{"b":1}})"},
+      {"{}", "title=grün", R"({"title":"grün"})"},
+      {"{}", "a=.3", R"({"a":0.3})"},
+      {"{}", "a=-.25", R"({"a":-0.25})"},
+      {"{}", "a=3.", R"({"a":3.0})"},
+      {"{}", "a=1e-3", R"({"a":0.001})"}};
+  for (const auto& [before, assignment, after] : rows) EXPECT_EQ(with(before, assignment).dump(), after);
   for (const char* text : {"01", "..", ".", "./a.h5", "x.", ".3s", "-."})
     EXPECT_EQ(with("{}", std::string("a=") + text)["a"], text);
 }
@@ -242,7 +221,6 @@ TEST(ApplyOverride, APathOfMoreThan64LevelsIsRefused) {
 TEST(ApplyOverride, ATextThatIsNotUtf8IsRefused) {
   for (const char* assignment : {"title=\xff", "ti\xfftle=1", "scenario.name.\xff=1", "a=\"\xff\""})
     EXPECT_HAS(refused("{}", assignment), "expected UTF-8") << assignment;
-  EXPECT_EQ(with("{}", "title=grün").dump(), R"({"title":"grün"})");
 }
 
 TEST(ReadParameters, ATextHasNoZeroInIt) {
@@ -284,11 +262,7 @@ TEST(ReadParameters, AKeyOfAnyBytesIsShown) {
   EXPECT_HAS(refusal([&] { read_parameters(object, {}, ""); }), "a\\x00\\xff: unknown");
 }
 
-}  // namespace
-}  // namespace remote_touch::json_parameters_test
-
-namespace remote_touch::cache_file_test {
-namespace {
+// --- the folder of the cache ---
 
 TEST(CacheFolder, IsTakenFromTheEnvironment) {
   ::setenv("REMOTE_TOUCH_CACHE", "/c", 1);
@@ -340,23 +314,18 @@ TEST_F(CacheSizeTest, RemovesTheLeastRecentlyUsedFilesFirst) {
   EXPECT_EQ(names(), (std::vector<std::string>{"a.tool", "c.tool"}));
   EXPECT_EQ(shrink_cache(folder_.path(), 0).files, 0u);
   EXPECT_TRUE(names().empty());
-}
-
-TEST_F(CacheSizeTest, OnlyItsOwnFilesGo) {
-  add("notes.txt", 100, 9999), add("k.partial-AbCdEf", 100, 7200), add("l.partial-AbCdEf", 100, 60);
-  EXPECT_EQ(shrink_cache(folder_.path(), 0).bytes, 0u);
-  EXPECT_EQ(names(), (std::vector<std::string>{"l.partial-AbCdEf", "notes.txt"}));
-}
-
-TEST_F(CacheSizeTest, AWriterRemovesWhatKilledProgramsLeft) {
-  add("k.partial-AbCdEf", 100, 7200), add("l.partial-AbCdEf", 100, 60), add("a.tool", 100, 9999);
-  ASSERT_TRUE(write_cache_file(folder_.path(), {"tool", 1}, "m", [](CacheWriter&) {}));
-  EXPECT_EQ(names(), (std::vector<std::string>{"a.tool", "l.partial-AbCdEf", "m.tool"}));
-}
-
-TEST_F(CacheSizeTest, AMissingFolderCountsAsEmpty) {
   EXPECT_EQ(cache_size(folder_ / "nowhere").files, 0u);
   EXPECT_EQ(shrink_cache(folder_ / "nowhere", 0).files, 0u);
+}
+
+// A writer removes what killed programs left.
+TEST_F(CacheSizeTest, OnlyItsOwnFilesGo) {
+  add("notes.txt", 100, 9999), add("k.partial-AbCdEf", 100, 7200), add("l.partial-AbCdEf", 100, 60);
+  ASSERT_TRUE(write_cache_file(folder_.path(), {"tool", 1}, "m", [](CacheWriter&) {}));
+  EXPECT_EQ(names(), (std::vector<std::string>{"l.partial-AbCdEf", "m.tool", "notes.txt"}));
+  add("k.partial-AbCdEf", 100, 7200);
+  EXPECT_EQ(shrink_cache(folder_.path(), 0).bytes, 0u);
+  EXPECT_EQ(names(), (std::vector<std::string>{"l.partial-AbCdEf", "notes.txt"}));
 }
 
 // Written files make room for themselves, and reading one keeps it.
@@ -404,4 +373,4 @@ TEST_F(CacheSizeTest, TheMaximumIsTakenFromTheEnvironment) {
 }
 
 }  // namespace
-}  // namespace remote_touch::cache_file_test
+}  // namespace remote_touch::changed_settings_test
