@@ -1,5 +1,6 @@
-// Every renderer on every kind of cloud. Either the run is refused in one line that states what to add, or
-// there is a force. There is no third outcome, such as a tool that feels nothing.
+// Every renderer and every fixture rule on every kind of cloud: with or without rows and columns, normals,
+// colours, and a camera. Either the run is refused in one line that states what to add, or there is a force.
+// There is no third outcome, such as a tool that feels nothing.
 #include "runners/experiment/catalog/frame_stream.h"
 
 #include <gtest/gtest.h>
@@ -8,16 +9,130 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/trace/trace.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
-#include "tests/runners/experiment/simulation/cloud_kinds.h"
+#include "runners/experiment/simulation/simulation.h"
+#include "tests/support/test_files.h"
 
 namespace remote_touch::frame_needs_test {
 namespace {
 
-using namespace cloud_kinds;
+// A flat plate at y = 0, seen from above, whose cloud has what the settings demand.
+class Plate final : public Scenario {
+ public:
+  struct Settings {
+    bool organised = false, normals = false, colours = false;
+  };
+  Plate(const Settings& settings, const NoiseKey&, const Kernels&) : settings_(settings) {}
+  double frame_rate_hz() const override { return 30; }
+  int frame_count() const override { return 1; }
+  PointCloud cloud(int) const override {
+    constexpr int kSide = 31;
+    PointCloud cloud;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const Vec3 p(0.002 * (i % kSide - kSide / 2), 0, 0.002 * (i / kSide - kSide / 2));
+      settings_.normals ? cloud.append(p, Vec3::UnitY()) : cloud.append(p);
+      if (settings_.colours) cloud.colour.push_back(0xFF0000);
+    }
+    if (settings_.organised) cloud.grid_columns = kSide;
+    return cloud;
+  }
+  double signed_distance(const Vec3& p_W, double) const override { return p_W.y(); }
+
+ private:
+  const Settings settings_;
+};
+
+Parameters parameters(Plate::Settings& s) {
+  return {{"organised", &s.organised, 0, 0, "rows and columns"},
+          {"normals", &s.normals, 0, 0, "normals"},
+          {"colours", &s.colours, 0, 0, "red points"}};
+}
+std::string validate(const Plate::Settings&) {
+  return {};
+}
+
+// The properties of a kind of cloud, and the settings that make it.
+struct Kind {
+  std::string scenario;
+  std::string press;  // 1 cm deep
+  Vec3 outwards;
+  bool organised = false, normals = false, colours = false, image = false;
+  bool view = true;  // the setting `view` is right by default
+};
+
+const char* const kDown =
+    "[[0, 0.05, 0, 0, 0, 0, 0], [0, -0.01, 0, 0, 0, 0, 0.1], [0, -0.01, 0, 0, 0, 0, 0.05]]";
+const char* const kForward =
+    "[[0, 0, 0.45, 0, 0, 0, 0], [0, 0, 0.51, 0, 0, 0, 0.1], [0, 0, 0.51, 0, 0, 0, 0.05]]";
+
+std::string press_on(const Kind& kind, const std::string& renderer, const std::string& rest = "") {
+  return R"({"scenario": )" + kind.scenario + R"(, "renderer": )" + renderer +
+         R"(, "trajectory": {"name": "poses", "poses": )" + kind.press + R"(}, "duration_s": 0.15)" + rest +
+         "}";
+}
+
+Trace run(const std::string& json) {
+  return simulate(Experiment::from_json(json, "test"));
+}
+
+class FrameNeeds : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    Catalog catalog = built_in_catalog();
+    catalog.add(scenario_entry<Plate>("plate", "a flat plate at rest"));
+    use_catalog(std::move(catalog));
+  }
+  static void TearDownTestSuite() { use_catalog(built_in_catalog()); }
+
+  // Returns all kinds of clouds without a camera.
+  static std::vector<Kind> plates() {
+    std::vector<Kind> all;
+    const auto word = [](bool is_on) { return std::string(is_on ? "true" : "false"); };
+    for (int i = 0; i < 8; ++i) {
+      Kind kind{"", kDown, Vec3::UnitY(), (i & 1) != 0, (i & 2) != 0, (i & 4) != 0};
+      kind.scenario = R"({"name": "plate", "organised": )" + word(kind.organised) + R"(, "normals": )" +
+                      word(kind.normals) + R"(, "colours": )" + word(kind.colours) + "}";
+      all.push_back(kind);
+    }
+    return all;
+  }
+
+  // The plane z = 0.5 m, of 40 x 40 points.
+  std::string write_pcd(const std::string& name, bool organised, bool colours) const {
+    constexpr int kSide = 40;
+    const std::string width = std::to_string(organised ? kSide : kSide * kSide),
+                      height = std::to_string(organised ? kSide : 1), more = colours ? " " : "";
+    std::string text =
+        pcd_header("x y z" + more + (colours ? "rgb" : ""), "4 4 4" + more + (colours ? "4" : ""),
+                   "F F F" + more + (colours ? "U" : ""), "1 1 1" + more + (colours ? "1" : ""), width,
+                   height, std::to_string(kSide * kSide), "ascii");
+    for (int i = 0; i < kSide * kSide; ++i)
+      text += std::to_string(0.002 * (i % kSide - 19.5)) + " " + std::to_string(0.002 * (i / kSide - 19.5)) +
+              " 0.5" + (colours ? " 16711680\n" : "\n");
+    return folder_.write(name, text).string();
+  }
+  Kind pcd(bool organised, bool colours) const {
+    const std::string name = std::string(organised ? "rows" : "list") + (colours ? "_red.pcd" : ".pcd"),
+                      file = write_pcd(name, organised, colours);
+    const std::string scenario = R"({"name": "recording", "path": ")" + file + "\"}";
+    return {scenario, kForward, -Vec3::UnitZ(), organised, false, colours, organised, organised};
+  }
+  // Returns all kinds of clouds.
+  std::vector<Kind> clouds() const {
+    std::vector<Kind> all = plates();
+    for (const bool organised : {false, true})
+      for (const bool colours : {false, true}) all.push_back(pcd(organised, colours));
+    return all;
+  }
+
+  const TestFolder folder_{"frame_needs"};
+};
+
+// --- renderers ---
 
 struct Method {
   std::string renderer, settings = {};  // "" or ", \"key\": ..."
@@ -82,15 +197,8 @@ void expect_force_or_refusal(const Kind& kind, const Method& method, const std::
   EXPECT_HAS(line, method.needs);
 }
 
-class FrameNeeds : public CloudKinds {};
-
-TEST_F(FrameNeeds, EveryRendererFeelsAPlateOrIsRefused) {
-  for (const Kind& kind : plates())
-    for (const Method& method : methods()) expect_force_or_refusal(kind, method);
-}
-
-TEST_F(FrameNeeds, EveryRendererFeelsARecordedCloudOrIsRefused) {
-  for (const Kind& kind : recordings())
+TEST_F(FrameNeeds, EveryRendererFeelsACloudOrIsRefused) {
+  for (const Kind& kind : clouds())
     for (const Method& method : methods()) expect_force_or_refusal(kind, method);
 }
 
@@ -104,12 +212,9 @@ TEST_F(FrameNeeds, ADepthPipelineGivesNormalsToAnImageOnly) {
 }
 
 TEST_F(FrameNeeds, ATreeOfSpheresFeelsTheRegionsOfEveryCloud) {
-  const auto expect_felt = [](const Kind& kind) {
-    const Method tree{"sphere-tree", R"(, "tool_mesh": "ball")"};
+  const Method tree{"sphere-tree", R"(, "tool_mesh": "ball")"};
+  for (const Kind& kind : clouds())
     expect_force_or_refusal(kind, tree, R"(, "fixtures": [{"name": "everywhere", "radius_m": 0.01}])");
-  };
-  for (const Kind& kind : plates()) expect_felt(kind);
-  for (const Kind& kind : recordings()) expect_felt(kind);
 }
 
 TEST_F(FrameNeeds, ARefusalSaysWhatToAdd) {
@@ -128,17 +233,19 @@ TEST_F(FrameNeeds, ARefusalSaysWhatToAdd) {
       line(pcd(false, false), "surfels"),
       "renderer.view_direction = [0, -1, 0]: the frames of this recording are not images, so the direction of the sensor must "
       "be given: expected the direction in which it looks, [0, 0, 1]");
-}
-
-// Rules that assign no radius make no regions.
-TEST_F(FrameNeeds, RulesWithoutARadiusAreNoRegions) {
-  for (const char* rules :
-       {R"([{"name": "everywhere", "radius_m": 0}])", R"([{"name": "everywhere", "radius_m": -1}])"})
+  // Rules that assign no radius make no regions.
+  for (const char* radius_m : {"0", "-1"})
     EXPECT_HAS(refusal([&] {
-                 run(press_on(plates()[0], R"({"name": "sphere-tree", "tool_mesh": "ball"})",
-                              R"(, "fixtures": )" + std::string(rules)));
+                 run(press_on(
+                     plates()[0], R"({"name": "sphere-tree", "tool_mesh": "ball"})",
+                     R"(, "fixtures": [{"name": "everywhere", "radius_m": )" + std::string(radius_m) + "}]"));
                }),
                "needs forbidden regions");
+  EXPECT_HAS(refusal([&] {
+               run(press_on(pcd(true, false), R"({"name": "tool", "tool_mesh": "ball"})",
+                            R"(, "depth_pipeline": {"normal_radius_m": 0.001})"));
+             }),
+             "no point of frame 0 has one: expected more points within depth_pipeline.normal_radius_m");
 }
 
 TEST_F(FrameNeeds, AGivenViewIsEnough) {
@@ -181,14 +288,6 @@ TEST_F(FrameNeeds, ALaterFrameOfAnotherKindIsRefused) {
              "renderer.name = \"god-object\": needs organised points, and those of frame 1 have no rows");
 }
 
-TEST_F(FrameNeeds, APipelineThatLeavesNoNormalIsRefused) {
-  EXPECT_HAS(refusal([&] {
-               run(press_on(pcd(true, false), R"({"name": "tool", "tool_mesh": "ball"})",
-                            R"(, "depth_pipeline": {"normal_radius_m": 0.001})"));
-             }),
-             "no point of frame 0 has one: expected more points within depth_pipeline.normal_radius_m");
-}
-
 TEST_F(FrameNeeds, AFrameWithoutPointsLacksNothing) {
   const RendererNeeds needs("tool", {FrameNeed::normals, FrameNeed::organised});
   Frame frame;
@@ -200,12 +299,8 @@ TEST_F(FrameNeeds, AFrameWithoutPointsLacksNothing) {
   RendererNeeds("tool", {FrameNeed::normals}).check(frame);
 }
 
-// Every fixture rule on every kind of cloud. Either the run is refused in one line that states what is
-// expected, or the rule has its effect. The same holds for guidance.
-
-using namespace cloud_kinds;
-
-class FixtureNeeds : public CloudKinds {};
+// --- fixture rules: the run is refused in one line that states what is expected, or the rule has its effect
+// ---
 
 struct Rule {
   const char* json;   // the closing brace is missing
@@ -233,7 +328,7 @@ void expect_region_or_refusal(const Kind& kind, const Rule& rule) {
   }
 }
 
-TEST_F(FixtureNeeds, EveryFixtureRuleWorksOrIsRefused) {
+TEST_F(FrameNeeds, EveryFixtureRuleWorksOrIsRefused) {
   const std::vector<std::uint8_t> white(40 * 40, 255);
   const std::string file = folder_.write_png("mask.png", 40, 40, PNG_FORMAT_GRAY, white.data()).string(),
                     mask = R"({"name": "image-mask", "path": ")" + file + "\"";
@@ -247,17 +342,15 @@ TEST_F(FixtureNeeds, EveryFixtureRuleWorksOrIsRefused) {
     EXPECT_TRUE(std::any_of(std::begin(rules), std::end(rules), [&](const Rule& rule) {
       return contains(rule.json, "\"" + entry.name + "\"");
     })) << entry.name;
-  for (const Rule& rule : rules) {
-    for (const Kind& kind : plates()) expect_region_or_refusal(kind, rule);
-    for (const Kind& kind : recordings()) expect_region_or_refusal(kind, rule);
-  }
+  for (const Rule& rule : rules)
+    for (const Kind& kind : clouds()) expect_region_or_refusal(kind, rule);
 }
 
 // --- guidance ---
 
 // The plane of a target faces the sensor. If there is no image, the sensor has to be at the origin, as in a
 // recording whose camera was not moved.
-TEST_F(FixtureNeeds, GuidanceAcrossAPlaneNeedsToKnowWhereTheSensorIs) {
+TEST_F(FrameNeeds, GuidanceAcrossAPlaneNeedsToKnowWhereTheSensorIs) {
   const std::string across = R"(, "fixtures": [{"name": "everywhere", "role": "guidance"}],
       "guidance": {"orientation": "plane", "approach_axis": [0, 0, 1], "standoff_m": 0.05})";
   const auto goal_m = [&](const Kind& kind) {

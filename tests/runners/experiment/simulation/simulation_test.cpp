@@ -1,3 +1,4 @@
+// A run as a whole: its report, its main measures, its length, replayed contacts, and a simulated device.
 #include "runners/experiment/simulation/simulation.h"
 
 #include <gtest/gtest.h>
@@ -11,11 +12,8 @@
 #include "tests/runners/experiment/simulation/reported_run.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::run_report_test {
+namespace remote_touch::simulation_test {
 namespace {
-
-// The notes of a run: each is written for a run that did not do what its experiment describes, and for no
-// other.
 
 constexpr const char* kPlane = R"({"name": "flat-grid", "rows": 40, "columns": 40, "spacing_m": 0.0015})";
 constexpr const char* kPress =
@@ -40,19 +38,43 @@ TEST(RunReport, ReportsAPressThatWasNotReached) {
       << "all notes";
 }
 
-TEST(RunReport, ReportsAMotionOfTheSceneThatWasNotReached) {
-  const std::string waits = R"({"name": "moving-plane", "start_height_m": 0, "wait_s": 0.4})";
-  EXPECT_EQ(run_of(waits, kPress).kinds(), Kinds{"phase not reached"});
-  EXPECT_EQ(run_of(waits, kPress, R"("duration_s": 0.5)").kinds(), Kinds{});
-}
-
-TEST(RunReport, ReportsAPressAfterTheMotion) {
-  const std::string rises =
-      R"({"name": "moving-plane", "start_height_m": -0.01, "wait_s": 0, "speed_m_per_s": 0.2, "rise_height_m": 0.01})";
-  const RunReport report = run_of(rises, kPress).report;
-  EXPECT_EQ(kinds_of(report.notes), Kinds{"after the motion"});
-  EXPECT_HAS(report.notes[0].text,
-             "the press begins at 0.1 s, after the rise of the plane has ended at 0.05 s");
+// Each note is written for a run that did not do what its experiment describes, and for no other. A motion
+// that never happens is neither missed nor over. The proxy falls through a square of points farther apart
+// than sqrt(2) r_c = 7.07 mm; the centre of a square is 7.2 mm / sqrt(2) from its corners.
+TEST(RunReport, HasNotesOnWhatDidNotHappen) {
+  const std::string rising = R"({"name": "moving-plane", "wait_s": 0, "start_height_m": -0.01, )"
+                             R"("speed_m_per_s": 0.2, "rise_height_m": 0.01})",
+                    waits = R"({"name": "moving-plane", "start_height_m": 0, "wait_s": 0.4})",
+                    rests = R"({"name": "moving-plane", "start_height_m": 0, "rise_height_m": 0, "wait_s": )",
+                    spaced = R"({"name": "flat-grid", "rows": 41, "columns": 41, "spacing_m": )",
+                    path = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.01, 0, 0.2]]})",
+                    above = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, 0.01, 0, 0.3]]})";
+  const struct {
+    std::string scenario, trajectory, duration_s;
+    Kinds kinds;
+    const char* text;  // a part of the first note
+  } rows[] = {
+      {waits, kPress, "0.3", {"phase not reached"}, ""},
+      {waits, kPress, "0.5", {}, ""},
+      {rising,
+       kPress,
+       "0.3",
+       {"after the motion"},
+       "the press begins at 0.1 s, after the rise of the plane has ended at 0.05 s"},
+      {rests + "5}", kPress, "0.3", {}, ""},
+      {rests + "0}", kPress, "0.3", {}, ""},
+      {kPlane, path, "0.3", {}, ""},
+      {kPlane, path, "0.14", {"phase not reached"}, ""},
+      {kPlane, above, "0.3", {"no contact"}, ""},
+      {spaced + "0.0069}", kPress, "0.3", {}, ""},
+      {spaced + "0.0072}", kPress, "0.3", {"wide spacing"}, "a gap of radius 5.09 mm at the first contact"}};
+  for (const auto& row : rows) {
+    const ReportedRun run = run_of(row.scenario, row.trajectory, R"("duration_s": )" + row.duration_s);
+    ASSERT_EQ(run.kinds(), row.kinds) << row.scenario << row.trajectory << row.duration_s;
+    if (!row.kinds.empty()) {
+      EXPECT_HAS(run.report.notes[0].text, row.text);
+    }
+  }
 }
 
 // The plane rises from the start on; the run shows it in two frames at 2 Hz and in one at 0.5 Hz.
@@ -75,30 +97,6 @@ TEST(RunReport, ReportsAMotionThatFewFramesShow) {
   const std::string jumps =
       R"({"name": "moving-plane", "start_height_m": -0.01, "wait_s": 0, "speed_m_per_s": 1, "rise_height_m": 0.01})";
   EXPECT_FALSE(noted(jumps, "0.8")) << "a brief motion";
-}
-
-TEST(RunReport, ReportsATrajectoryThatDoesNotEnd) {
-  const std::string path = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, -0.01, 0, 0.2]]})";
-  EXPECT_EQ(run_of(kPlane, path).kinds(), Kinds{});
-  EXPECT_EQ(run_of(kPlane, path, R"("duration_s": 0.14)").kinds(), Kinds{"phase not reached"});
-}
-
-TEST(RunReport, ReportsThatNothingWasTouched) {
-  const std::string above = R"({"name": "waypoints", "waypoints": [[0, 0.02, 0, 0], [0, 0.01, 0, 0.3]]})";
-  EXPECT_EQ(run_of(kPlane, above).kinds(), Kinds{"no contact"});
-}
-
-// The proxy falls through a square of points farther apart than sqrt(2) r_c = 7.07 mm.
-TEST(RunReport, ReportsPointsThatAreTooFarApart) {
-  const auto plane = [](const char* spacing) {
-    return std::string(R"({"name": "flat-grid", "rows": 41, "columns": 41, "spacing_m": )") + spacing + "}";
-  };
-  EXPECT_EQ(run_of(plane("0.0069"), kPress).kinds(), Kinds{});
-  const RunReport report = run_of(plane("0.0072"), kPress).report;
-  EXPECT_EQ(kinds_of(report.notes), Kinds{"wide spacing"});
-  // The centre of a square is 7.2 mm / sqrt(2) from its corners.
-  EXPECT_HAS(report.notes[0].text, "a gap of radius 5.09 mm at the first contact");
-  EXPECT_HAS(report.notes[0].text, "contact radius 5 mm");
 }
 
 // Every event that the run does not reach is named once: a rule that never begins, a change, a press of a
@@ -124,37 +122,25 @@ TEST(RunReport, ReportsEveryTimeThatTheRunDoesNotReach) {
        R"("operator": {"presses": [[0.1, 0, 0.1], [3, 1, 0.2]], "grip": [[0, 1], [2, 1], [3, 0]]})",
        {"the press of button 1 begins at 3 s", "the change of operator.grip begins at 2 s"}},
       {kPlane, R"("sequence": [{"action": "wait"}, )" + step + "]", {"sequence.1 (wait) begins at 3 s"}},
-      {R"({"name": "moving-shape", "vanish_at_s": 2})",
-       R"("seed": 1)",
-       {"the vanishing of the surface begins at 2 s"}},
-      {R"({"name": "moving-shape", "vanish_at_s": 0.2})", R"("seed": 1)", {}},
-      {R"({"name": "moving-shape", "empty_frame_at_s": 2})",
-       R"("seed": 1)",
-       {"the empty frame begins at 2 s"}},
-      {plates, R"("seed": 1)", {"the motion of plate 1 begins at 2 s"}},
+      {R"({"name": "moving-shape", "vanish_at_s": 2})", "", {"the vanishing of the surface begins at 2 s"}},
+      {R"({"name": "moving-shape", "vanish_at_s": 0.2})", "", {}},
+      {R"({"name": "moving-shape", "empty_frame_at_s": 2})", "", {"the empty frame begins at 2 s"}},
+      {plates, "", {"the motion of plate 1 begins at 2 s"}},
       {R"({"name": "wedge"})",
-       R"("seed": 1)",
+       "",
        {"the closing of the walls begins at 1 s", "the opening of the walls begins at 3 s"}},
-      {R"({"name": "wedge", "closed_gap_m": 0.05})", R"("seed": 1)", {}},
+      {R"({"name": "wedge", "closed_gap_m": 0.05})", "", {}},
       {R"({"name": "wedge", "close_start_s": 4, "close_end_s": 4, "open_start_s": 4, "open_end_s": 4})",
-       R"("seed": 1)",
+       "",
        {}},
   };
   for (const auto& run : runs) {
-    const bool has_duration = run.rest.find("duration_s") != std::string::npos;
-    const std::string rest = has_duration ? run.rest : R"("duration_s": 0.3, )" + run.rest;
+    const std::string rest = R"("duration_s": 0.3)" + (run.rest.empty() ? "" : ", " + run.rest);
     std::vector<std::string> begins;
     for (const Note& note : run_of(run.scenario, still, rest).report.notes)
       if (note.kind == "phase not reached") begins.push_back(note.text.substr(note.text.find("before ") + 7));
     EXPECT_EQ(begins, run.begins) << run.scenario << run.rest;
   }
-}
-
-// A motion that never happens is neither missed nor over.
-TEST(RunReport, SaysNothingOfAPlaneThatDoesNotRise) {
-  const std::string rests = R"({"name": "moving-plane", "start_height_m": 0, "rise_height_m": 0, "wait_s": )";
-  EXPECT_EQ(run_of(rests + "5}", kPress).kinds(), Kinds{});
-  EXPECT_EQ(run_of(rests + "0}", kPress).kinds(), Kinds{});
 }
 
 TEST(RunReport, BecomesAttributesOfTheResult) {
@@ -184,19 +170,33 @@ Names main_names(const Trace& trace, Fixtures fixtures) {
   return names;
 }
 
-TEST(MainMeasures, ProxyRunsReportTheTrueSurfaceFirst) {
-  const Trace trace = run("fig4.12", {});
-  EXPECT_EQ(main_names(trace, Fixtures::none),
-            (Names{"popped_through", "max_penetration", "rms_contact_error", "max_force", "max_force_jump"}));
-  EXPECT_EQ(main_names(trace, Fixtures::some), (Names{"min_slave_distance", "max_force", "max_force_jump",
-                                                      "force_fraction", "unconverged_fraction"}));
-}
-
-TEST(MainMeasures, OfASlaveBeginWithItsContact) {
-  const Trace trace = run("steer-robot", {});
-  EXPECT_EQ(main_names(trace, Fixtures::some),
-            (Names{"max_slave_force", "min_slave_clearance", "max_device_force", "min_slave_distance",
-                   "max_force"}));
+// The true surface is first, the contact of a slave, or the torque of a tool.
+TEST(MainMeasures, AreThoseOfTheKindOfRun) {
+  const struct {
+    const char* experiment;
+    Fixtures fixtures;
+    Names names;
+  } rows[] = {
+      {"fig4.12",
+       Fixtures::none,
+       {"popped_through", "max_penetration", "rms_contact_error", "max_force", "max_force_jump"}},
+      {"fig4.12",
+       Fixtures::some,
+       {"min_slave_distance", "max_force", "max_force_jump", "force_fraction", "unconverged_fraction"}},
+      {"steer-robot",
+       Fixtures::some,
+       {"max_slave_force", "min_slave_clearance", "max_device_force", "min_slave_distance", "max_force"}},
+      {"tool-lift",
+       Fixtures::none,
+       {"tool_popped_through", "max_tool_penetration", "max_force", "max_force_jump", "max_torque"}}};
+  for (const auto& row : rows)
+    EXPECT_EQ(main_names(run(row.experiment, {}), row.fixtures), row.names) << row.experiment;
+  Trace guided;
+  RenderOutput out;
+  out.guidance.emplace().active = true;
+  out.guidance->goal_W = Vec3(0.01, 0, 0);
+  guided.append(0, {}, out, {0.01, 0.01, 0});
+  EXPECT_EQ(main_names(guided, Fixtures::some).at(1), "guidance_error");
 }
 
 TEST(MainMeasures, HaveOthersIfTheTruthIsUnknown) {
@@ -205,19 +205,6 @@ TEST(MainMeasures, HaveOthersIfTheTruthIsUnknown) {
   trace.contact.clear();
   EXPECT_EQ(main_names(trace, Fixtures::none),
             (Names{"max_force", "max_force_jump", "force_fraction", "unconverged_fraction", "mean_steps"}));
-}
-
-TEST(MainMeasures, OfAToolHaveItsTorqueAndGuidanceItsGoal) {
-  EXPECT_EQ(
-      main_names(run("tool-lift", {}), Fixtures::none),
-      (Names{"tool_popped_through", "max_tool_penetration", "max_force", "max_force_jump", "max_torque"}));
-  Trace guided;
-  RenderOutput out;
-  out.guidance.emplace().active = true;
-  out.guidance->goal_W = Vec3(0.01, 0, 0);
-  guided.append(0, {}, out, {0.01, 0.01, 0});
-  EXPECT_EQ(main_names(guided, Fixtures::some).front(), "min_slave_distance");
-  EXPECT_EQ(main_names(guided, Fixtures::some).at(1), "guidance_error");
 }
 
 TEST(MainMeasures, HaveAllThatAreNotBuiltIn) {
@@ -231,10 +218,6 @@ TEST(MainMeasures, HaveAllThatAreNotBuiltIn) {
   EXPECT_EQ(chosen.back().value, 41);
 }
 
-TEST(MainMeasures, AreFewerIfFewHaveAValue) {
-  EXPECT_LE(main_names(Trace(), Fixtures::none).size(), 5u);
-}
-
 TEST(UnitInWords, NamesEveryUnitOfTheBuiltInMeasures) {
   for (const Measure& measure : built_in_measures())
     EXPECT_NE(unit_in_words(measure.unit), measure.unit) << measure.name;
@@ -243,14 +226,9 @@ TEST(UnitInWords, NamesEveryUnitOfTheBuiltInMeasures) {
   EXPECT_EQ(unit_in_words("N/s"), "N/s");
 }
 
-}  // namespace
-}  // namespace remote_touch::run_report_test
+// --- the number of ticks ---
 
-// The number of ticks of a run.
-namespace remote_touch::run_length_test {
-namespace {
-
-Trace run(const std::string& duration_s) {
+Trace run_for(const std::string& duration_s) {
   return simulate(Experiment::load("fig4.11", {"duration_s=" + duration_s}));
 }
 
@@ -259,25 +237,20 @@ Trace run(const std::string& duration_s) {
 TEST(RunLength, RoundingOfTheDurationAddsNoTick) {
   static_assert(0.1 + 0.1 + 0.1 > 0.3);
   for (const char* duration_s : {"0.3", "0.30000000000000004", "0.2999999999999999", "0.3000000005"}) {
-    const Trace trace = run(duration_s);
+    const Trace trace = run_for(duration_s);
     EXPECT_EQ(trace.length(), 300u) << duration_s;
     EXPECT_EQ(trace.time_s.back(), 0.299) << duration_s;
   }
 }
 
 TEST(RunLength, APartOfATickCountsAsATick) {
-  EXPECT_EQ(run("0.30000001").length(), 301u);  // a hundred-thousandth of a tick more
-  EXPECT_EQ(run("0.3009").length(), 301u);
-  EXPECT_EQ(run("0.00001").length(), 1u);
-  EXPECT_HAS(refusal([] { run("0.0000000005"); }), "shorter than a tick");
+  EXPECT_EQ(run_for("0.30000001").length(), 301u);  // a hundred-thousandth of a tick more
+  EXPECT_EQ(run_for("0.3009").length(), 301u);
+  EXPECT_EQ(run_for("0.00001").length(), 1u);
+  EXPECT_HAS(refusal([] { run_for("0.0000000005"); }), "shorter than a tick");
 }
 
-}  // namespace
-}  // namespace remote_touch::run_length_test
-
-// Replayed contacts through the whole loop: renderers whose error is known.
-namespace remote_touch::contact_replay_loop_test {
-namespace {
+// --- replayed contacts: renderers whose error is known ---
 
 Trace replayed(const std::string& renderer, const std::vector<std::string>& settings = {}) {
   const std::string text = R"({"scenario": {"name": "moving-shape"}, "trajectory": {"name": "contact-replay"},
@@ -298,51 +271,15 @@ TEST(ContactReplayLoop, AGodObjectOnAPlaneHasNoError) {
   EXPECT_EQ(lost_contact_fraction(trace), 0);
 }
 
-TEST(ContactReplayLoop, AStiffnessThatDiffersIsARelativeError) {
-  for (const double stiffness : {300.0, 540.0})
-    EXPECT_NEAR(relative_force_error(
-                    replayed("god-object", {"trajectory.onset_distance_m=1e-5",
-                                            "renderer.stiffness_N_per_m=" + std::to_string(stiffness)})),
-                1 - stiffness / 600, 0.001)
-        << stiffness;
-}
-
-// The ball sinks between the points of the grid by up to r_c - sqrt(r_c^2 - s^2 / 2) = 0.11 mm, 0.07 N.
-TEST(ContactReplayLoop, AProxyOnAGridLacksTheForceOfItsSinking) {
-  const Trace trace = replayed("proxy");
-  EXPECT_LT(rms_force_error_N(trace), 600 * 1.14e-4);
-  EXPECT_GT(rms_force_error_N(trace), 0.01);
-  EXPECT_LT(lost_contact_fraction(trace), 0.01);
-  EXPECT_EQ(false_contact_fraction(trace), 0);
-}
-
-TEST(ContactReplayLoop, FrictionIsFoundAsItsCoefficient) {
-  for (const double friction : {0.0, 0.1, 0.3}) {
-    const Trace trace = replayed("surfels", {"renderer.friction=" + std::to_string(friction)});
-    EXPECT_NEAR(apparent_friction(trace), friction, 0.01) << friction;
-    EXPECT_LT(force_direction_error_rad(trace), std::atan(friction) + 0.001) << friction;
-  }
-}
-
 TEST(ContactReplayLoop, OtherRunsHaveNoExpectedForce) {
   EXPECT_FALSE(replayed("proxy", {"operator={}", "duration_s=0.1"}).has_replay());
   EXPECT_TRUE(replayed("proxy", {"device={}", "duration_s=0.1"}).has_replay());
   EXPECT_FALSE(replayed("proxy", {R"(trajectory={"name": "waypoints"})", "duration_s=0.1"}).has_replay());
 }
 
-TEST(ContactReplayLoop, RefusesASceneWithoutASurface) {
-  EXPECT_HAS(refusal([] { replayed("proxy", {R"(scenario={"name": "points"})"}); }),
-             "trajectory.name = contact-replay: no true surface is known");
-}
+// --- a simulated device that rounds, delays, rubs and damps ---
 
-}  // namespace
-}  // namespace remote_touch::contact_replay_loop_test
-
-// Runs with a simulated device that rounds, delays, rubs and damps.
-namespace remote_touch::device_run_test {
-namespace {
-
-Trace run(std::vector<std::string> overrides) {
+Trace run_on_device(std::vector<std::string> overrides) {
   overrides.push_back("duration_s=1.2");
   return simulate(Experiment::load("fig4.11", overrides));
 }
@@ -350,8 +287,8 @@ Trace run(std::vector<std::string> overrides) {
 constexpr const char* kOperator = R"(operator={"stiffness_N_per_m": 300, "damping_Ns_per_m": 15})";
 
 TEST(DeviceRun, RecordsTheTruePoseOnlyIfTheDeviceRoundsIt) {
-  EXPECT_FALSE(run({"device={}"}).has_rounded_hand());
-  const Trace trace = run({R"(device={"position_resolution_m": 0.001})"});
+  EXPECT_FALSE(run_on_device({"device={}"}).has_rounded_hand());
+  const Trace trace = run_on_device({R"(device={"position_resolution_m": 0.001})"});
   ASSERT_TRUE(trace.has_rounded_hand());
   double largest = 0;
   for (std::size_t i = 0; i < trace.length(); ++i) {
@@ -364,44 +301,38 @@ TEST(DeviceRun, RecordsTheTruePoseOnlyIfTheDeviceRoundsIt) {
   EXPECT_LE(largest, 0.0005 + 1e-12);
 }
 
-TEST(DeviceRun, ExertsTheForceOfEarlierTicks) {
-  const Trace trace = run({R"(device={"delay_ticks": 5})"});
-  std::size_t felt = 0;
-  for (std::size_t i = 5; i < trace.length(); ++i) {
-    EXPECT_EQ(trace.device_force_N[i], trace.force_N[i - 5]) << i;
-    felt += trace.device_force_N[i].norm() > 0.1;
-  }
-  EXPECT_GT(felt, 50u);
-}
-
-// A spring that pulls less than friction does not move the hand from its first position.
-TEST(DeviceRun, FrictionHoldsTheHand) {
-  // The path jumps, and a damper would pull with the speed of the jump.
-  const Trace held = run({kOperator, "operator.damping_Ns_per_m=0", R"(device={"friction_N": 100})"});
-  EXPECT_EQ(held.hip_position_m.back(), held.hip_position_m.front());
-  EXPECT_GT((held.intended_position_m.back() - held.hip_position_m.back()).norm(), 0.01);
-  const Trace rubbed = run({kOperator, R"(device={"friction_N": 0.5})"});
-  const Trace smooth = run({kOperator, "device={}"});
-  EXPECT_NE(rubbed.hip_position_m.back(), smooth.hip_position_m.back());
-  EXPECT_NEAR((rubbed.hip_position_m.back() - smooth.hip_position_m.back()).norm(), 0,
-              2 * std::sqrt(3) * 0.5 / 300);
-}
-
-TEST(DeviceRun, TheDamperChangesTheForceInContactOnly) {
-  const Trace trace = run({kOperator, R"(device={"contact_damping_Ns_per_m": 3, "velocity_ticks": 4})"});
+// The device exerts the damped force of five ticks before, and damps only where there is a force.
+TEST(DeviceRun, ExertsAndDampsTheForceOfEarlierTicks) {
+  const Trace trace = run_on_device(
+      {kOperator, R"(device={"delay_ticks": 5, "contact_damping_Ns_per_m": 3, "velocity_ticks": 4})"});
   std::size_t damped = 0;
-  for (std::size_t i = 4; i < trace.length(); ++i) {
-    const Vec3 added = trace.device_force_N[i] - trace.force_N[i];
-    if (trace.force_N[i].isZero(0)) {
+  for (std::size_t i = 9; i < trace.length(); ++i) {
+    const std::size_t then = i - 5;
+    const Vec3 added = trace.device_force_N[i] - trace.force_N[then];
+    if (trace.force_N[then].isZero(0)) {
       EXPECT_TRUE(added.isZero(0)) << i;
       continue;
     }
-    const Vec3 velocity = (trace.hip_position_m[i] - trace.hip_position_m[i - 4]) / 0.004;
+    const Vec3 velocity = (trace.hip_position_m[then] - trace.hip_position_m[then - 4]) / 0.004;
     EXPECT_NEAR((added + 3 * velocity).norm(), 0, 1e-9) << i;
     damped += added.norm() > 1e-6;
   }
   EXPECT_GT(damped, 50u);
 }
 
+// A spring that pulls less than friction does not move the hand from its first position.
+TEST(DeviceRun, FrictionHoldsTheHand) {
+  // The path jumps, and a damper would pull with the speed of the jump.
+  const Trace held =
+      run_on_device({kOperator, "operator.damping_Ns_per_m=0", R"(device={"friction_N": 100})"});
+  EXPECT_EQ(held.hip_position_m.back(), held.hip_position_m.front());
+  EXPECT_GT((held.intended_position_m.back() - held.hip_position_m.back()).norm(), 0.01);
+  const Trace rubbed = run_on_device({kOperator, R"(device={"friction_N": 0.5})"});
+  const Trace smooth = run_on_device({kOperator, "device={}"});
+  EXPECT_NE(rubbed.hip_position_m.back(), smooth.hip_position_m.back());
+  EXPECT_NEAR((rubbed.hip_position_m.back() - smooth.hip_position_m.back()).norm(), 0,
+              2 * std::sqrt(3) * 0.5 / 300);
+}
+
 }  // namespace
-}  // namespace remote_touch::device_run_test
+}  // namespace remote_touch::simulation_test

@@ -128,16 +128,6 @@ TEST(TrackedSheet, APlaneThatRisesPastAFreeProxyTakesItAlong) {
   }
 }
 
-// The sheet vanishes. One frame is bridged, then the proxy is released.
-TEST(TrackedSheet, ForceOfAVanishedSheetEndsOneFrameLaterThanTheProxys) {
-  const double paper = last_force_time_s(run("vanishing-plane", {kProxy}));
-  const double ours = last_force_time_s(run("vanishing-plane", {kSheet}));
-  EXPECT_NEAR(ours - paper, 1.0 / 30, 0.002);
-  EXPECT_NEAR(last_force_time_s(
-                  run("vanishing-plane", {R"(renderer={"name": "tracked-sheet", "max_missed_frames": 0})"})),
-              paper, 0.002);
-}
-
 // The cells of the sheet lie along the world's axes, so a turned scene does not give the same bits. The proxy
 // is held alike.
 TEST(TrackedSheet, ALeaningPlaneIsHeldLikeALevelOne) {
@@ -147,18 +137,6 @@ TEST(TrackedSheet, ALeaningPlaneIsHeldLikeALevelOne) {
                                 setting("scenario.noise_sigma_m", 0.6 * kRc)});
     SCOPED_TRACE(tilt_deg);
     expect_rests_on_plane(trace.signed_distance_m.back(), 0.6);
-  }
-}
-
-// 5.6: a fixture of 2 cm on a noisy cloud keeps the proxy 2.5 cm away.
-TEST(TrackedSheet, FixturesKeepTheirDistance) {
-  const std::string fixture = R"(fixtures=[{"name": "everywhere", "radius_m": 0.02}])";
-  for (const double sigma : {0.0, 0.3}) {
-    const Trace trace =
-        run("fig4.11", {kSheet, fixture, setting("scenario.noise_sigma_m", sigma * kRc),
-                        "trajectory.waypoints=[[0,0.06,0,0],[0,0.01,0,0.1],[0.02,0.01,0.01,0.02]]"});
-    EXPECT_NEAR(trace.signed_distance_m.back(), 0.025, 0.002) << sigma;
-    EXPECT_GT(trace.force_N[trace.length() - 1].y(), 5) << sigma;
   }
 }
 
