@@ -1,7 +1,9 @@
+// What a scorecard says in few numbers: differences from a stored card, overview, weaknesses, thresholds.
 #include "runners/evaluation/scorecard/evaluation.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -18,6 +20,8 @@
 
 namespace remote_touch::card_summaries_test {
 namespace {
+
+using namespace made_cards;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -93,18 +97,6 @@ TEST(CardNumbers, EachNumberThatDiffersHasItsLine) {
   }
 }
 
-TEST(CardNumbers, NewNumbersAreDifferencesAndMissingOnesAreNot) {
-  CardNumbers now = numbers();
-  now.counts[1].cell.method = "newcomer", now.means[1].cell.method = "newcomer";
-  const auto list = differences(numbers(), now);
-  ASSERT_EQ(list.size(), 2u);
-  EXPECT_EQ(list[0], "flat, newcomer, noise 3 mm: its successes are not in the stored card");
-  EXPECT_EQ(list[1], "flat, newcomer, noise 3 mm: max_force is not in the stored card");
-  EXPECT_TRUE(differences(numbers(), {}).empty());
-}
-
-using namespace made_cards;
-
 TEST(Overview, CountsNoiseFreeRunsSeparately) {
   const Scorecard card = card_of({{sweep_of(false, 20, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)},
                                   {sweep_of(true, 10, 1), sweep_of(true, 10, 1), sweep_of(true, 0, 1)}});
@@ -157,16 +149,6 @@ TEST(Weaknesses, AreWhatOthersDoBetterByMoreThanChance) {
   EXPECT_TRUE(weaknesses(card, "nobody").empty());
 }
 
-TEST(Weaknesses, NameTheFirstOfSeveralMethodsAhead) {
-  const Scorecard card = card_of({{sweep_of(true, 0, 1), sweep_of(true, 14, 1), sweep_of(true, 20, 1)}});
-  const auto list = weaknesses(card, kOwnMethod);
-  ASSERT_EQ(list.size(), 1u);
-  EXPECT_EQ(list[0].ahead, 2);
-  EXPECT_EQ(list[0].other, "penalty");
-  EXPECT_EQ(list[0].other_mean, 1);
-  EXPECT_EQ(list[0].p, card.scenes[0].ranking.against[2][0].p);
-}
-
 TEST(Weaknesses, ListsInsignificantDifferencesSeparately) {
   const Scorecard card = card_of({{sweep_of(false, 17, 1), sweep_of(true, 18, 1), sweep_of(true, 20, 1)}});
   const auto list = weaknesses(card, kOwnMethod);
@@ -185,110 +167,53 @@ TEST(Weaknesses, ListsInsignificantDifferencesSeparately) {
           .empty());
 }
 
-}  // namespace
-}  // namespace remote_touch::card_summaries_test
+// --- thresholds ---
 
-namespace remote_touch::threshold_summary_test {
-namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// A sweep of two replicates at each of the noise levels 0 and 5 mm, or of four runs with the scene's own
-// noise.
+// Two replicates at each of the noise levels 0 and 5 mm, or four runs with the scene's own noise.
 SweepResult jumps(const std::vector<double>& held, const std::vector<double>& jump, bool own_noise = false) {
-  SweepResult result;
-  const std::vector<double> levels = own_noise ? std::vector<double>{1} : std::vector<double>{0, 0.005};
-  result.axes = {{"noise_sigma_m", "m", "", levels}};
-  result.replicates = static_cast<int>(held.size() / levels.size());
-  result.measures = {{"held", "1", "", {}}, {"max_relative_jump", "1", "", {}}};
-  result.start(false);
-  result.measures[0].values = held, result.measures[1].values = jump;
-  for (RunState& state : result.state) state = RunState::done;
-  return result;
+  return finished_sweep(own_noise ? std::vector<double>{1} : std::vector<double>{0, 0.005},
+                        {{"held", held}, {"max_relative_jump", jump}});
 }
-
-const std::vector<std::pair<std::string, Better>> kJump = {{"max_relative_jump", Better::neither}};
-
 SceneScore scene_of(const std::vector<SweepResult>& sweeps, bool own_noise = false,
-                    const std::vector<std::pair<std::string, Better>>& measures = kJump) {
-  return score({"scene", "", "", {{"held", 1}}, measures}, sweeps, own_noise);
+                    const char* measure = "max_relative_jump") {
+  return score({"scene", "", "", {{"held", 1}}, {{measure, Better::neither}}}, sweeps, own_noise);
 }
-
-Scorecard card_of(const std::vector<SceneScore>& scenes) {
+Scorecard of_two_methods(const std::vector<SceneScore>& scenes) {
   return {{"one", "two"}, {"", ""}, scenes};
 }
+using Counts = std::array<int, 5>;
+Counts counts_of(const ThresholdCounts& of) {
+  return {of.below, of.runs, of.noise_free_below, of.noise_free_runs, of.scenes};
+}
 
+// One jump of method one is at the threshold; method two fails in the two runs with noise. Then some runs
+// have no value.
 TEST(ThresholdSummary, CountsSuccessfulRunsBelowTheThreshold) {
-  // One jump of method one is at the threshold; method two fails in the two runs with noise.
-  const SceneScore scene =
-      scene_of({jumps({1, 1, 1, 1}, {0.01, 0.2, 0.0699, 0.07}), jumps({1, 1, 0, 0}, {0.3, 0.4, 0, 0})});
-  const auto list = threshold_summary(card_of({scene}));
+  const auto list = threshold_summary(of_two_methods(
+      {scene_of({jumps({1, 1, 1, 1}, {0.01, 0.2, 0.0699, 0.07}), jumps({1, 1, 0, 0}, {0.3, 0.4, 0, 0})})}));
   ASSERT_EQ(list.size(), 1u);
   EXPECT_STREQ(list[0].threshold.measure, "max_relative_jump");
-  const ThresholdCounts &one = list[0].methods[0], &two = list[0].methods[1];
-  EXPECT_EQ(one.below, 1);
-  EXPECT_EQ(one.runs, 2);
-  EXPECT_EQ(one.noise_free_below, 1);
-  EXPECT_EQ(one.noise_free_runs, 2);
-  EXPECT_EQ(one.scenes, 1);
-  EXPECT_EQ(two.below, 0);
-  EXPECT_EQ(two.runs, 0);
-  EXPECT_EQ(two.noise_free_below, 0);
-  EXPECT_EQ(two.noise_free_runs, 2);
-  EXPECT_EQ(two.scenes, 0);
-}
-
-TEST(ThresholdSummary, RunsWithoutAValueDoNotCount) {
-  const SceneScore scene =
-      scene_of({jumps({1, 1, 1, 1}, {kNan, 0.2, 0.01, kNan}), jumps({1, 1, 1, 1}, {kNan, kNan, kNan, kNan})});
-  const auto list = threshold_summary(card_of({scene}));
-  ASSERT_EQ(list.size(), 1u);
-  EXPECT_EQ(list[0].methods[0].below, 1);
-  EXPECT_EQ(list[0].methods[0].runs, 1);
-  EXPECT_EQ(list[0].methods[0].noise_free_runs, 1);
-  EXPECT_EQ(list[0].methods[1].runs, 0);
-  EXPECT_EQ(list[0].methods[1].noise_free_runs, 0);
-}
-
-TEST(ThresholdSummary, EqualRunsWithoutNoiseCountOnce) {
-  const SweepResult equal = jumps({1, 1, 1, 1}, {0.01, 0.01, 0.01, 0.02});
-  const auto list = threshold_summary(card_of({scene_of({equal, equal})}));
-  EXPECT_EQ(list.at(0).methods[0].noise_free_runs, 1);
-  EXPECT_EQ(list[0].methods[0].runs, 2);
+  EXPECT_EQ(counts_of(list[0].methods[0]), (Counts{1, 2, 1, 2, 1}));
+  EXPECT_EQ(counts_of(list[0].methods[1]), (Counts{0, 0, 0, 2, 0}));
+  const auto some = threshold_summary(of_two_methods({scene_of(
+      {jumps({1, 1, 1, 1}, {kNan, 0.2, 0.01, kNan}), jumps({1, 1, 1, 1}, {kNan, kNan, kNan, kNan})})}));
+  ASSERT_EQ(some.size(), 1u);
+  EXPECT_EQ(counts_of(some[0].methods[0]), (Counts{1, 1, 0, 1, 1}));
+  EXPECT_EQ(counts_of(some[0].methods[1]), (Counts{0, 0, 0, 0, 0}));
 }
 
 TEST(ThresholdSummary, AddsAllScenesThatReportTheMeasure) {
-  const SweepResult some = jumps({1, 1, 1, 1}, {0.2, 0.3, 0.01, 0.09});
-  const SceneScore silent = scene_of({some, some}, false, {{"held", Better::neither}});
-  const SweepResult own_noise = jumps({1, 1, 1, 1}, {0.2, 0.3, 0.01, 0.09}, true);
-  const SceneScore own = scene_of({own_noise, own_noise}, true);
-  const auto list = threshold_summary(card_of({scene_of({some, some}), silent, own}));
+  const std::vector<double> jump = {0.2, 0.3, 0.01, 0.09};
+  const SweepResult some = jumps({1, 1, 1, 1}, jump), own_noise = jumps({1, 1, 1, 1}, jump, true);
+  const SceneScore silent = scene_of({some, some}, false, "held"),
+                   own = scene_of({own_noise, own_noise}, true);
+  const auto list = threshold_summary(of_two_methods({scene_of({some, some}), silent, own}));
   ASSERT_EQ(list.size(), 1u);
-  EXPECT_EQ(list[0].methods[1].scenes, 2);
-  EXPECT_EQ(list[0].methods[1].below, 2);
-  EXPECT_EQ(list[0].methods[1].runs, 2 + 4);
-  EXPECT_EQ(list[0].methods[1].noise_free_runs, 2);
-  EXPECT_TRUE(threshold_summary(card_of({silent})).empty());
+  EXPECT_EQ(counts_of(list[0].methods[1]), (Counts{2, 2 + 4, 0, 2, 2}));
+  EXPECT_TRUE(threshold_summary(of_two_methods({silent})).empty());
 }
 
-TEST(ThresholdsTable, HasARowForEachThresholdAndMethod) {
-  const SweepResult some = jumps({1, 1, 1, 1}, {0.2, 0.3, 0.01, 0.09});
-  const Table table = thresholds_table(card_of({scene_of({some, some})}));
-  EXPECT_EQ(table.name, "thresholds");
-  EXPECT_EQ(values_of<std::vector<std::string>>(table, "method"), (std::vector<std::string>{"one", "two"}));
-  EXPECT_EQ(values_of<std::vector<double>>(table, "threshold"), (std::vector<double>{0.07, 0.07}));
-  EXPECT_EQ(values_of<std::vector<std::int32_t>>(table, "below"), (std::vector<std::int32_t>{1, 1}));
-  EXPECT_EQ(values_of<std::vector<std::int32_t>>(table, "runs"), (std::vector<std::int32_t>{2, 2}));
-  EXPECT_EQ(values_of<std::vector<std::int32_t>>(table, "noise_free_runs"),
-            (std::vector<std::int32_t>{2, 2}));
-  for (const Column& column : thresholds_table(card_of({})).columns) EXPECT_EQ(column.length(), 0u);
-}
-
-}  // namespace
-}  // namespace remote_touch::threshold_summary_test
-
-namespace remote_touch::card_folder_test {
-namespace {
+// --- stored cards ---
 
 // Two methods in a scene of a few ticks.
 constexpr const char* kScene = R"({
@@ -331,37 +256,13 @@ class StoredCards : public testing::Test {
   std::filesystem::path file_;
 };
 
-TEST_F(StoredCards, AgreeWithTheSameCardAndWithPartsOfIt) {
-  const StoredCard stored = read_stored_card(file_);
-  EXPECT_EQ(stored.replicates, 3);
-  EXPECT_EQ(stored.methods, (std::vector<std::string>{"proxy", "penalty"}));
-  EXPECT_EQ(stored.scenes, std::vector<std::string>{"short"});
-  EXPECT_EQ(stored.numbers.counts.size(), 2 * scorecard_noise_m().size());
-  EXPECT_TRUE(differences(stored, plan_, card_).empty());
-  const BenchmarkPlan part = plan_in(folder_, chosen_methods({"penalty"}));
-  EXPECT_TRUE(differences(stored, part, scored(part)).empty());
-}
-
-TEST_F(StoredCards, DifferWhereANumberIsAnother) {
-  Scorecard changed = card_;
-  changed.scenes[0].success[0].at_level[2] = {0, 3, 0, 0, 0.5};
-  const auto list = differences(read_stored_card(file_), plan_, changed);
-  ASSERT_EQ(list.size(), 1u);
-  EXPECT_HAS(list[0], "short, proxy, noise 1 mm: 0 of 3 runs succeed, stored 3 of 3");
-}
-
 TEST_F(StoredCards, DifferWhereSomethingIsDefinedAnew) {
   Json scene = parse_json(kScene, "scene");
   scene["success"]["tolerance_m"] = 0.004;
-  BenchmarkPlan plan = plan_in(folder_, chosen_methods({"proxy", "penalty"}), scene.dump());
-  auto list = differences(read_stored_card(file_), plan, card_);
+  const BenchmarkPlan plan = plan_in(folder_, chosen_methods({"proxy", "penalty"}), scene.dump());
+  const auto list = differences(read_stored_card(file_), plan, card_);
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list[0], "scene short: defined in another way in the stored card");
-  plan = plan_;
-  plan.benchmark.methods[0].name = "newcomer";
-  list = differences(read_stored_card(file_), plan, card_);
-  ASSERT_EQ(list.size(), 1u);
-  EXPECT_EQ(list[0], "method newcomer: not in the stored card");
 }
 
 // One of three runs of the own method is behind the proxy's, which is too few to show it.
@@ -430,10 +331,7 @@ TEST_F(StoredCards, AnEvaluationThatFailsGivesTheThreadsBack) {
 }
 
 TEST_F(StoredCards, OtherFilesAreRefused) {
-  EXPECT_HAS(refusal([&] { read_stored_card(folder_ / "none.h5"); }), "none.h5");
   const auto other = folder_ / "other.h5";
-  write_figure(other, scorecard_figure(card_), config_of(plan_));
-  EXPECT_HAS(refusal([&] { read_stored_card(other); }), "not a stored card: expected");
   for (const char* config : {"", "[]", "{}", R"({"replicates": "x", "methods": {}, "scenes": {}})"}) {
     write_stored_card(other, card_, {{"config", config}});
     EXPECT_HAS(refusal([&] { read_stored_card(other); }), "has no configuration of a scorecard");
@@ -448,4 +346,4 @@ TEST_F(StoredCards, OtherFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace remote_touch::card_folder_test
+}  // namespace remote_touch::card_summaries_test

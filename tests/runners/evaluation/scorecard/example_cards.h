@@ -9,23 +9,35 @@
 
 namespace remote_touch::made_cards {
 
+struct NamedValues {
+  const char* name;
+  std::vector<double> values;
+  const char* units = "1";
+};
+
+// A finished sweep over these levels of noise, with the values of its measures.
+inline SweepResult finished_sweep(const std::vector<double>& noise_m,
+                                  const std::vector<NamedValues>& measures) {
+  SweepResult result;
+  result.axes = {{"noise_sigma_m", "m", "", noise_m}};
+  result.replicates = static_cast<int>(measures.front().values.size() / noise_m.size());
+  for (const NamedValues& each : measures) result.measures.push_back({each.name, each.units, "", {}});
+  result.start(false);
+  for (std::size_t i = 0; i < measures.size(); ++i) result.measures[i].values = measures[i].values;
+  for (RunState& state : result.state) state = RunState::done;
+  return result;
+}
+
 // 20 runs without noise, which are all one run, and 20 with noise, of which with_noise succeed. The measure
 // "steps" is 1 without noise. Replicate i with noise has 1 + steps (1 + 0.1 (i mod 3)) + i, where the scatter
 // i is the same for all methods.
 inline SweepResult sweep_of(bool without_noise, int with_noise, double steps) {
-  SweepResult result;
-  result.axes = {{"noise_sigma_m", "m", "", std::vector<double>{0, 0.005}}};
-  result.replicates = 20;
-  result.measures = {{"held", "1", "", {}}, {"steps", "1", "", {}}};
-  result.start(false);
   std::vector<double> held(40, without_noise ? 1.0 : 0.0), count(40, 1);
   for (int i = 0; i < 20; ++i) {
     held[static_cast<std::size_t>(20 + i)] = i < with_noise ? 1 : 0;
     count[static_cast<std::size_t>(20 + i)] = 1 + steps * (1 + 0.1 * (i % 3)) + i;
   }
-  result.measures[0].values = held, result.measures[1].values = count;
-  for (RunState& state : result.state) state = RunState::done;
-  return result;
+  return finished_sweep({0, 0.005}, {{"held", held}, {"steps", count}});
 }
 
 inline constexpr const char* kOwnMethod = "tracked-sheet";

@@ -1,3 +1,4 @@
+// The scores of scenes, and the report of a scorecard as JSON.
 #include "runners/evaluation/scorecard/evaluation.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/files/input_files.h"
+#include "tests/runners/evaluation/scorecard/example_cards.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::scorecard_report_test {
@@ -14,14 +16,7 @@ namespace {
 
 // A finished sweep over these noise levels with the measure end_distance, whose values are `depth`.
 SweepResult sweep_of(const std::vector<double>& depth, const std::vector<double>& noise_m) {
-  SweepResult result;
-  result.axes = {{"noise_sigma_m", "m", "", noise_m, 1, {}}};
-  result.replicates = static_cast<int>(depth.size() / noise_m.size());
-  result.measures = {{"end_distance", "m", "", {}, 1, {}}};
-  result.start(false);
-  for (RunState& state : result.state) state = RunState::done;
-  result.measures[0].values = depth;
-  return result;
+  return made_cards::finished_sweep(noise_m, {{"end_distance", depth, "m"}});
 }
 
 const SceneRules kRules = {
@@ -134,110 +129,109 @@ TEST(ScorecardFigure, HasARowForEverySceneMethodAndLevel) {
   EXPECT_EQ(figure.panels.size(), 2u);
 }
 
-TEST(ScorecardReport, DescribesItsOrigin) {
-  const Json json = json_of(report_of(two_scenes()));
-  EXPECT_EQ(json["schema"], kScorecardSchema);
-  EXPECT_EQ(json["origin"], "remote-touch 1");
-  EXPECT_EQ(json["replicates"], 10);
-  EXPECT_EQ(json["seed"], 431);
-  EXPECT_EQ(json["last_tuned_seed"], 40);
-  EXPECT_EQ(json["min_pairs"], 12);
-  EXPECT_EQ(json["least_pairs"], 12);
-  EXPECT_GE(json["tests"], 1);
-  EXPECT_EQ(json["significance"], 0.05);
-  EXPECT_EQ(json["held_fraction"], 0.9);
-  EXPECT_EQ(json["contact_radius_m"], 0.005);
-  EXPECT_EQ(json["skipped"], Json({{{"name", "absent"}, {"why", "no <recording>"}}}));
-  const Json& first = json["methods"][0];
-  EXPECT_EQ(first["name"], "one");
-  EXPECT_EQ(first["title"], "the first");
-  EXPECT_EQ(first["scenes_held"], 2);
-  EXPECT_EQ(first["scenes_best"], 1);
-  EXPECT_EQ(first["scenes_worst"], 0);
-  EXPECT_NEAR(first["success"]["mean"].get<double>(), (19. / 20 + 39. / 40) / 2, 1e-15);
-  EXPECT_EQ(first["success"]["runs"], 2);
-  EXPECT_EQ(first["noise_free"]["mean"], 1);
-  EXPECT_EQ(first["old_success"]["mean"], 1);
-  EXPECT_EQ(json["behind"], nullptr);  // the project's own method is not in it
-  EXPECT_EQ(json["methods"][1]["scenes_worst"], 1);
+using Facts = std::vector<std::pair<const char*, Json>>;
+
+void expect_facts(const Json& json, const Facts& facts) {
+  for (const auto& [pointer, value] : facts)
+    EXPECT_EQ(json.at(Json::json_pointer(pointer)), value) << pointer;
 }
 
-// Names and titles are stored as they are. The page escapes what it has to.
-TEST(ScorecardReport, HasEverySceneWithItsVerdict) {
-  const std::string text = to_json(report_of(two_scenes()));
-  const Json json = parse_json(text, "scorecard.json"), &first = json["scenes"][0], &own = json["scenes"][1];
-  EXPECT_EQ(first["name"], "flat <&>");
-  EXPECT_EQ(first["title"], "a \"plane\"");
-  EXPECT_EQ(first["success_meaning"], "held");
-  EXPECT_EQ(first["verdict"], "Best: one. Worst: two.");
-  EXPECT_EQ(first["noise_sigma_m"], Json({0.0, 0.005}));
-  EXPECT_EQ(own["name"], "own-noise");
-  EXPECT_EQ(own["verdict"], "No difference between any.");
-  EXPECT_EQ(own["noise_sigma_m"], Json::array({nullptr}));
-  for (const char* part : {"nan", "inf", "NaN", "Infinity"}) EXPECT_FALSE(contains(text, part)) << part;
-  EXPECT_EQ(text, to_json(report_of(two_scenes())));
-}
-
-TEST(ScorecardReport, HasSuccessesWithIntervalsMarksAndFailures) {
+// Names and titles are stored as they are; the page escapes what it has to. Equal runs have no interval, nor
+// has one run; a method that never succeeds has no mean.
+TEST(ScorecardReport, HoldsTheFactsOfTheCard) {
   const Scorecard card = two_scenes();
-  const Json json = json_of(report_of(card)), &one = json["scenes"][0]["success"][0],
-             &two = json["scenes"][0]["success"][1];
+  const std::string text = to_json(report_of(card));
+  const Json json = parse_json(text, "scorecard.json");
   const Proportion& noisy = card.scenes[0].success[0].at_level[1];
-  EXPECT_EQ(one["levels"][0]["successes"], 1);
-  EXPECT_EQ(one["levels"][0]["runs"], 1);
-  EXPECT_EQ(
-      one["levels"][1],
-      Json({{"successes", 19}, {"runs", 20}, {"fraction", 0.95}, {"low", noisy.low}, {"high", noisy.high}}));
-  EXPECT_EQ(one["overall"], one["levels"][1]);
-  EXPECT_EQ(one["noise_free"], one["levels"][0]);
-  EXPECT_EQ(one["old"]["overall"]["successes"], 20);
-  EXPECT_EQ(json["scenes"][1]["success"][0]["old"], nullptr);
-  EXPECT_EQ(json["scenes"][1]["success"][0]["noise_free"], nullptr);
-  EXPECT_EQ(one["mark"], "best");
-  EXPECT_EQ(one["failure"], nullptr);
-  EXPECT_EQ(two["levels"][1]["successes"], 0);
-  EXPECT_EQ(two["mark"], "worst");
-  EXPECT_EQ(two["failure"], Json({{"level", 1},
-                                  {"replicate", 3},
-                                  {"file", "traces/x.h5"},
-                                  {"command", "remote-touch replay runs/x.h5 --cell 1"}}));
-  EXPECT_EQ(json["scenes"][1]["success"][0]["mark"], "none");
+  const Json noisy_level = {
+      {"successes", 19}, {"runs", 20}, {"fraction", 0.95}, {"low", noisy.low}, {"high", noisy.high}};
+  const JudgedMeasure& measure = card.scenes[0].measures[0];
+  expect_facts(json, {{"/schema", kScorecardSchema},
+                      {"/origin", "remote-touch 1"},
+                      {"/replicates", 10},
+                      {"/seed", 431},
+                      {"/last_tuned_seed", 40},
+                      {"/min_pairs", 12},
+                      {"/least_pairs", 12},
+                      {"/significance", 0.05},
+                      {"/held_fraction", 0.9},
+                      {"/contact_radius_m", 0.005},
+                      {"/skipped/0", {{"name", "absent"}, {"why", "no <recording>"}}},
+                      {"/behind", nullptr},  // the project's own method is not in it
+                      {"/methods/0/name", "one"},
+                      {"/methods/0/title", "the first"},
+                      {"/methods/0/scenes_held", 2},
+                      {"/methods/0/scenes_best", 1},
+                      {"/methods/0/scenes_worst", 0},
+                      {"/methods/0/success/runs", 2},
+                      {"/methods/0/noise_free/mean", 1},
+                      {"/methods/0/old_success/mean", 1},
+                      {"/methods/1/scenes_worst", 1},
+                      {"/scenes/0/name", "flat <&>"},
+                      {"/scenes/0/title", "a \"plane\""},
+                      {"/scenes/0/success_meaning", "held"},
+                      {"/scenes/0/verdict", "Best: one. Worst: two."},
+                      {"/scenes/0/noise_sigma_m", {0.0, 0.005}},
+                      {"/scenes/0/success/0/levels/0/successes", 1},
+                      {"/scenes/0/success/0/levels/0/runs", 1},
+                      {"/scenes/0/success/0/levels/1", noisy_level},
+                      {"/scenes/0/success/0/overall", noisy_level},
+                      {"/scenes/0/success/0/old/overall/successes", 20},
+                      {"/scenes/0/success/0/mark", "best"},
+                      {"/scenes/0/success/0/failure", nullptr},
+                      {"/scenes/0/success/1/levels/1/successes", 0},
+                      {"/scenes/0/success/1/mark", "worst"},
+                      {"/scenes/0/success/1/failure",
+                       {{"level", 1},
+                        {"replicate", 3},
+                        {"file", "traces/x.h5"},
+                        {"command", "remote-touch replay runs/x.h5 --cell 1"}}},
+                      {"/scenes/0/measures/0/name", "end_distance"},
+                      {"/scenes/0/measures/0/units", "m"},
+                      {"/scenes/0/measures/0/better", "larger"},
+                      {"/scenes/0/measures/0/methods/0/overall/mean", measure.ranking.mean[0].value},
+                      {"/scenes/0/measures/0/methods/0/overall/runs", 19},
+                      {"/scenes/0/measures/0/methods/0/levels/1/mean", measure.at_level[0][1].value},
+                      {"/scenes/0/measures/0/methods/0/levels/1/low", nullptr},
+                      {"/scenes/0/measures/0/methods/0/levels/0/low", nullptr},
+                      {"/scenes/0/measures/0/methods/1/levels/1/mean", nullptr},
+                      {"/scenes/0/measures/0/methods/1/overall/runs", 0},
+                      {"/scenes/1/name", "own-noise"},
+                      {"/scenes/1/verdict", "No difference between any."},
+                      {"/scenes/1/noise_sigma_m", Json::array({nullptr})},
+                      {"/scenes/1/success/0/old", nullptr},
+                      {"/scenes/1/success/0/noise_free", nullptr},
+                      {"/scenes/1/success/0/mark", "none"}});
+  EXPECT_GE(json["tests"], 1);
+  EXPECT_NEAR(json["methods"][0]["success"]["mean"].get<double>(), (19. / 20 + 39. / 40) / 2, 1e-15);
+  EXPECT_EQ(json["scenes"][0]["success"][0]["noise_free"], json["scenes"][0]["success"][0]["levels"][0]);
+  for (const char* part : {"nan", "inf", "NaN", "Infinity"}) EXPECT_FALSE(contains(text, part)) << part;
 }
 
-TEST(ScorecardReport, HasMeasuresWithUnitsAndIntervals) {
-  const Scorecard card = two_scenes();
-  const Json json = json_of(report_of(card)), &measure = json["scenes"][0]["measures"][0];
-  EXPECT_EQ(measure["name"], "end_distance");
-  EXPECT_EQ(measure["units"], "m");
-  EXPECT_EQ(measure["better"], "larger");
-  const Json& one = measure["methods"][0];
-  EXPECT_EQ(one["overall"]["mean"], card.scenes[0].measures[0].ranking.mean[0].value);
-  EXPECT_EQ(one["overall"]["runs"], 19);
-  EXPECT_EQ(one["levels"][1]["mean"], card.scenes[0].measures[0].at_level[0][1].value);
-  EXPECT_EQ(one["levels"][1]["low"], nullptr);                     // equal runs have no interval
-  EXPECT_EQ(one["levels"][0]["low"], nullptr);                     // nor has one run
-  EXPECT_EQ(measure["methods"][1]["levels"][1]["mean"], nullptr);  // a method that never succeeds has no mean
-  EXPECT_EQ(measure["methods"][1]["overall"]["runs"], 0);
-}
-
-// The list "behind" of the project's own method comes from weaknesses().
+// The list "behind" of the project's own method comes from weaknesses(). A measure that is not judged has no
+// mark.
 TEST(ScorecardReport, SaysWhereTheOwnMethodIsBehind) {
   Scorecard card = two_scenes();
   card.methods[1] = "tracked-sheet";
-  const Json behind = json_of(report_of(card))["behind"];
-  EXPECT_EQ(behind["method"], "tracked-sheet");
-  ASSERT_EQ(behind["list"].size(), 2u);
-  const Json& first = behind["list"][0];
-  EXPECT_EQ(first["scene"], "flat <&>");
-  EXPECT_EQ(first["what"], "success");
-  EXPECT_EQ(first["other"], "one");
-  EXPECT_EQ(first["ahead"], 1);
-  EXPECT_EQ(first["own_mean"], 0);
-  EXPECT_EQ(first["other_mean"], 0.95);
-  EXPECT_EQ(first["significant"], true);
-  EXPECT_LT(first["p"], 0.05);
-  EXPECT_EQ(behind["list"][1]["what"], "success without noise");
-  EXPECT_EQ(behind["list"][1]["p"], nullptr);
+  const Json json = json_of(report_of(card));
+  EXPECT_EQ(json["behind"]["list"].size(), 2u);
+  expect_facts(json, {{"/behind/method", "tracked-sheet"},
+                      {"/behind/list/0/scene", "flat <&>"},
+                      {"/behind/list/0/what", "success"},
+                      {"/behind/list/0/other", "one"},
+                      {"/behind/list/0/ahead", 1},
+                      {"/behind/list/0/own_mean", 0},
+                      {"/behind/list/0/other_mean", 0.95},
+                      {"/behind/list/0/significant", true},
+                      {"/behind/list/1/what", "success without noise"},
+                      {"/behind/list/1/p", nullptr}});
+  EXPECT_LT(json["behind"]["list"][0]["p"], 0.05);
+  const char* const mark = "/scenes/0/measures/0/methods/0/mark";
+  JudgedMeasure& measure = card.scenes[0].measures[0];
+  measure.ranking.order = {0, 1}, measure.ranking.ranked = 2, measure.ranking.has_best = true;
+  expect_facts(json_of(report_of(card)), {{mark, "best"}});
+  measure.better = Better::neither;
+  expect_facts(json_of(report_of(card)), {{mark, "none"}});
 }
 
 // Method one has a jump below the threshold in 19 of its 20 runs with noise, and method two in none.
@@ -267,27 +261,11 @@ TEST(ScorecardReport, HasTheRunsBelowEachThreshold) {
            {{"scenes", 1}, {"below", 0}, {"runs", 1}, {"noise_free_below", 0}, {"noise_free_runs", 1}}}));
 }
 
-TEST(ScorecardReport, AMeasureThatIsNotJudgedHasNoMark) {
-  Scorecard card = two_scenes();
-  JudgedMeasure& measure = card.scenes[0].measures[0];
-  measure.ranking.order = {0, 1}, measure.ranking.ranked = 2, measure.ranking.has_best = true;
-  const auto mark = [&] {
-    return json_of(report_of(card))["scenes"][0]["measures"][0]["methods"][0]["mark"];
-  };
-  EXPECT_EQ(mark(), "best");
-  measure.better = Better::neither;
-  EXPECT_EQ(mark(), "none");
-}
-
 TEST(ScorecardReport, AnErrorIsShownAsTheFailureThatItIs) {
   ScorecardReport report = report_of(two_scenes());
   report.failures[0][1] = FailureTrace{1, 3, {}, {}, "cannot <be> run"};
   EXPECT_EQ(json_of(report)["scenes"][0]["success"][1]["failure"],
             Json({{"level", 1}, {"replicate", 3}, {"error", "cannot <be> run"}}));
-}
-
-TEST(ScorecardReport, AMessageMayHoldAnyBytes) {
-  ScorecardReport report = report_of(two_scenes());
   report.skipped = {{"absent", "no file a\xff.png"}};
   EXPECT_EQ(json_of(report)["skipped"][0]["why"], "no file a\xEF\xBF\xBD.png");
 }
@@ -334,27 +312,20 @@ TEST(Costs, UnmeasuredCostsAreNotSorted) {
   EXPECT_EQ(json_of(report)["costs"], nullptr);
 }
 
-TEST(Costs, AreReadWhereTheyAreOfThisBuildAndMachine) {
+// The error of a run may be one of the machine, such as too little memory, so its cost is measured again.
+TEST(Costs, AreReadWhereTheyWereMeasuredByThisBuildAndMachine) {
   const TestFolder folder("costs");
   const TextAttributes here = {{"source_digest", "s"}, {"isa", "i"}, {"cpu", "c"}},
                        other = {{"source_digest", "s"}, {"isa", "i"}, {"cpu", "d"}};
-  write_costs(folder / "costs.json", {{"a", "b", 1e-5, std::nan("")}}, here);
+  const double none = std::nan("");
+  write_costs(folder / "costs.json", {{"a", "failed", none, none}, {"a", "b", 1e-5, none}}, here);
   const std::vector<Cost> costs = read_costs(folder / "costs.json", here);
   ASSERT_EQ(costs.size(), 1u);
+  EXPECT_EQ(costs[0].method, "b");
   EXPECT_EQ(costs[0].tick_s, 1e-5);
   EXPECT_TRUE(std::isnan(costs[0].frame_s));
   EXPECT_TRUE(read_costs(folder / "costs.json", other).empty());
   EXPECT_TRUE(read_costs(folder / "none.json", here).empty());
-}
-
-// The error may be one of the machine, such as too little memory, so the cost is measured again.
-TEST(Costs, OfARunThatEndedWithAnErrorAreNotRead) {
-  const TestFolder folder("costs");
-  const TextAttributes here = {{"source_digest", "s"}, {"isa", "i"}, {"cpu", "c"}};
-  write_costs(folder / "costs.json", {{"a", "b", std::nan(""), std::nan("")}, {"a", "c", 1e-5, 1e-4}}, here);
-  const std::vector<Cost> costs = read_costs(folder / "costs.json", here);
-  ASSERT_EQ(costs.size(), 1u);
-  EXPECT_EQ(costs[0].method, "c");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Standings of methods, the rule of success, and the tables of a scorecard's figure.
 #include "runners/evaluation/scorecard/scorecard.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +13,10 @@
 #include "runners/evaluation/scorecard/evaluation.h"
 #include "tests/runners/evaluation/scorecard/example_cards.h"
 
-namespace remote_touch::ranking_test {
+namespace remote_touch::scorecard_test {
 namespace {
+
+using namespace made_cards;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -36,65 +39,71 @@ std::vector<double> twice(std::vector<double> values) {
   return values;
 }
 
-TEST(Standings, MarksBestAndWorstIfThePairsShowIt) {
+using Places = std::vector<std::size_t>;
+
+struct RankedMethods {
+  const char* what;
+  std::vector<PairedValues> methods;
+  Better better;
+  bool is_event;
+  Places order;
+  bool has_best, has_worst;
+  Places top_group;
+};
+
+TEST(Standings, HaveABestAndAWorstIfThePairsShowIt) {
+  const auto level = [](std::vector<double> values) { return PairedValues(1, std::move(values)); };
   // The methods are 0.2 apart and the spread is 1, so only the comparison of pairs shows the difference.
   const std::vector<PairedValues> three = {values_around(0.2, 0), values_around(0, 1), values_around(0.4, 2)};
-  const Ranking smaller = ranking(three, Better::smaller, false);
-  EXPECT_EQ(smaller.order, (std::vector<std::size_t>{1, 0, 2}));
-  EXPECT_TRUE(smaller.has_best && smaller.has_worst);
-  EXPECT_EQ(smaller.top_group, (std::vector<std::size_t>{1}));
-  EXPECT_EQ(ranking(three, Better::larger, false).order, (std::vector<std::size_t>{2, 0, 1}));
-  const Ranking reported = ranking(three, Better::neither, false);
-  EXPECT_FALSE(reported.has_best || reported.has_worst);
-}
-
-TEST(Standings, EqualMethodsHaveNoBestAndNoWorst) {
   const PairedValues one = values_around(0, 0);
-  const Ranking same = ranking({one, one, values_around(0, 0)}, Better::smaller, false);
-  EXPECT_FALSE(same.has_best || same.has_worst);
-  EXPECT_EQ(same.top_group.size(), 3u);
-  const Ranking two_best = ranking({one, values_around(3, 1), one}, Better::smaller, false);
-  EXPECT_FALSE(two_best.has_best);
-  EXPECT_TRUE(two_best.has_worst);
-  EXPECT_EQ(two_best.top_group, (std::vector<std::size_t>{0, 2}));
-}
-
-TEST(Standings, FewFlippedEventsAreNoDifference) {
   const PairedValues all(2, std::vector<double>(20, 1)), none(2, std::vector<double>(20, 0));
   PairedValues one_less = all;
   one_less[1][3] = 0;
-  const Ranking success = ranking({none, one_less, all}, Better::larger, true);
-  EXPECT_EQ(success.order, (std::vector<std::size_t>{2, 1, 0}));
-  EXPECT_FALSE(success.has_best);
-  EXPECT_TRUE(success.has_worst);
-  EXPECT_EQ(success.top_group, (std::vector<std::size_t>{2, 1}));
-}
-
-TEST(Standings, BestNeedsPairsThatAgreeWithTheOrder) {
-  // The first method has values only at the easy level, so its own mean is the best, but it is worse in every
-  // pair.
   const PairedValues early = {twice({1, 1.1, 0.9, 1, 1.1, 0.9}), std::vector<double>(12, kNan)};
-  const PairedValues all = {twice({0.5, 0.6, 0.4, 0.5, 0.6, 0.4}), twice({3, 3.1, 2.9, 3, 3.1, 2.9})};
-  const Ranking result = ranking({early, all}, Better::smaller, false);
-  EXPECT_EQ(result.order.front(), 0u);
-  EXPECT_FALSE(result.has_best || result.has_worst);
-  EXPECT_EQ(result.top_group.size(), 2u);
-}
-
-TEST(Standings, TheBestIsApartFromAllOthers) {
-  // The third has a worse mean than the second, but has values for only half of the runs and is mostly as
-  // good as the first.
+  const PairedValues both = {twice({0.5, 0.6, 0.4, 0.5, 0.6, 0.4}), twice({3, 3.1, 2.9, 3, 3.1, 2.9})};
+  const PairedValues low = level(twice({-5, -4, -6, -5, -4, -6})), high = level(twice({1, 2, 1, 2, 1, 2}));
   PairedValues first(1, std::vector<double>(24, 1)), second(1, std::vector<double>(24, 2)),
-      third(1, twice({1, 0.9, 9, 1, 0.9, 1}));
+      third = level(twice({1, 0.9, 9, 1, 0.9, 1}));
   third[0].resize(24, kNan);
   second[0][1] = second[0][8] = 2.1;
-  const Ranking result = ranking({first, second, third}, Better::smaller, false);
-  EXPECT_EQ(result.order, (std::vector<std::size_t>{0, 1, 2}));
-  EXPECT_FALSE(result.has_best);
-  EXPECT_EQ(result.top_group, (std::vector<std::size_t>{0, 2}));
-  const Ranking reverse = ranking({first, second, third}, Better::larger, false);
-  EXPECT_EQ(reverse.order, (std::vector<std::size_t>{2, 1, 0}));
-  EXPECT_FALSE(reverse.has_worst);
+  const RankedMethods cases[] = {
+      {"three apart", three, Better::smaller, false, {1, 0, 2}, true, true, {1}},
+      {"larger is better", three, Better::larger, false, {2, 0, 1}, true, true, {2}},
+      {"equal ones", {one, one, one}, Better::smaller, false, {0, 1, 2}, false, false, {0, 1, 2}},
+      {"two that are best",
+       {one, values_around(3, 1), one},
+       Better::smaller,
+       false,
+       {0, 2, 1},
+       false,
+       true,
+       {0, 2}},
+      {"one flipped event", {none, one_less, all}, Better::larger, true, {2, 1, 0}, false, true, {2, 1}},
+      // The first has values only at the easy level, so its own mean is the best, but it is worse in every
+      // pair.
+      {"pairs against the order", {early, both}, Better::smaller, false, {0, 1}, false, false, {0, 1}},
+      // The third has a worse mean than the second, but has values for only half of the runs and is mostly as
+      // good as the first.
+      {"one like the best", {first, second, third}, Better::smaller, false, {0, 1, 2}, false, false, {0, 2}},
+      {"below zero", {low, high}, Better::smaller, false, {0, 1}, true, true, {0}},
+      {"near zero", {low, high}, Better::near_zero, false, {1, 0}, true, true, {1}}};
+  for (const RankedMethods& each : cases) {
+    SCOPED_TRACE(each.what);
+    const Ranking found = ranking(each.methods, each.better, each.is_event);
+    EXPECT_EQ(found.order, each.order);
+    EXPECT_EQ(found.has_best, each.has_best);
+    EXPECT_EQ(found.has_worst, each.has_worst);
+    EXPECT_EQ(found.top_group, each.top_group);
+  }
+  const Ranking reported = ranking(three, Better::neither, false);
+  EXPECT_FALSE(reported.has_best || reported.has_worst);
+  EXPECT_FALSE(ranking({first, second, third}, Better::larger, false).has_worst);
+  const PairedValues unknown(1, std::vector<double>(12, kNan));
+  const Ranking partly = ranking({unknown, high, low}, Better::smaller, false);
+  EXPECT_EQ(partly.order, (Places{2, 1, 0})) << "a method without numbers is not ranked";
+  EXPECT_TRUE(partly.has_best && partly.has_worst);
+  EXPECT_EQ(partly.ranked, 2u);
+  EXPECT_EQ(ranking({unknown, unknown}, Better::smaller, false).ranked, 0u);
 }
 
 TEST(Standings, TooFewCommonPairsGiveNoVerdict) {
@@ -195,55 +204,23 @@ TEST(Standings, ASkewedDifferenceEarnsNoVerdict) {
   EXPECT_FALSE(skewed.has_best || skewed.has_worst);
 }
 
-TEST(Standings, NearZeroComparesMagnitudes) {
-  const PairedValues low(1, twice({-5, -4, -6, -5, -4, -6})), high(1, twice({1, 2, 1, 2, 1, 2}));
-  EXPECT_EQ(ranking({low, high}, Better::near_zero, false).order.front(), 1u);
-  EXPECT_EQ(ranking({low, high}, Better::smaller, false).order.front(), 0u);
-}
-
-TEST(Standings, AMethodWithoutNumbersIsNotRanked) {
-  const PairedValues none(1, std::vector<double>(12, kNan)), good(1, twice({1, 2, 1.5, 1, 2, 1.5})),
-      bad(1, twice({9, 10, 9.5, 9, 10, 9.5}));
-  const Ranking result = ranking({none, bad, good}, Better::smaller, false);
-  EXPECT_EQ(result.order, (std::vector<std::size_t>{2, 1, 0}));
-  EXPECT_EQ(result.ranked, 2u);
-  EXPECT_TRUE(result.has_best && result.has_worst);
-  EXPECT_EQ(ranking({none, none}, Better::smaller, false).ranked, 0u);
-}
-
-}  // namespace
-}  // namespace remote_touch::ranking_test
-
-namespace remote_touch::scorecard_test {
-namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 // Two levels of noise, five replicates each.
-SweepResult sweep_of(const std::vector<double>& depth, const std::vector<double>& time) {
-  SweepResult result;
-  result.axes = {{"noise", "m", "", std::vector<double>{0, 0.001}}};
-  result.replicates = 5;
-  result.measures = {{"depth", "m", "", {}}, {"time", "s", "", {}}};
-  result.start(false);
-  for (RunState& state : result.state) state = RunState::done;
-  result.measures[0].values = depth;
-  result.measures[1].values = time;
-  return result;
+SweepResult depths_and_times(const std::vector<double>& depth, const std::vector<double>& time) {
+  return finished_sweep({0, 0.001}, {{"depth", depth, "m"}, {"time", time, "s"}});
 }
 
 const std::vector<Bound> kBounds = {{"depth", -1}, {"time", 2, 3}};
 
 TEST(SuccessRule, EveryBoundMustHoldIncludingItsEnds) {
   const SweepResult sweep =
-      sweep_of({-1, -1.01, 5, kNan, 0, 0, 0, 0, 0, 0}, {2, 2, 3, 2, kNan, 3.01, 1.99, 2.5, 2, 3});
+      depths_and_times({-1, -1.01, 5, kNan, 0, 0, 0, 0, 0, 0}, {2, 2, 3, 2, kNan, 3.01, 1.99, 2.5, 2, 3});
   EXPECT_EQ(successes(sweep, kBounds),
             (std::vector<bool>{true, false, true, false, false, false, false, true, true, true}));
   EXPECT_THROW(successes(sweep, {{"height"}}), std::out_of_range);
 }
 
 TEST(SuccessRule, ARunThatFailedIsNoSuccessWhateverTheBounds) {
-  SweepResult sweep = sweep_of(std::vector<double>(10, 0), std::vector<double>(10, 2.5));
+  SweepResult sweep = depths_and_times(std::vector<double>(10, 0), std::vector<double>(10, 2.5));
   sweep.state[4] = RunState::failed;
   for (const std::vector<Bound>& bounds : {kBounds, {}}) {
     const std::vector<bool> won = successes(sweep, bounds);
@@ -253,28 +230,20 @@ TEST(SuccessRule, ARunThatFailedIsNoSuccessWhateverTheBounds) {
 }
 
 TEST(SuccessRule, TheTypicalFailureIsTheOneInTheMiddle) {
-  const SweepResult sweep = sweep_of({0, 0, 0, 0, 0, -4, -2, 0, -3, kNan}, std::vector<double>(10, 2.5));
+  const SweepResult sweep =
+      depths_and_times({0, 0, 0, 0, 0, -4, -2, 0, -3, kNan}, std::vector<double>(10, 2.5));
   EXPECT_EQ(typical_failure(sweep, kBounds, 0), -1);
   EXPECT_EQ(typical_failure(sweep, kBounds, 1), 8);  // the second of -4, -3, -2 and NaN
 }
 
 TEST(SuccessRule, ErrorsAreFailuresBehindAllOthers) {
-  SweepResult sweep = sweep_of({0, 0, 0, 0, 0, -4, -2, 0, 0, 0}, std::vector<double>(10, 2.5));
+  SweepResult sweep = depths_and_times({0, 0, 0, 0, 0, -4, -2, 0, 0, 0}, std::vector<double>(10, 2.5));
   sweep.state[2] = RunState::failed;
   EXPECT_EQ(typical_failure(sweep, kBounds, 0), 2);
   sweep.state[7] = RunState::failed;
   EXPECT_EQ(typical_failure(sweep, kBounds, 1), 6);  // the second of -4, -2 and an error
 }
 
-}  // namespace
-}  // namespace remote_touch::scorecard_test
-
-namespace remote_touch::scorecard_figure_test {
-namespace {
-
-// The tables of a scorecard's figure: their content and units.
-
-using namespace made_cards;
 using Texts = std::vector<std::string>;
 using Counts = std::vector<std::int32_t>;
 using Numbers = std::vector<double>;
@@ -347,4 +316,4 @@ TEST(ScorecardFigure, ColumnsOfTheOverviewAreExplained) {
 }
 
 }  // namespace
-}  // namespace remote_touch::scorecard_figure_test
+}  // namespace remote_touch::scorecard_test
