@@ -95,13 +95,10 @@ TEST(Plugin, ALibraryWithAMistakeIsRefused) {
   EXPECT_HAS(load(5), "mistaken: has live settings and no set_values");
   EXPECT_HAS(load(7), "mistaken: settings: expected at most");
   EXPECT_HAS(load(8), "mistaken: contact_model");
+  EXPECT_HAS(refusal([] { load_plugin(ENDLESS_PLUGIN); }), "has too many renderers: expected at most 1000");
   Catalog catalog = built_in_catalog();
   EXPECT_EQ(refusal([&] { catalog.add(load_plugin(PLUGIN_FOLDER "/libplugin_mistake_6.so").front()); }),
             "renderer \"proxy\": is in the catalog already");
-}
-
-TEST(Plugin, ALibraryWithTooManyRenderersIsRefused) {
-  EXPECT_HAS(refusal([] { load_plugin(ENDLESS_PLUGIN); }), "has too many renderers: expected at most 1000");
 }
 
 // A renderer whose functions that free something throw; its prepared frames are this number.
