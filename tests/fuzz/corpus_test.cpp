@@ -1,11 +1,15 @@
 // Every seed of the corpus goes once through its target, so that a fault that was found once stays mended in
-// every build.
+// every build; and the child process of libFuzzer's programs.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
+#include <stdexcept>
 
 #include "tests/fuzz/shared/fuzz_target.h"
+#include "tests/fuzz/shared/lasting_child.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::fuzz {
@@ -51,6 +55,40 @@ TEST(CorpusFolders, EachHasATarget) {
     EXPECT_TRUE(std::any_of(targets().begin(), targets().end(), [&](const Target& target) {
       return target.name == folder;
     })) << folder;
+}
+
+// Misbehaves as a library may that reads a damaged file.
+std::string misbehave(const std::string& how) {
+  static int count = 0;
+  if (how == "count") return std::to_string(++count);
+  if (how == "throw") throw std::runtime_error("no such thing");
+  if (how == "crash") std::raise(SIGSEGV);
+  if (how == "fill") return std::string(std::size_t{1} << 30, 'x').substr(0, 1);
+  if (how == "end") ::_exit(0);
+  return how;
+}
+
+// A child that reads many files answers like a child that begins anew for each of them.
+TEST(LastingChild, ReportsEachEndLikeAChildPerQuestion) {
+  const auto told = [](const RunInChild& run, const std::string& question) -> std::string {
+    try {
+      return "answered " + run({256u << 20, 1}, misbehave, question);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  LastingChild child;
+  const std::string long_text(1'000'000, 'x');  // more than a pipe takes at once
+  for (const std::string& question :
+       {std::string(), long_text, std::string("a\0b\n", 4), std::string("throw")})
+    EXPECT_EQ(told(std::ref(child), question), told(in_own_child, question));
+  for (int i = 1; i < 4; ++i) EXPECT_EQ(told(std::ref(child), "count"), "answered " + std::to_string(i));
+  EXPECT_EQ(child.begun(), 1);
+  for (const std::string question : {"crash", "fill", "end"}) {
+    EXPECT_EQ(told(std::ref(child), question), told(in_own_child, question)) << question;
+    EXPECT_HAS(told(std::ref(child), "count"), "answered ");  // the next question is read as ever
+  }
+  EXPECT_EQ(child.repeated(), 3);
 }
 
 }  // namespace

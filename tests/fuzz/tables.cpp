@@ -4,7 +4,6 @@
 #include "runners/experiment/hand/trajectory.h"
 #include "scenarios/objects/mesh_object.h"
 #include "tests/fuzz/shared/fuzz_target.h"
-#include "tests/fuzz/shared/scratch_file.h"
 
 namespace remote_touch::fuzz::tables {
 namespace {

@@ -1,6 +1,7 @@
 // A fuzz target: one reader of the program, which receives bytes of any origin.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,5 +42,10 @@ bool accepts(std::string_view bytes, Read&& read) {
     return false;
   }
 }
+
+// Writes a file of that name with these bytes in a folder of this process, for readers that need one, and
+// returns its path. The folder is below TMPDIR, which scripts/fuzz puts into memory, and is removed at the
+// end.
+std::filesystem::path scratch_file(const std::string& name, std::string_view bytes);
 
 }  // namespace remote_touch::fuzz

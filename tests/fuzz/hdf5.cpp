@@ -1,18 +1,34 @@
-// HDF5 files of other programs: sound, but with attributes and datasets of any type and shape. The bytes
-// choose them, the library makes the file, and the reader reads it in this process.
+// HDF5 files: damaged ones, those of other programs, and the answers of the child process that reads them.
 #include <hdf5.h>
-
 #include <algorithm>
 #include <array>
 #include <stdexcept>
 
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/hdf5_values.h"
+#include "analysis/sweeps/sweep_file.h"
 #include "tests/fuzz/shared/fuzz_target.h"
-#include "tests/fuzz/shared/scratch_file.h"
+#include "tests/fuzz/shared/lasting_child.h"
 
-namespace remote_touch::fuzz::hdf5_shapes {
+namespace remote_touch::fuzz::hdf5 {
 namespace {
+
+// Damaged and foreign HDF5 files. The HDF5 library reads them in a child process with limits.
+
+void read_bytes(std::string_view bytes) {
+  use_hdf5();  // it begins here, once, and not in each child
+  const auto file = scratch_file("file.h5", bytes);
+  accepts(bytes, [&] {
+    const Hdf5Reader reader(file, run_in_child());
+    if (reader.has("/sweep/checksum")) read_sweep(reader);
+    for (const std::string& dataset : reader.datasets()) reader.column(dataset);
+  });
+}
+
+const Registered of_bytes("hdf5_bytes", read_bytes);
+
+// HDF5 files of other programs: sound, but with attributes and datasets of any type and shape. The bytes
+// choose them, the library makes the file, and the reader reads it in this process.
 
 constexpr int kMaxObjects = 8;
 
@@ -169,7 +185,7 @@ void read_all(const Hdf5Source& source, std::string_view bytes) {
     });
 }
 
-void read(std::string_view bytes) {
+void read_shapes(std::string_view bytes) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const auto file = scratch_file("shapes.h5", "");
   Choices choose(bytes);
@@ -177,7 +193,28 @@ void read(std::string_view bytes) {
   read_all(*open_hdf5(file), bytes);
 }
 
-const Registered registered("hdf5_shapes", read);
+const Registered of_shapes("hdf5_shapes", read_shapes);
+
+// Reads the answer of a child process about an HDF5 file. The child has read bytes of unknown origin, and may
+// send anything.
+
+// A refusal is the text that the reader of the file would report.
+template <class Unpack>
+void read_as(const std::string& bytes, Unpack unpack) {
+  try {
+    require(packed(unpack(bytes)) == bytes, "an answer is packed as it was");
+  } catch (const std::runtime_error& refusal) {
+    require_one_line(refusal.what(), bytes);
+  }
+}
+
+void read_answer(std::string_view bytes) {
+  const std::string answer(bytes);
+  read_as(answer, unpacked_summary);
+  read_as(answer, unpacked_column);
+}
+
+const Registered of_answer("child_answer", read_answer);
 
 }  // namespace
-}  // namespace remote_touch::fuzz::hdf5_shapes
+}  // namespace remote_touch::fuzz::hdf5

@@ -1,17 +1,18 @@
-// Sweeps as JSON. Every cell is checked, which takes minutes for millions of cells, so only small sweeps are
-// read.
-#include "runners/sweep/sweep.h"
-
+// Sweeps, and methods and scenes of the scorecard, as JSON.
 #include <omp.h>
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "runners/evaluation/scorecard/benchmark.h"
+#include "runners/sweep/sweep.h"
 #include "scenarios/files/input_files.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
-namespace remote_touch::fuzz::sweep {
+namespace remote_touch::fuzz::plans {
 namespace {
+
+// Sweeps as JSON. Every cell is checked, which takes minutes for millions of cells, so only small sweeps are
+// read.
 
 constexpr double kMaxCells = 16, kMaxReplicates = 1000;
 
@@ -51,7 +52,7 @@ bool reads_no_file(const Json& json) {
   return false;
 }
 
-void read(std::string_view bytes) {
+void read_sweep(std::string_view bytes) {
   const std::string text(bytes);
   omp_set_num_threads(1);
   accepts(bytes, [&] {
@@ -66,7 +67,26 @@ void read(std::string_view bytes) {
   });
 }
 
-const Registered registered("sweep", read);
+const Registered of_sweep("sweep", read_sweep);
+
+// Methods and scenes of the scorecard as JSON. The first byte selects one of them.
+
+void read_part(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string text(bytes.substr(1));
+  accepts(bytes, [&] {
+    if (bytes.front() == 'm') {
+      const Method method = read_method("fuzz", text);
+      configuration({method}, {}, 2);
+    } else {
+      const BenchmarkScene scene = read_benchmark_scene("fuzz", text);
+      configuration({}, {scene}, 2);
+      scene.sweep({"proxy", "proxy", R"({"name": "proxy"})"}, 2);
+    }
+  });
+}
+
+const Registered of_part("scorecard_part", read_part);
 
 }  // namespace
-}  // namespace remote_touch::fuzz::sweep
+}  // namespace remote_touch::fuzz::plans

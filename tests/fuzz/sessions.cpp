@@ -1,19 +1,41 @@
-// Unfinished recordings: the bytes as they are, and with corrected numbers and checksums of the blocks.
-#include "runners/experiment/sessions/session_file.h"
-
+// Recorded sessions, finished or not.
 #include <unistd.h>
 #include <zlib.h>
-
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "analysis/storage/block_journal.h"
+#include "runners/experiment/catalog/experiment.h"
+#include "runners/experiment/sessions/session_file.h"
+#include "runners/experiment/sessions/session_scene.h"
+#include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
-namespace remote_touch::fuzz::unfinished_session {
+namespace remote_touch::fuzz::sessions {
 namespace {
+
+// Recorded sessions (content_text.h): view, ticks and frames.
+
+void read_session(std::string_view bytes) {
+  accepts(bytes, [&] {
+    const SessionReader session(reader_of(content_of(bytes)));
+    const CameraIntrinsics& camera = session.view().camera;
+    require(camera.width > 0 && camera.height > 0 && session.haptic_rate_hz() > 0, "a session has a view");
+    for (std::size_t i = 0; i < session.tick_count(); ++i) {
+      require(session.taken(i) < static_cast<std::int32_t>(session.frame_count()), "a frame was recorded");
+      session.device(i);
+    }
+    for (std::size_t i = 0; i < session.frame_count(); ++i)
+      require(session.frame(i).depth.size() == camera.pixels(), "every pixel has a depth");
+    Experiment::from_json(session_experiment(session, "fuzz.h5"), "fuzz.h5");
+  });
+}
+
+const Registered of_session("session_file", read_session);
+
+// Unfinished recordings: the bytes as they are, and with corrected numbers and checksums of the blocks.
 
 // Positions in the header of a block, see block_journal.h.
 constexpr std::size_t kNumber = 8, kSize = 16, kContentSum = 24, kHeaderSum = 28, kHeaderSize = 32;
@@ -57,12 +79,12 @@ void recover(const std::string& bytes) {
   std::filesystem::remove_all(folder);
 }
 
-void read(std::string_view bytes) {
+void read_unfinished(std::string_view bytes) {
   recover(std::string(bytes));
   recover(mended(std::string(bytes)));
 }
 
-const Registered registered("unfinished_session", read);
+const Registered of_unfinished("unfinished_session", read_unfinished);
 
 }  // namespace
-}  // namespace remote_touch::fuzz::unfinished_session
+}  // namespace remote_touch::fuzz::sessions

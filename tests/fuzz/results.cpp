@@ -1,16 +1,46 @@
-// Sweeps in result files, finished or not (content_text.h). A digest "right" is replaced by that of the
-// content, so that the code after its check is reached.
-#include "analysis/sweeps/sweep_file.h"
-
+// Results, as text (content_text.h): they are read, compared and exported. The list of baselines is read,
+// too.
 #include <algorithm>
 #include <sstream>
 
+#include "analysis/sweeps/sweep_file.h"
+#include "runners/evaluation/regression/baselines.h"
 #include "runners/evaluation/regression/result_comparison.h"
+#include "runners/presentation/export_formats.h"
 #include "tests/fuzz/shared/content_text.h"
 #include "tests/fuzz/shared/fuzz_target.h"
 
-namespace remote_touch::fuzz::sweep_file {
+namespace remote_touch::fuzz::results {
 namespace {
+
+// Two results of any kind, separated by a line "---": they are read and compared.
+// Traces are also hashed, and compared within tolerances.
+
+void compare_as_results(std::string_view bytes) {
+  const auto [first, second] = two_parts(bytes);
+  const Content a = content_of(first), b = content_of(second);
+  accepts(bytes, [&] { report_of(compare_results(reader_of(a), reader_of(b), {})); });
+  accepts(bytes, [&] {
+    const Outcome outcome = compare_results(reader_of(a), reader_of(a), {}).outcome;
+    require(outcome == Outcome::same || outcome == Outcome::not_comparable,
+            "a result does not differ from itself");
+  });
+}
+
+void compare_as_traces(std::string_view bytes) {
+  compare_as_results(bytes);
+  const auto [first, second] = two_parts(bytes);
+  const Content a = content_of(first), b = content_of(second);
+  accepts(bytes, [&] { hashes_of_trace(StoredTrace(reader_of(a)), 3); });
+  accepts(bytes, [&] { compare_results(reader_of(a), reader_of(b), {{{"*", {1e-6, 0.1}}}}); });
+}
+
+const Registered of_figures("figure_file", compare_as_results);
+const Registered of_hashes("hashes_file", compare_as_results);
+const Registered of_traces("trace_file", compare_as_traces);
+
+// Sweeps in result files, finished or not. A digest "right" is replaced by that of the
+// content, so that the code after its check is reached.
 
 std::vector<Column> listed(const Content& content, const char* list) {
   std::vector<Column> columns;
@@ -59,7 +89,7 @@ Content with_right_digests(Content content) {
   return content;
 }
 
-void read(std::string_view bytes) {
+void read_sweep_file(std::string_view bytes) {
   const auto [first, second] = two_parts(bytes);
   const Content a = with_right_digests(content_of(first)), b = with_right_digests(content_of(second));
   accepts(bytes, [&] {
@@ -78,7 +108,35 @@ void read(std::string_view bytes) {
   }
 }
 
-const Registered registered("sweep_file", read);
+const Registered of_sweep_file("sweep_file", read_sweep_file);
+
+// The content of result files as tables for other programs.
+
+void read_tables(std::string_view bytes) {
+  const Content content = content_of(bytes);
+  accepts(bytes, [&] {
+    for (const Table& table : result_tables(reader_of(content))) {
+      const std::string header = csv_header(table);
+      const std::string lines = csv_rows(table, 0, table.columns.front().length());
+      require(header.ends_with('\n') && (lines.empty() || lines.ends_with('\n')), "lines end");
+      for (const Column& column : table.columns)
+        require(npy_array(column).size() % 2 == 0, "an array of numbers or of characters of four bytes");
+    }
+  });
+}
+
+const Registered of_tables("export", read_tables);
+
+// The list of baselines, and the experiments of its entries.
+
+void read_list(std::string_view bytes) {
+  accepts(bytes, [&] {
+    const auto folder = scratch_file("baselines/manifest.json", bytes).parent_path();
+    for (const Baseline& baseline : read_manifest(folder).baselines) subject_of(folder, baseline);
+  });
+}
+
+const Registered of_manifest("manifest", read_list);
 
 }  // namespace
-}  // namespace remote_touch::fuzz::sweep_file
+}  // namespace remote_touch::fuzz::results
