@@ -3,16 +3,14 @@ set(CMAKE_UNITY_BUILD OFF)  # the naive versions have the names of what they sta
 find_package(benchmark REQUIRED)
 find_package(NLopt QUIET)
 add_executable(proxy_benchmark
-  benchmarks/checked_benchmark.cpp benchmarks/naive_proxy.cpp benchmarks/program_benchmark.cpp
-  benchmarks/proxy_benchmark.cpp)
+  benchmarks/checked_benchmark.cpp benchmarks/naive_proxy.cpp benchmarks/proxy_benchmark.cpp)
 target_link_libraries(proxy_benchmark PRIVATE runners benchmark::benchmark)
 if(TARGET NLopt::nlopt)
   target_link_libraries(proxy_benchmark PRIVATE NLopt::nlopt)
   target_compile_definitions(proxy_benchmark PRIVATE REMOTE_TOUCH_NLOPT)
 endif()
 add_executable(map_benchmark
-  benchmarks/checked_benchmark.cpp benchmarks/map_benchmark.cpp benchmarks/naive_lift.cpp
-  benchmarks/naive_proxy.cpp)
+  benchmarks/checked_benchmark.cpp benchmarks/map_benchmark.cpp benchmarks/naive_proxy.cpp)
 target_link_libraries(map_benchmark PRIVATE runners benchmark::benchmark)
 
 add_executable(tool_benchmark
@@ -20,8 +18,7 @@ add_executable(tool_benchmark
 target_link_libraries(tool_benchmark PRIVATE core benchmark::benchmark)
 
 add_executable(sphere_tree_benchmark
-  benchmarks/checked_benchmark.cpp benchmarks/region_scene.cpp benchmarks/sphere_tree_benchmark.cpp
-  benchmarks/tool_scene.cpp)
+  benchmarks/checked_benchmark.cpp benchmarks/sphere_tree_benchmark.cpp benchmarks/tool_scene.cpp)
 target_link_libraries(sphere_tree_benchmark PRIVATE core benchmark::benchmark)
 
 add_executable(depth_benchmark
