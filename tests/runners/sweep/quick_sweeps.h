@@ -15,19 +15,21 @@
 
 namespace remote_touch {
 
-class QuickSweeps : public testing::Test {
- protected:
-  explicit QuickSweeps(const std::string& folder) : folder_(folder) {}
-
-  // A run takes a millisecond.
-  static constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12", "keep": "events",
+// A run takes a millisecond.
+inline Sweep quick_sweep(const std::vector<std::string>& overrides = {}) {
+  constexpr const char* kQuick = R"({"title": "quick", "experiment": "fig4.12", "keep": "events",
     "set": {"haptic_rate_hz": 900, "renderer.steps_per_tick": 1},
     "axes": [{"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 3},
              {"parameter": "scenario.acceleration_m_per_s2", "from": 0, "to": 7, "count": 4}],
     "replicates": 5, "measures": ["max_penetration", "popped_through", "first_pop_through_time"]})";
-  static Sweep quick(const std::vector<std::string>& overrides = {}) {
-    return Sweep::from_json(kQuick, "quick.json", overrides);
-  }
+  return Sweep::from_json(kQuick, "quick.json", overrides);
+}
+
+class QuickSweeps : public testing::Test {
+ protected:
+  explicit QuickSweeps(const std::string& folder) : folder_(folder) {}
+
+  static Sweep quick(const std::vector<std::string>& overrides = {}) { return quick_sweep(overrides); }
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   static TextAttributes attributes_of(const Sweep& sweep, const Shard& shard) {
     TextAttributes attributes = {{"config", sweep.to_json()}, {"version", "1"}};

@@ -1,9 +1,10 @@
+// Answers of questions about a sweep: tables, captions, curves and text.
 #include "runners/sweep/sweep_answer.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -52,27 +53,8 @@ SweepResult sweep() {
   return result;
 }
 
-std::vector<std::string> tables(const SweepQuestion& question) {
-  std::vector<std::string> names;
-  for (const Table& table : sweep_answer(sweep(), kConfig, question).tables) names.push_back(table.name);
-  return names;
-}
 std::string why(const SweepQuestion& question, const SweepResult& result = sweep()) {
   return refusal([&] { sweep_answer(result, kConfig, question); });
-}
-
-TEST(SweepAnswers, WithoutAQuestionHaveLimitsAndMeans) {
-  const Figure answer = sweep_answer(sweep(), kConfig, {});
-  EXPECT_EQ(answer.name, kAnswerName);
-  EXPECT_EQ(answer.title, "a sweep");
-  EXPECT_EQ(answer.tables.front().name, "limits");
-  EXPECT_HAS(
-      answer.caption,
-      "the x at which popped_through is above 0.5 in 50 % of the runs. Along the axis the event becomes "
-      "more probable.");
-  const std::vector<std::string> names = tables({});
-  for (const char* name : {"mean_popped_through", "mean_max_force"})
-    EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 }
 
 TEST(SweepAnswers, TheEventOfASlaveIsThatItTouched) {
@@ -82,18 +64,6 @@ TEST(SweepAnswers, TheEventOfASlaveIsThatItTouched) {
   EXPECT_HAS(sweep_answer(result, kConfig, {}).caption, "the x at which slave_touched is above 0.5");
   result.measures[0].long_name = "fraction of ticks with a force on the slave";
   EXPECT_EQ(default_event(result), "");
-}
-
-TEST(SweepAnswers, HaveWhatWasAsked) {
-  SweepQuestion means;
-  means.means = {"max_force"}, means.by = {"r_c"};
-  EXPECT_EQ(tables(means).front(), "mean_max_force");
-  SweepQuestion differences;
-  differences.differences = {"max_force"};
-  const Figure answer = sweep_answer(sweep(), kConfig, differences);
-  EXPECT_EQ(answer.tables.front().name, "difference_max_force");
-  EXPECT_HAS(answer.caption,
-             "from method = old, in pairs of runs with the same replicate and the same noise. ");
 }
 
 // One panel with a curve for each method, over r_c.
@@ -115,39 +85,31 @@ TEST(SweepAnswers, DrawTheLimitOverTheFirstAxisOfNumbers) {
   EXPECT_EQ(numbers(old, "value"), (std::vector<double>{2, 2}));
 }
 
-TEST(SweepAnswers, RefuseWhatTheSweepDoesNotHave) {
-  SweepQuestion question;
-  question.limit = "popped";
-  EXPECT_EQ(why(question), "limit popped: expected one of popped_through, max_force");
-  question.limit = "popped_through", question.along = "y";
-  EXPECT_EQ(why(question), "along y: expected one of r_c, method, x");
-  question.along = "method";
-  EXPECT_EQ(why(question), "along method: expected an axis of at least two numbers");
-  question.along = "x", question.level = 1;
-  EXPECT_HAS(why(question), "expected a probability between 0 and 1");
-  question.level = 0.5, question.threshold = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(why(question), "above: expected a finite number");
-  SweepQuestion differences;
-  differences.differences = {"max_force"}, differences.between = "z";
-  EXPECT_EQ(why(differences), "between z: expected one of r_c, method, x");
-  SweepQuestion by;
-  by.means = {"max_force"}, by.by = {"z"};
-  EXPECT_EQ(why(by), "by z: expected one of r_c, method, x");
+TEST(SweepAnswers, RefuseWhatTheSweepDoesNotHaveAndOptionsWithoutEffect) {
+  const std::pair<void (*)(SweepQuestion&), const char*> cases[] = {
+      {[](auto& q) { q.limit = "popped"; }, "limit popped: expected one of popped_through, max_force"},
+      {[](auto& q) { q.limit = "popped_through", q.along = "y"; }, "along y: expected one of r_c, method, x"},
+      {[](auto& q) { q.limit = "popped_through", q.along = "method"; },
+       "along method: expected an axis of at least two numbers"},
+      {[](auto& q) { q.limit = "popped_through", q.level = 1; }, "expected a probability between 0 and 1"},
+      {[](auto& q) { q.limit = "popped_through", q.threshold = std::nan(""); },
+       "above: expected a finite number"},
+      {[](auto& q) { q.differences = {"max_force"}, q.between = "z"; },
+       "between z: expected one of r_c, method, x"},
+      {[](auto& q) { q.means = {"max_force"}, q.by = {"z"}; }, "by z: expected one of r_c, method, x"},
+      {[](auto& q) { q.means = {"max_force"}, q.between = "method"; },
+       "between method: without effect: expected also a difference or a limit"},
+      {[](auto& q) { q.means = {"max_force"}, q.level = 0.9; }, "without effect: expected also a limit"},
+      {[](auto& q) { q.limit = "popped_through", q.by = {"r_c"}; },
+       "by: without effect: expected also a mean or a difference"}};
+  for (const auto& [change, text] : cases) {
+    SweepQuestion question;
+    change(question);
+    EXPECT_HAS(why(question), text);
+  }
   SweepResult pending = sweep();
   for (RunState& state : pending.state) state = RunState::pending;
   EXPECT_EQ(why({}, pending), "the sweep: has no finished run: expected at least one");
-}
-
-TEST(SweepAnswers, RefuseOptionsWithoutEffect) {
-  SweepQuestion between;
-  between.means = {"max_force"}, between.between = "method";
-  EXPECT_EQ(why(between), "between method: without effect: expected also a difference or a limit");
-  SweepQuestion level;
-  level.means = {"max_force"}, level.level = 0.9;
-  EXPECT_HAS(why(level), "without effect: expected also a limit");
-  SweepQuestion by;
-  by.limit = "popped_through", by.by = {"r_c"};
-  EXPECT_EQ(why(by), "by: without effect: expected also a mean or a difference");
 }
 
 // The column `runs` of the first table.
@@ -306,14 +268,6 @@ TEST(AnswerText, HasEachTableWithUnits) {
   EXPECT_HAS(text, "  m              m/s^2  m/s^2  m/s^2\n");
   EXPECT_HAS(text, "  0.005  old     2      ");
   EXPECT_EQ(text.find("limits_1"), std::string::npos);
-}
-
-TEST(AnswerText, SaysWhatIsLeftOut) {
-  SweepResult part = sweep();
-  part.state[0] = part.state[7] = RunState::failed;
-  EXPECT_HAS(text_of(sweep_answer(part, kConfig, {}), part),
-             "note: 2 of 120 runs are not finished and are left out");
-  EXPECT_EQ(text_of(sweep_answer(sweep(), kConfig, {}), sweep()).find("note:"), std::string::npos);
 }
 
 // `inspect` reads an outline, which has no runs.

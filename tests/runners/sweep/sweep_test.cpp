@@ -1,4 +1,4 @@
-// The definition, axes and cells of a sweep. The test command_line/sweep_bad_input tests refusals, too.
+// The definition, axes and cells of a sweep. sweep_refusals_test.cpp has what is refused.
 #include "runners/sweep/sweep.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/sweep/stored_sweep.h"
 #include "tests/support/test_files.h"
 
 namespace remote_touch::sweep_test {
@@ -39,6 +40,24 @@ std::vector<double> numbers(const Sweep& sweep) {
   return std::get<std::vector<double>>(sweep.plan().axes.at(0).values);
 }
 
+// Axes that set several parameters together: coupled parameters and variants.
+constexpr const char* kRadii = R"({"name": "r_c", "parameters": ["renderer.r1_m", "renderer.r2_m"],
+  "values": [[0.004, 0.0042], [0.005, 0.0052]]})";
+constexpr const char* kVariants = R"({"name": "variant", "variants": [{"name": "as printed"},
+  {"name": "slow", "set": {"renderer.steps_per_tick": 7, "renderer.xi": 0.25}},
+  {"name": "other", "set": {"renderer": {"name": "proxy", "stiffness_N_per_m": 400}}}]})";
+// Does not overlap kRadii.
+constexpr const char* kSpeeds = R"({"name": "variant", "variants": [{"name": "as printed"},
+  {"name": "slow", "set": {"renderer.steps_per_tick": 7}}, {"name": "other", "set": {"renderer.xi": 0.25}}]})";
+constexpr const char* kNoise = R"({"parameter": "scenario.noise_sigma_m", "values": [0.001, 0.002]})";
+
+Sweep over_radii_and_variants() {
+  return Sweep::from_json(
+      R"({"experiment": "fig4.12", "replicates": 2, "measures": ["mean_steps"], "axes": [)" +
+          std::string(kRadii) + ", " + kSpeeds + "]}",
+      "mine.json");
+}
+
 TEST(Sweeps, AllFilesAreStoredAndResolve) {
   const std::filesystem::path folder = std::filesystem::path(REMOTE_TOUCH_SOURCE_DIR) / "data/sweeps";
   std::size_t files = 0;
@@ -54,17 +73,6 @@ TEST(Sweeps, AllFilesAreStoredAndResolve) {
   }
 }
 
-// The map of fig 4.13 has 76 values of sigma and 71 of a, with the ends that the dissertation gives.
-TEST(Sweeps, HaveTheMapOfFigure413) {
-  const SweepResult plan = Sweep::load("fig4.13").plan();
-  ASSERT_EQ(plan.axes.size(), 2u);
-  EXPECT_EQ(plan.axes[0].length(), 76u);
-  EXPECT_EQ(plan.axes[1].length(), 71u);
-  EXPECT_EQ(std::get<std::vector<double>>(plan.axes[0].values).back(), 0.015);
-  EXPECT_EQ(std::get<std::vector<double>>(plan.axes[1].values).back(), 7);
-  EXPECT_EQ(plan.runs_in(RunState::pending).size(), 5396u);
-}
-
 TEST(Sweeps, SurviveARoundTrip) {
   const std::vector<std::vector<std::string>> cases = {
       {},
@@ -73,39 +81,17 @@ TEST(Sweeps, SurviveARoundTrip) {
       {R"(axes.0={"parameter": "trajectory.start_m", "values": [[0, 0, 0], [0, 0, 0.01]]})"},
       {R"(axes.0={"parameter": "seed", "values": [18446744073709551615, 1]})"},
       {"refine.budget=50", "refine.levels=2", "refine.threshold=0.25"},
-      {"replicates=7", "title=grün", "scenario.columns=150"}};
+      {"replicates=7", "title=grün", "scenario.columns=150"},
+      {"set={}", std::string("axes=[") + kRadii + ", " + kSpeeds + "]"},
+      {R"(axes.1={"common_noise": false, )" + std::string(kVariants + 1), "set={}"}};
   for (const auto& overrides : cases) {
     const Sweep sweep = small(overrides), again = Sweep::from_json(sweep.to_json(), "again");
     EXPECT_EQ(again.to_json(), sweep.to_json());
     EXPECT_EQ(again.plan().state, sweep.plan().state);
     EXPECT_EQ(again.title(), sweep.title());
+    EXPECT_NO_THROW(again.require_fits(sweep.plan(), "file"));
     for (std::size_t cell = 0; cell < sweep.plan().cell_count(); ++cell)
       EXPECT_EQ(again.experiment(cell, 1).to_json(), sweep.experiment(cell, 1).to_json()) << cell;
-  }
-}
-
-TEST(Sweeps, KeepEveryNthValueWhenThinned) {
-  const SweepResult plan = Sweep::load("fig4.13").thinned(5).plan();
-  const SweepResult whole = Sweep::load("fig4.13").plan();
-  ASSERT_EQ(plan.cell_count(), 16u * 15u);
-  for (std::size_t axis = 0; axis < 2; ++axis)
-    for (std::size_t i = 0; i < plan.axes[axis].length(); ++i)
-      EXPECT_NEAR(std::get<std::vector<double>>(plan.axes[axis].values)[i],
-                  std::get<std::vector<double>>(whole.axes[axis].values)[5 * i], 1e-12);
-  const Sweep listed =
-      along(R"({"parameter": "scenario.noise_sigma_m", "values": [0, 1e-3, 2e-3, 3e-3, 4e-3]})");
-  EXPECT_EQ(numbers(listed.thinned(3)), (std::vector<double>{0, 3e-3}));
-  EXPECT_EQ(numbers(listed.thinned(9)), (std::vector<double>{0}));
-  EXPECT_EQ(listed.thinned(1).to_json(), listed.to_json());
-  EXPECT_EQ(small().thinned(2).plan().replicates, 2);
-  // The steps of a range need not divide evenly: each value is one of the whole axis, to the last bit.
-  for (const char* scale : {"linear", "log"}) {
-    const Sweep range = along(R"({"parameter": "scenario.noise_sigma_m", "from": 1e-3, "to": 7e-3, "count": 8,
-                                  "common_noise": true, "scale": ")" +
-                              std::string(scale) + "\"}");
-    const std::vector<double> all = numbers(range);
-    EXPECT_EQ(numbers(range.thinned(3)), (std::vector<double>{all[0], all[3], all[6]}));
-    EXPECT_HAS(range.thinned(3).to_json(), "common_noise");
   }
 }
 
@@ -150,44 +136,6 @@ TEST(Sweeps, AcceptAnExperimentByNameByFileOrInline) {
   EXPECT_HAS(refusal([&] { small({"experiment=moon"}); }), "moon: cannot be read");
 }
 
-TEST(Sweeps, AnErrorInAFileBeginsWithItsName) {
-  const TestFolder folder("sweep_file_test");
-  const std::string file = (folder / "sweep.json").string(), own = (folder / "mine.json").string();
-  Json json = Json::parse(kSmall);
-  const auto why = [&](const std::vector<std::string>& overrides = {}) {
-    folder.write("sweep.json", json.dump());
-    return refusal([&] { Sweep::load(file, overrides); });
-  };
-  json["replicates"] = 0;
-  EXPECT_TRUE(why().starts_with(file + ": replicates = 0: expected ")) << why();
-  EXPECT_TRUE(why({"seed=3"}).starts_with(file + ": replicates = 0: "));
-  json["replicates"] = 2;
-  json["set"]["renderer.xi"] = -1;
-  EXPECT_TRUE(why().starts_with(file + ": renderer.xi = -1: expected ")) << why();
-  json["set"].erase("renderer.xi");
-  json["axes"][0]["to"] = 7;
-  EXPECT_TRUE(why().starts_with(file + ": cell 1,0: scenario.noise_sigma_m = 3.5: ")) << why();
-  json["axes"][0]["to"] = 0.01;
-  Json experiment = Json::parse(Experiment::load("fig4.12").to_json());
-  experiment["renderer"]["xi"] = -1;
-  folder.write("mine.json", experiment.dump());
-  json["experiment"] = "mine.json";
-  EXPECT_TRUE(why().starts_with(own + ": renderer.xi = -1")) << why();
-}
-
-TEST(Sweeps, ARefusalOfAnOverrideDoesNotNameTheFile) {
-  const TestFolder folder("sweep_override_test");
-  const std::string file = folder.write("sweep.json", kSmall).string();
-  const auto why = [&](const std::string& assignment) {
-    return refusal([&] { Sweep::load(file, {assignment}); });
-  };
-  EXPECT_TRUE(why("replicates=0").starts_with("replicates = 0: "));
-  EXPECT_TRUE(why("axes.0.count=0").starts_with("axes.0.count = 0: "));
-  EXPECT_TRUE(why("renderer.xi=-1").starts_with("renderer.xi = -1: "));
-  EXPECT_TRUE(why("measures=[]").starts_with("measures: "));
-  EXPECT_TRUE(why("scenario.noise_sigma_m=0").starts_with("--set scenario.noise_sigma_m=0: "));
-}
-
 TEST(Axes, CanBeLinearOrLogarithmic) {
   EXPECT_EQ(numbers(along(R"({"parameter": "frame_latency_s", "from": 0, "to": 1, "count": 5})")),
             (std::vector{0.0, 0.25, 0.5, 0.75, 1.0}));
@@ -227,67 +175,22 @@ TEST(Axes, RefinementKeepsTheFirstRound) {
   }
 }
 
-// A list may hold any values of a parameter: integers, switches, choices, vectors, whole parts.
-TEST(Axes, CanListAnyValues) {
-  const auto cells = [](const std::string& path, const std::string& values) {
-    const Sweep sweep = along(R"({"parameter": ")" + path + R"(", "values": )" + values + "}", {"set={}"});
-    const Json list = Json::parse(values);
-    EXPECT_EQ(sweep.plan().cell_count(), list.size());
-    for (std::size_t i = 0; i < list.size(); ++i) EXPECT_EQ(value_in(sweep, i, path), list[i]) << path;
-    return sweep.plan().axes[0];
-  };
-  EXPECT_EQ(cells("renderer.steps_per_tick", "[30, 1, 7]").value_names.size(), 0u);
-  EXPECT_EQ(std::get<std::vector<double>>(cells("renderer.xi", "[0.5, 0.1]").values),
-            (std::vector{0.5, 0.1}));
-  EXPECT_EQ(cells("renderer.step_rule", R"(["variable", "fixed"])").value_names,
-            (std::vector<std::string>{"variable", "fixed"}));
-  EXPECT_EQ(cells("renderer.velocity_estimate", "[true, false]").value_names,
-            (std::vector<std::string>{"true", "false"}));
-  EXPECT_EQ(cells("renderer.name", R"(["proxy"])").value_names, std::vector<std::string>{"proxy"});
-  EXPECT_HAS(refusal([&] { cells("renderer.name", R"(["proxy", "tracked-sheet"])"); }),
-             "axis renderer.name = \"tracked-sheet\": expected the axis renderer, with values like");
-  EXPECT_EQ(cells("trajectory.start_m", "[[0, 0, 0], [0, 0, 0.25]]").value_names[1], "[0,0,0.25]");
-  EXPECT_EQ(cells("seed", "[3, 18446744073709551615]").units, "1");
-}
-
-// A range may be used for a parameter that accepts only integers, if all its values are integers.
-TEST(Axes, MustMeetIntegers) {
-  const Sweep sweep = along(R"({"parameter": "seed", "from": 1, "to": 9, "count": 5})");
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(value_in(sweep, i, "seed"), 2 * i + 1);
-  EXPECT_HAS(refusal([] { along(R"({"parameter": "seed", "from": 1, "to": 9, "count": 4})"); }),
-             "cell 1: seed = 3.6");
-}
-
-TEST(Axes, AreNamedWithUnits) {
-  const auto axis = [](const std::string& path) {
-    return along(R"({"parameter": ")" + path + R"(", "from": 0.5, "to": 2, "count": 1})").plan().axes[0];
-  };
-  EXPECT_EQ(axis("renderer.stiffness_N_per_m").name, "stiffness_N_per_m");
-  EXPECT_EQ(axis("renderer.stiffness_N_per_m").long_name, "renderer.stiffness_N_per_m");
-  const std::pair<const char*, const char*> units[] = {{"renderer.stiffness_N_per_m", "N/m"},
-                                                       {"renderer.damping_Ns_per_m", "N s/m"},
-                                                       {"renderer.theta_deg", "deg"},
-                                                       {"scenario.acceleration_m_per_s2", "m/s^2"},
-                                                       {"scenario.start_velocity_m_per_s", "m/s"},
-                                                       {"scenario.frame_rate_hz", "Hz"},
-                                                       {"duration_s", "s"},
-                                                       {"scenario.start_depth_m", "m"},
-                                                       {"renderer.xi", "1"}};
-  for (const auto& [path, unit] : units) EXPECT_EQ(axis(path).units, unit) << path;
-}
-
 TEST(Overrides, ReachTheSweepOrItsExperiment) {
-  const Sweep sweep =
-      small({"replicates=3", "axes.0.count=5", "title=other", "renderer.xi=0.25", "refine.budget=99"});
+  const Sweep sweep = small({"replicates=3", "axes.0.count=5", "title=other", "renderer.xi=0.25",
+                             "refine.budget=99", "refine.measure=mean_steps", "refine.threshold=3"});
   const SweepResult plan = sweep.plan();
   EXPECT_EQ(sweep.title(), "other");
   EXPECT_EQ(plan.axes[0].length(), 5u);
   EXPECT_EQ(sweep.refinement()->budget, 99u);
   EXPECT_EQ(sweep.refinement()->first_replicates, 3);
+  EXPECT_EQ(sweep.refinement()->measure, "mean_steps");
+  EXPECT_EQ(sweep.refinement()->threshold, 3);
   EXPECT_EQ(value_in(sweep, 4, "renderer.xi"), 0.25);
   // Settings of the command line are applied after those of the file.
   EXPECT_EQ(value_in(small({"haptic_rate_hz=800"}), 0, "haptic_rate_hz"), 800);
   EXPECT_EQ(value_in(small({"set={}"}), 0, "haptic_rate_hz"), 1000);
+  EXPECT_FALSE(small().refinement().has_value());
+  EXPECT_TRUE(small().plan().round.empty());
 }
 
 TEST(Titles, NameWhatWasChanged) {
@@ -303,32 +206,165 @@ TEST(Titles, NameWhatWasChanged) {
 }
 
 // The trace of a cell then does not have the title of a run with other values.
-TEST(Titles, TitlesOfRunsNameTheValuesOfTheirCell) {
+TEST(Titles, OfRunsNameTheValuesOfTheirCell) {
   const std::string stored = Experiment::load("fig4.12").settings().title;
   EXPECT_EQ(value_in(small(), 5, "title"),
             stored +
                 ", changed: haptic_rate_hz=900, renderer.steps_per_tick=1, "
                 "scenario.noise_sigma_m=0.005, scenario.acceleration_m_per_s2=2");
-  const Sweep again = Sweep::from_json(small().to_json(), "again");
-  EXPECT_EQ(value_in(again, 5, "title"), value_in(small(), 5, "title"));
+  const Sweep joint = over_radii_and_variants();
+  EXPECT_TRUE(joint.title().ends_with(", over r_c and variant")) << joint.title();
+  const std::string title = value_in(joint, 4, "title");
+  EXPECT_TRUE(title.ends_with("changed: r_c=0.005, variant=slow")) << title;
 }
 
-TEST(Refinement, HasItsRuleAndFirstRound) {
-  EXPECT_FALSE(small().refinement().has_value());
-  EXPECT_TRUE(small().plan().round.empty());
-  const Sweep sweep =
-      small({"refine.budget=50", "refine.levels=2", "refine.max_replicates=9", "refine.measure=mean_steps",
-             "refine.threshold=3", R"(axes.1={"parameter": "seed", "values": [4, 5]})"});
-  EXPECT_EQ(sweep.refinement()->strides, (std::vector<std::size_t>{4, 1}));
-  EXPECT_EQ(sweep.refinement()->measure, "mean_steps");
-  EXPECT_EQ(sweep.refinement()->threshold, 3);
-  const SweepResult plan = sweep.plan();
-  EXPECT_EQ(plan.run_count(), 9u * 2 * 9);
-  for (std::size_t run = 0; run < plan.run_count(); ++run) {
-    const bool is_first = plan.axis_indices(plan.cell_of(run))[0] % 4 == 0 && plan.replicate_of(run) < 2;
-    EXPECT_EQ(plan.state[run], is_first ? RunState::pending : RunState::not_sampled);
-    EXPECT_EQ(plan.round[run], is_first ? 0 : -1);
+// The steps of a range need not divide evenly: each value is one of the whole axis, to the last bit.
+TEST(Sweeps, KeepEveryNthValueWhenThinned) {
+  const Sweep listed =
+      along(R"({"parameter": "scenario.noise_sigma_m", "values": [0, 1e-3, 2e-3, 3e-3, 4e-3]})");
+  EXPECT_EQ(numbers(listed.thinned(3)), (std::vector<double>{0, 3e-3}));
+  EXPECT_EQ(numbers(listed.thinned(9)), (std::vector<double>{0}));
+  EXPECT_EQ(listed.thinned(1).to_json(), listed.to_json());
+  EXPECT_EQ(small().thinned(2).plan().replicates, 2);
+  for (const char* scale : {"linear", "log"}) {
+    const Sweep range = along(R"({"parameter": "scenario.noise_sigma_m", "from": 1e-3, "to": 7e-3, "count": 8,
+                                  "common_noise": true, "scale": ")" +
+                              std::string(scale) + "\"}");
+    const std::vector<double> all = numbers(range);
+    EXPECT_EQ(numbers(range.thinned(3)), (std::vector<double>{all[0], all[3], all[6]}));
+    EXPECT_HAS(range.thinned(3).to_json(), "common_noise");
   }
+  const SweepResult joint = over_radii_and_variants().thinned(2).plan();
+  EXPECT_EQ(joint.axes[0].length(), 1u);
+  EXPECT_EQ(joint.axes[1].value_names, (std::vector<std::string>{"as printed", "other"}));
+}
+
+// A list may hold any values of a parameter: integers, switches, choices, vectors, whole parts. A range may
+// be used for integers, if all its values are integers.
+TEST(Axes, CanListAnyValues) {
+  const auto names = [](const std::string& path, const std::string& values) {
+    const Sweep sweep = along(R"({"parameter": ")" + path + R"(", "values": )" + values + "}", {"set={}"});
+    const Json list = Json::parse(values);
+    EXPECT_EQ(sweep.plan().cell_count(), list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) EXPECT_EQ(value_in(sweep, i, path), list[i]) << path;
+    return sweep.plan().axes[0].value_names;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names("renderer.steps_per_tick", "[30, 1, 7]"), Names{});
+  EXPECT_EQ(names("renderer.step_rule", R"(["variable", "fixed"])"), (Names{"variable", "fixed"}));
+  EXPECT_EQ(names("renderer.velocity_estimate", "[true, false]"), (Names{"true", "false"}));
+  EXPECT_EQ(names("renderer.name", R"(["proxy"])"), Names{"proxy"});
+  EXPECT_EQ(names("trajectory.start_m", "[[0, 0, 0], [0, 0, 0.25]]"), (Names{"[0,0,0]", "[0,0,0.25]"}));
+  const Sweep range = along(R"({"parameter": "seed", "from": 1, "to": 9, "count": 5})");
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(value_in(range, i, "seed"), 2 * i + 1);
+}
+
+TEST(Axes, HaveNamesAndUnits) {
+  const auto axis = [](const std::string& path) {
+    return read_axis({{"parameter", path}, {"values", {1, 2}}}, "test", 0).coordinate;
+  };
+  EXPECT_EQ(axis("renderer.stiffness_N_per_m").name, "stiffness_N_per_m");
+  EXPECT_EQ(axis("renderer.stiffness_N_per_m").long_name, "renderer.stiffness_N_per_m");
+  const std::pair<const char*, const char*> units[] = {{"renderer.stiffness_N_per_m", "N/m"},
+                                                       {"renderer.damping_Ns_per_m", "N s/m"},
+                                                       {"renderer.theta_deg", "deg"},
+                                                       {"scenario.acceleration_m_per_s2", "m/s^2"},
+                                                       {"scenario.start_velocity_m_per_s", "m/s"},
+                                                       {"scenario.frame_rate_hz", "Hz"},
+                                                       {"scenario.turbidity_per_m", "1/m"},
+                                                       {"scenario.rate_per_min", "1/min"},
+                                                       {"safety.max_force_N", "N"},
+                                                       {"device.mass_kg", "kg"},
+                                                       {"duration_s", "s"},
+                                                       {"renderer.xi", "1"},
+                                                       {"trajectory.poses.2.4", "deg"},
+                                                       {"trajectory.poses.2.6", "s"},
+                                                       {"trajectory.waypoints.0.3", "m/s"},
+                                                       {"trajectory.waypoints.0.99", "1"},
+                                                       {"scenario.centre_m.1", "m"}};
+  for (const auto& [path, unit] : units) EXPECT_EQ(axis(path).units, unit) << path;
+}
+
+TEST(JointAxes, HaveACoordinateWithNameAndUnit) {
+  const auto coordinate = [](const std::string& more) {
+    return along("{" + more + std::string(kRadii + 1)).plan().axes.at(0);
+  };
+  const Column plain = coordinate("");
+  EXPECT_EQ(plain.name, "r_c");
+  EXPECT_EQ(plain.units, "m");
+  EXPECT_EQ(plain.long_name, "renderer.r1_m, renderer.r2_m");
+  EXPECT_EQ(std::get<std::vector<double>>(plain.values), (std::vector<double>{0.004, 0.005}));
+  const Column labels = coordinate(R"("unit": "mm", "labels": [5, 10], )");
+  EXPECT_EQ(labels.units, "mm");
+  EXPECT_EQ(std::get<std::vector<double>>(labels.values), (std::vector<double>{5, 10}));
+  EXPECT_EQ(coordinate(R"("labels": ["narrow", "wide"], )").value_names,
+            (std::vector<std::string>{"narrow", "wide"}));
+}
+
+TEST(Variants, SetOnlyWhatTheyName) {
+  const Sweep sweep = along(kVariants, {"set={}"});
+  const Json printed = value_in(sweep, 0, "renderer");
+  EXPECT_EQ(printed, value_in(along(kNoise, {"set={}"}), 0, "renderer"));
+  Json slow = printed;
+  slow["steps_per_tick"] = 7, slow["xi"] = 0.25;
+  EXPECT_EQ(value_in(sweep, 1, "renderer"), slow);
+  EXPECT_EQ(value_in(sweep, 2, "renderer.stiffness_N_per_m"), 400);
+}
+
+// Then a difference between two variants is not one between two noises.
+TEST(Variants, HaveCommonNoiseUnlessToldOtherwise) {
+  const auto cell = [](const std::string& axes, std::size_t i) {
+    return value_in(along(axes, {"set={}"}), i, "cell");
+  };
+  const std::string both = std::string(kNoise) + ", ", common = both + kVariants;
+  EXPECT_EQ(cell(common, 4), cell(common, 3));
+  EXPECT_NE(cell(common, 3), cell(common, 0));
+  EXPECT_EQ(value_in(along(common, {"set={}"}), 4, "replicate", 1), 1);
+  EXPECT_EQ(cell(both + R"({"common_noise": false, )" + std::string(kVariants + 1), 4), 4);
+  EXPECT_EQ(cell(R"({"common_noise": true, )" + std::string(kNoise + 1), 1), 0);
+}
+
+// A double would state another seed, or would state two seeds as one.
+TEST(Cells, IntegersThatADoubleDoesNotHaveAreNames) {
+  const auto plan = [](const std::string& seeds) {
+    return along(R"({"parameter": "seed", "values": )" + seeds + "}").plan();
+  };
+  const SweepResult large = plan("[9007199254740992, 9007199254740993, 3]");
+  EXPECT_EQ(large.axes[0].value_names,
+            (std::vector<std::string>{"9007199254740992", "9007199254740993", "3"}));
+  EXPECT_EQ(cell_of({"--cell", "seed=9007199254740993"}, large), 1u);
+  EXPECT_EQ(cell_of({"--cell", "seed=3"}, large), 2u);
+  EXPECT_TRUE(plan("[9007199254740991, 3]").axes[0].value_names.empty());
+}
+
+// Six digits are what a person types. A cell is not chosen where they name several.
+TEST(Cells, ANumberThatNamesSeveralValuesIsRefused) {
+  const SweepResult plan =
+      along(R"({"parameter": "scenario.acceleration_m_per_s2", "values": [1.000001, 1, 2.0000001]})").plan();
+  const auto cell = [&](const std::string& value) {
+    return cell_of({"--cell", "acceleration_m_per_s2=" + value}, plan);
+  };
+  EXPECT_EQ(cell("1"), 1u);
+  EXPECT_EQ(cell("1.0"), 1u);
+  EXPECT_EQ(cell("1.000001"), 0u);
+  EXPECT_EQ(cell("2"), 2u);
+  EXPECT_EQ(refusal([&] { cell("1.0000001"); }),
+            "--cell acceleration_m_per_s2=1.0000001: expected for acceleration_m_per_s2 a number with more "
+            "digits, or the indices on the axes: 2 values are 1 with six digits");
+}
+
+TEST(Cells, MayBeNamedByCoordinatesAndByValuesWithCommas) {
+  const SweepResult joint = over_radii_and_variants().plan();
+  EXPECT_EQ(cell_of({"--cell", "r_c=0.005,variant=slow"}, joint), 4u);
+  EXPECT_EQ(cell_of({"--cell", "variant=as printed,r_c=0.004"}, joint), 0u);
+  const SweepResult plan = along(R"({"parameter": "trajectory.start_m", "values": [[0, 0, 0], [0, 0.01, 0]]},
+                                    {"parameter": "renderer.xi", "values": [0.1, 0.2]})")
+                               .plan();
+  const std::string start = "start_m=" + plan.axes[0].value_names.at(1);
+  ASSERT_NE(start.find(','), std::string::npos) << start;
+  EXPECT_EQ(cell_of({"--cell", start + ",xi=0.1"}, plan), 2u);
+  EXPECT_EQ(cell_of({"--cell", "xi=0.2," + start}, plan), 3u);
+  EXPECT_HAS(refusal([&] { cell_of({"--cell", start + ",other=1"}, plan); }), "expected for start_m one of ");
 }
 
 }  // namespace

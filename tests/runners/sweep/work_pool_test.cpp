@@ -1,3 +1,4 @@
+// Jobs that share threads, the time that is left, and threads that cannot be started.
 #include "runners/sweep/work_pool.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@
 
 #include "tests/support/test_files.h"
 
-namespace remote_touch {
+namespace remote_touch::work_pool_test {
 namespace {
 
 using Jobs = std::vector<std::function<void()>>;
@@ -111,48 +112,33 @@ TEST(WorkPool, TheLastReportSeesThatAllHaveEnded) {
   EXPECT_EQ(seen, JobState::done);
 }
 
-constexpr JobState kWaiting = JobState::waiting, kRunning = JobState::running, kDone = JobState::done;
+struct LeftCase {
+  std::vector<double> expected_s;
+  std::vector<JobProgress> jobs;
+  int threads;
+  TimeLeft left;
+};
 
-TEST(ShortestFirst, EqualOnesKeepTheirOrder) {
-  EXPECT_EQ(shortest_first({3, 1, 2, 1}), (std::vector<std::size_t>{1, 3, 2, 0}));
+TEST(TimeLeft, IsThatOfTheJobsThatAreLeft) {
+  constexpr JobState kWaiting = JobState::waiting, kRunning = JobState::running, kDone = JobState::done;
+  const LeftCase cases[] = {
+      {{10, 30}, {{kWaiting, 0}, {kWaiting, 0}}, 2, {{10, 30}, 20}},  // what was expected
+      // The speed of the machine: the prior counts 2 s, and a job of 8 s took 18 s, so 20 s for 10 s.
+      {{8, 30}, {{kDone, 18}, {kWaiting, 0}}, 1, {{0, 60}, 60}},
+      {{10}, {{kRunning, 4}}, 1, {{6}, 6}},
+      {{10}, {{kRunning, 40}}, 1, {{0.5}, 0.5}},  // a running job counts for a twentieth at least
+      {{10}, {{kRunning, 2}}, 4, {{2}, 2}},       // threads without a job help the one that runs
+      {{10, 1}, {{kDone, 1}, {kDone, 1}}, 2, {{0, 0}, 0}}};
+  for (const LeftCase& each : cases) {
+    const TimeLeft left = time_left(each.expected_s, each.jobs, each.threads);
+    EXPECT_DOUBLE_EQ(left.all_s, each.left.all_s);
+    ASSERT_EQ(left.of_job_s.size(), each.jobs.size());
+    for (std::size_t i = 0; i < each.jobs.size(); ++i)
+      EXPECT_DOUBLE_EQ(left.of_job_s[i], each.left.of_job_s[i]);
+  }
+  EXPECT_EQ(shortest_first({3, 1, 2, 1}), (std::vector<std::size_t>{1, 3, 2, 0}))
+      << "equal ones keep their order";
 }
-
-TEST(TimeLeft, IsWhatWasExpectedBeforeAnythingIsDone) {
-  const TimeLeft left = time_left({10, 30}, {{kWaiting, 0}, {kWaiting, 0}}, 2);
-  EXPECT_DOUBLE_EQ(left.of_job_s[0], 10);
-  EXPECT_DOUBLE_EQ(left.of_job_s[1], 30);
-  EXPECT_DOUBLE_EQ(left.all_s, 20);
-}
-
-TEST(TimeLeft, TakesTheSpeedOfTheMachineFromWhatIsDone) {
-  // The prior counts 2 s, and a job of 8 s took 18 s: 20 s for 10 s.
-  const TimeLeft left = time_left({8, 30}, {{kDone, 18}, {kWaiting, 0}}, 1);
-  EXPECT_EQ(left.of_job_s[0], 0);
-  EXPECT_DOUBLE_EQ(left.of_job_s[1], 60);
-  EXPECT_DOUBLE_EQ(left.all_s, 60);
-}
-
-TEST(TimeLeft, ARunningJobCountsForATwentiethAtLeast) {
-  EXPECT_DOUBLE_EQ(time_left({10}, {{kRunning, 4}}, 1).all_s, 6);
-  EXPECT_DOUBLE_EQ(time_left({10}, {{kRunning, 40}}, 1).all_s, 0.5);
-}
-
-TEST(TimeLeft, ThreadsWithoutAJobHelpTheOneThatRuns) {
-  const TimeLeft left = time_left({10}, {{kRunning, 2}}, 4);
-  EXPECT_DOUBLE_EQ(left.of_job_s[0], 2);
-  EXPECT_DOUBLE_EQ(left.all_s, 2);
-}
-
-TEST(TimeLeft, IsZeroWhenAllJobsAreDone) {
-  const TimeLeft left = time_left({10, 1}, {{kDone, 1}, {kDone, 1}}, 2);
-  EXPECT_EQ(left.all_s, 0);
-}
-
-}  // namespace
-}  // namespace remote_touch
-
-namespace remote_touch::work_pool_test {
-namespace {
 
 // Result of use_threads() in a thread where OpenMP has not run yet: the number of threads there afterwards,
 // and the refusal, empty if none.
@@ -199,11 +185,8 @@ TEST(UseThreads, AcceptsTheThreadsThatTheSystemGives) {
   EXPECT_EQ(outcome_of(0).problem, "");
 }
 
-TEST(UseThreads, RefusesMoreThanThereCanBe) {
-  EXPECT_EQ(outcome_of(kMaxThreads + 1).problem, "--threads = 4097: expected 1 to 4096");
-}
-
 TEST(UseThreads, RefusesThoseThatCannotBeStarted) {
+  EXPECT_EQ(outcome_of(kMaxThreads + 1).problem, "--threads = 4097: expected 1 to 4096");
   const LittleMemory limit;
   EXPECT_HAS(outcome_of(256).problem,
              "--threads = 256: this number of threads cannot be started: expected fewer");
