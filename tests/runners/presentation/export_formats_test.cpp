@@ -1,7 +1,9 @@
+// Exports: the frames of a run, what is refused, and the bytes of each format by its specification.
 #include "runners/presentation/export_formats.h"
 
 #include <gtest/gtest.h>
 #include <stdexcept>
+#include <tuple>
 
 #include "analysis/storage/result_file.h"
 #include "runners/experiment/settings/provenance.h"
@@ -74,37 +76,35 @@ TEST_F(ExportedRunTest, OtherFramesAreRefused) {
   EXPECT_EQ(files_in(folder_.path()), (std::vector<std::string>{"a.h5", "x.csv", "x_columns.csv"}));
 }
 
+// A run without a tool has no torque.
 TEST_F(ExportedRunTest, OddColumnsAreRefused) {
   store("remote-touch run a.json", {});
-  const auto with = [&](const char* name, auto change) {
-    std::vector<Column> columns = trace_.columns();
-    for (Column& column : columns)
-      if (column.name == name) change(column);
-    return store("remote-touch run a.json", columns);
+  using Change = void (*)(std::vector<Column>&, std::size_t);
+  const Change without = [](auto& columns, std::size_t i) {
+    columns.erase(columns.begin() + static_cast<long>(i));
   };
-  const auto negative = with("time", [](Column& c) { std::get<std::vector<double>>(c.values)[3] = -1; });
-  EXPECT_HAS(export_as("x.mcap", negative),
-             "/trace/time has a time that is not a number, negative, or 2e9 s or more");
-  const auto back =
-      with("frame_index", [](Column& c) { std::get<std::vector<std::int32_t>>(c.values)[3] = 9; });
-  EXPECT_HAS(export_as("x.vtp", back), "/trace/frame_index goes back");
-  const auto narrow = with("force", [](Column& c) { c.width = 1; });
-  EXPECT_HAS(export_as("x.mcap", narrow), "/trace/force has values of another type or width");
-  const auto cut = with("hip_position", [](Column& c) { std::get<std::vector<double>>(c.values).resize(3); });
-  EXPECT_HAS(export_as("x.vtp", cut), "hip_position is not as long as /trace/time");
-  EXPECT_HAS(export_as("x.vtp", store("remote-touch live a.json", {})), "is of a live run");
-  EXPECT_EQ(files_in(folder_.path()), std::vector<std::string>{"a.h5"});
-}
-
-// A run without a tool has no torque.
-TEST_F(ExportedRunTest, AMissingColumnIsRefused) {
-  store("remote-touch run a.json", {});
-  for (const std::string missing : {"hip_position", "proxy_position", "force"}) {
+  const std::tuple<const char*, Change, const char*> cases[] = {
+      {"time", [](auto& columns, std::size_t i) { std::get<std::vector<double>>(columns[i].values)[3] = -1; },
+       "/trace/time has a time that is not a number, negative, or 2e9 s or more"},
+      {"frame_index",
+       [](auto& columns, std::size_t i) { std::get<std::vector<std::int32_t>>(columns[i].values)[3] = 9; },
+       "/trace/frame_index goes back"},
+      {"force", [](auto& columns, std::size_t i) { columns[i].width = 1; },
+       "/trace/force has values of another type or width"},
+      {"hip_position",
+       [](auto& columns, std::size_t i) { std::get<std::vector<double>>(columns[i].values).resize(3); },
+       "hip_position is not as long as /trace/time"},
+      {"hip_position", without, "damaged (it has no /trace/hip_position)"},
+      {"proxy_position", without, "damaged (it has no /trace/proxy_position)"},
+      {"force", without, "damaged (it has no /trace/force)"}};
+  for (const auto& [name, change, why] : cases) {
     std::vector<Column> columns = trace_.columns();
-    std::erase_if(columns, [&](const Column& column) { return column.name == missing; });
-    const auto file = store("remote-touch run a.json", columns);
-    EXPECT_HAS(export_as("x.mcap", file), "damaged (it has no /trace/" + missing + ")");
+    std::size_t place = 0;
+    while (columns.at(place).name != name) ++place;
+    change(columns, place);
+    EXPECT_HAS(export_as("x.mcap", store("remote-touch run a.json", columns)), why);
   }
+  EXPECT_HAS(export_as("x.vtp", store("remote-touch live a.json", {})), "is of a live run");
   EXPECT_EQ(files_in(folder_.path()), std::vector<std::string>{"a.h5"});
 }
 
@@ -114,13 +114,6 @@ TEST_F(ExportedRunTest, AnInterruptedExportLeavesNothing) {
   for (const char* name : {"x.csv", "x.npz", "x.vtp", "x.mcap"})
     EXPECT_THROW(export_as(name, file, &stop), Interrupted) << name;
   EXPECT_EQ(files_in(folder_.path()), std::vector<std::string>{"a.h5"});
-}
-
-TEST(ExportFormat, IsChosenByTheEnding) {
-  for (const ExportFormat& format : export_formats())
-    EXPECT_EQ(export_format(std::string("folder.d/x") + format.ending).ending, format.ending);
-  EXPECT_HAS(refusal([] { export_format("x.txt"); }),
-             "x.txt: has an unknown ending: expected one of .csv, .npz, .vtp");
 }
 
 // CRC-32 bit by bit, by its definition.
@@ -253,13 +246,10 @@ std::string npy(const std::string& text, const std::string& values) {
   return file + "\n" + values;
 }
 
-TEST(NpyArray, WritesNumbers) {
+TEST(NpyArray, WritesNumbersVectorsCountsAndHashes) {
   const Column column{"a", "m", "", std::vector<double>{1.5, -2}, 1, {}};
   EXPECT_EQ(npy_array(column), npy("{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }",
                                    std::string("\0\0\0\0\0\0\xf8\x3f\0\0\0\0\0\0\0\xc0", 16)));
-}
-
-TEST(NpyArray, WritesVectorsCountsAndHashes) {
   const Column counts{"a", "1", "", std::vector<std::int32_t>{1, 2, 3, -1, 5, 6}, 3, {}};
   EXPECT_EQ(npy_array(counts),
             npy("{'descr': '<i4', 'fortran_order': False, 'shape': (2, 3), }",
@@ -307,7 +297,6 @@ TEST(ZipArchive, HasTheBytesOfTheSpecification) {
   zip.add("a", "123456789");
   zip.add("bc", "");
   zip.finish();
-  const auto u16 = [](int value) { return raw(static_cast<std::uint16_t>(value)); };
   const auto member = [&](std::uint32_t crc, std::uint32_t size, int name_length) {
     return u16(20) + u16(0) + u16(0) + u16(0) + u16(0x21) + raw(crc) + raw(size) + raw(size) +
            u16(name_length) + u16(0);
@@ -328,12 +317,7 @@ TEST(ZipArchive, HasTheBytesOfTheSpecification) {
 TEST(ZipArchive, HasNoMoreMembersThanTheFormatCounts) {
   ZipArchive zip([](const std::string&) {});
   for (int i = 0; i < 65534; ++i) zip.add("a", "");
-  try {
-    zip.add("a", "");
-    ADD_FAILURE() << "one more is accepted";
-  } catch (const std::length_error& limit) {
-    EXPECT_STREQ(limit.what(), "would have more than 65534 members");
-  }
+  EXPECT_THROW(zip.add("a", ""), std::length_error);
 }
 
 std::string array(const char* type, const char* name, int components, int offset) {
@@ -349,7 +333,6 @@ TEST(VtkPolyData, IsTheFileOfTheFormat) {
   data.lines = {{0, 1}};
   data.of_points = {{"a<b", "UInt8", 1, std::string("\x07\x08", 2)}};
   data.of_cells = {};
-  const auto u64 = [](std::uint64_t value) { return raw(value); };
   const std::string expected =
       "<?xml version=\"1.0\"?>\n<!-- remote-touch export -->\n"
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"

@@ -1,3 +1,4 @@
+// What a page shows of a run: the true heights of its scene, and the points that are shown or touched.
 #include "runners/presentation/result_pages.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 #include "tests/support/box_tool.h"
 #include "tests/support/scenes.h"
 
-namespace remote_touch::true_heights_test {
+namespace remote_touch::shown_run_test {
 namespace {
 
 constexpr int n = TrueHeights::kColumns;
@@ -61,13 +62,10 @@ TEST(TrueHeights, AreThoseOfTheSceneOverItsGridAndTimes) {
       }
 }
 
-TEST(TrueHeights, OneTimeIsEnoughForASceneAtRest) {
-  const TrueHeights all = true_heights(RisingPlane(0), kBox, ticks(0, 3));
-  EXPECT_EQ(all.time_s.size(), 1u);
-  EXPECT_EQ(all.height_m.size(), std::size_t{n * n});
-}
-
-TEST(TrueHeights, AreMissingIfTheSurfaceIsUnknown) {
+TEST(TrueHeights, AreOneTimeAtRestAndNoneIfTheSurfaceIsUnknown) {
+  const TrueHeights at_rest = true_heights(RisingPlane(0), kBox, ticks(0, 3));
+  EXPECT_EQ(at_rest.time_s.size(), 1u);
+  EXPECT_EQ(at_rest.height_m.size(), std::size_t{n * n});
   const BoundingBox left(Vec3(-0.3, -1, -0.2), Vec3(-0.1, 1, 0.2));
   EXPECT_TRUE(true_heights(RisingPlane(0.1), left, ticks(0, 3)).empty());
 }
@@ -140,13 +138,9 @@ TEST(TrueHeights, StateTheErrorBetweenTheirNodes) {
   EXPECT_LT(all.error_m, 0.01);
 }
 
-}  // namespace
-}  // namespace remote_touch::true_heights_test
+// --- points ---
 
-namespace remote_touch::shown_frames_test {
-namespace {
-
-const BoundingBox kBox(Vec3(-0.03, -0.03, -0.03), Vec3(0.03, 0.03, 0.03));
+const BoundingBox kNearBox(Vec3(-0.03, -0.03, -0.03), Vec3(0.03, 0.03, 0.03));
 const std::vector<Vec3> kPath{{0, 0, 0}, {0.001, 0, 0}, {0.02, 0.01, 0}};
 
 PointCloud cloud_with_holes() {
@@ -161,10 +155,10 @@ bool is_shown(const ShownPoints& shown, std::size_t i) {
 
 TEST(ShownPoints, AreAllPointsInTheBoxIfTheyAreFewEnough) {
   const PointCloud cloud = cloud_with_holes();
-  const ShownPoints shown = shown_points(cloud, {}, kPath, {kBox, 0.005, cloud.size()});
+  const ShownPoints shown = shown_points(cloud, {}, kPath, {kNearBox, 0.005, cloud.size()});
   std::size_t measured = 0, in_box = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const bool inside = cloud.is_measured(i) && kBox.contains(cloud.point(i));
+    const bool inside = cloud.is_measured(i) && kNearBox.contains(cloud.point(i));
     measured += cloud.is_measured(i), in_box += inside;
     EXPECT_EQ(is_shown(shown, i), inside) << i;
   }
@@ -175,10 +169,10 @@ TEST(ShownPoints, AreAllPointsInTheBoxIfTheyAreFewEnough) {
 
 TEST(ShownPoints, AreAllNearTheProxyAndAboutAsManyOthersAsAllowed) {
   const PointCloud cloud = cloud_with_holes();
-  const ShownPoints shown = shown_points(cloud, {}, kPath, {kBox, 0.005, 500});
+  const ShownPoints shown = shown_points(cloud, {}, kPath, {kNearBox, 0.005, 500});
   std::size_t near = 0, others = 0, others_shown = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!cloud.is_measured(i) || !kBox.contains(cloud.point(i))) continue;
+    if (!cloud.is_measured(i) || !kNearBox.contains(cloud.point(i))) continue;
     double from_path_m = 1;
     for (const Vec3& proxy : kPath) from_path_m = std::min(from_path_m, (cloud.point(i) - proxy).norm());
     if (from_path_m <= 0.005) {
@@ -199,15 +193,15 @@ TEST(ShownPoints, RequestedPointsAreShownOutsideOfTheBoxToo) {
   const PointCloud cloud = cloud_with_holes();
   std::vector<std::uint32_t> always;
   for (std::uint32_t i = 1; i < 40; i += 2) always.push_back(i);
-  const ShownPoints shown = shown_points(cloud, always, {}, {kBox, 0, 0});
+  const ShownPoints shown = shown_points(cloud, always, {}, {kNearBox, 0, 0});
   EXPECT_EQ(shown.indices, always);
 }
 
 TEST(ShownPoints, FewerAreThoseOfTheSmallestRanks) {
   const PointCloud cloud = cloud_with_holes();
   const std::vector<std::uint32_t> always{5, 7, 1001};
-  const ShownPoints many = shown_points(cloud, always, kPath, {kBox, 0.005, 900});
-  const ShownPoints few = shown_points(cloud, always, kPath, {kBox, 0.005, 100});
+  const ShownPoints many = shown_points(cloud, always, kPath, {kNearBox, 0.005, 900});
+  const ShownPoints few = shown_points(cloud, always, kPath, {kNearBox, 0.005, 100});
   ASSERT_EQ(many.rank.size(), many.indices.size());
   EXPECT_EQ(many.others, few.others);
   std::vector<std::uint32_t> kept;
@@ -221,7 +215,7 @@ TEST(ShownPoints, FewerAreThoseOfTheSmallestRanks) {
 // A point that is left out of one frame is left out of the next, so that an animation does not flicker.
 TEST(ShownPoints, AreTheSamePixelsInEveryFrame) {
   PointCloud cloud = cloud_with_holes();
-  const ShownPointsRule rule{kBox, 0, 300};
+  const ShownPointsRule rule{kNearBox, 0, 300};
   const std::vector<std::uint32_t> before = shown_points(cloud, {}, {}, rule).indices;
   for (double& y : cloud.y) y += 1e-6;
   std::vector<std::uint32_t> common;
@@ -291,4 +285,4 @@ TEST(TouchingTool, NoPointTouchesIfThereIsNoPose) {
 }
 
 }  // namespace
-}  // namespace remote_touch::shown_frames_test
+}  // namespace remote_touch::shown_run_test

@@ -1,3 +1,4 @@
+// The page of a sweep, the runs that it shows by default, and descriptions of everything that has a name.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
@@ -37,41 +38,30 @@ std::vector<std::size_t> chosen(const SweepResult& result, std::size_t max = 6) 
   return default_runs(result, result.measure("popped_through"), 0.5, max);
 }
 
-// 0: holds, 1: fails. Rows of the first axis.
-//   0 0 1 1
-//   0 1 1 1
-//   0 0 0 1
-TEST(DefaultRuns, AreFailedCellsBesideCellsThatHold) {
-  EXPECT_EQ(chosen(sweep_of({3, 4}, 1, {0, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1})),
-            (std::vector<std::size_t>{2, 5, 6, 11}));
-}
-
-TEST(DefaultRuns, AreSpreadEvenlyWhereThereAreMany) {
-  std::vector<double> values;
-  for (int row = 0; row < 20; ++row)
-    for (const double value : {0.0, 1.0}) values.push_back(value);
-  EXPECT_EQ(chosen(sweep_of({20, 2}, 1, values), 3), (std::vector<std::size_t>{1, 19, 39}));
-  EXPECT_EQ(chosen(sweep_of({20, 2}, 1, values), 1), (std::vector<std::size_t>{1}));
-}
-
-TEST(DefaultRuns, UseTheFirstFailedReplicateOfACellThatMostlyFails) {
-  EXPECT_EQ(chosen(sweep_of({3}, 3, {0, 0, 0, 0, 1, 1, 1, 1, 1})), (std::vector<std::size_t>{4}));
-  // One of three is not most, so the limit comes after that cell.
-  EXPECT_EQ(chosen(sweep_of({3}, 3, {0, 0, 0, 0, 1, 0, 1, 1, 1})), (std::vector<std::size_t>{6}));
-}
-
-// Refinement leaves cells out; the next one that was run counts.
-TEST(DefaultRuns, ANeighbourIsTheNextCellWithRuns) {
-  SweepResult result = sweep_of({5}, 1, {0, kNaN, kNaN, 1, 1});
-  result.state[1] = result.state[2] = RunState::not_sampled;
-  EXPECT_EQ(chosen(result), (std::vector<std::size_t>{3}));
-}
-
-TEST(DefaultRuns, AreAnyFailuresOrElseTheExtremesIfThereIsNoLimit) {
-  EXPECT_EQ(chosen(sweep_of({3}, 1, {1, 1, 1})), (std::vector<std::size_t>{0, 1, 2}));
-  EXPECT_EQ(chosen(sweep_of({4}, 1, {0.2, 0.4, 0.1, kNaN})), (std::vector<std::size_t>{1, 2}));
-  EXPECT_EQ(chosen(sweep_of({4}, 1, {0.2, 0.4, 0.1, kNaN}), 1), (std::vector<std::size_t>{1}));
-  EXPECT_EQ(chosen(sweep_of({2}, 1, {kNaN, kNaN})), (std::vector<std::size_t>{0}));
+// Runs are marked by 0 where they hold and by 1 where they fail.
+TEST(DefaultRuns, AreFailuresNearestToRunsThatHold) {
+  using Runs = std::vector<std::size_t>;
+  // Rows of the first axis:
+  //   0 0 1 1
+  //   0 1 1 1
+  //   0 0 0 1
+  EXPECT_EQ(chosen(sweep_of({3, 4}, 1, {0, 0, 1, 1, 0, 1, 1, 1, 0, 0, 0, 1})), (Runs{2, 5, 6, 11}));
+  std::vector<double> rows;
+  for (int row = 0; row < 20; ++row) rows.insert(rows.end(), {0.0, 1.0});
+  EXPECT_EQ(chosen(sweep_of({20, 2}, 1, rows), 3), (Runs{1, 19, 39})) << "they are spread evenly";
+  EXPECT_EQ(chosen(sweep_of({20, 2}, 1, rows), 1), Runs{1});
+  // The first failed replicate of a cell that mostly fails: one of three is not most.
+  EXPECT_EQ(chosen(sweep_of({3}, 3, {0, 0, 0, 0, 1, 1, 1, 1, 1})), Runs{4});
+  EXPECT_EQ(chosen(sweep_of({3}, 3, {0, 0, 0, 0, 1, 0, 1, 1, 1})), Runs{6});
+  // Refinement leaves cells out; the next one that was run counts.
+  SweepResult refined = sweep_of({5}, 1, {0, kNaN, kNaN, 1, 1});
+  refined.state[1] = refined.state[2] = RunState::not_sampled;
+  EXPECT_EQ(chosen(refined), Runs{3});
+  // Any failures, or else the extremes, if there is no limit.
+  EXPECT_EQ(chosen(sweep_of({3}, 1, {1, 1, 1})), (Runs{0, 1, 2}));
+  EXPECT_EQ(chosen(sweep_of({4}, 1, {0.2, 0.4, 0.1, kNaN})), (Runs{1, 2}));
+  EXPECT_EQ(chosen(sweep_of({4}, 1, {0.2, 0.4, 0.1, kNaN}), 1), Runs{1});
+  EXPECT_EQ(chosen(sweep_of({2}, 1, {kNaN, kNaN})), Runs{0});
   SweepResult none = sweep_of({2}, 1, {kNaN, kNaN});
   none.state.assign(2, RunState::failed);
   EXPECT_TRUE(chosen(none).empty());
@@ -115,13 +105,6 @@ TEST_F(SweepPageTest, HasTheMapAndTheRunsOfTheNamedCells) {
   const Trace again = simulate(sweep_.experiment(5, 0));
   EXPECT_EQ(read.numbers<std::int32_t>(read.column("contact_count", 1)), again.contact_count);
   EXPECT_EQ(read.json["runs"][1]["note"], "");
-}
-
-TEST_F(SweepPageTest, ShowsFailuresWhereNoneAreNamed) {
-  const auto failed = stored_.measure("popped_through");
-  const ReadPage read = page({});
-  ASSERT_FALSE(read.json["sweep"]["runs"].empty());
-  for (const std::size_t run : read.json["sweep"]["runs"]) EXPECT_EQ(failed[run], 1) << run;
 }
 
 // A mean can then state how many of the runs have no value.
@@ -177,66 +160,41 @@ TEST(PageFile, MakesNoTagOfItsTitleNamesOrTexts) {
   EXPECT_EQ(page.bytes, words);
 }
 
-std::string refused(const std::string& name) {
-  return refusal([&] { described(name); });
-}
-auto line_count(const std::string& text) {
-  return std::ranges::count(text, '\n');
-}
-
-TEST(ParameterDescription, IsThatOfOneEntry) {
+TEST(Descriptions, OfParametersAndColumns) {
   const std::string text = described("proxy.r1_m");
   EXPECT_TRUE(text.starts_with("proxy.r1_m: a parameter of \"renderer\": ")) << text;
   EXPECT_HAS(text, "\n  unit m; default 0.00499; allowed ");
   EXPECT_HAS(text, "; live\n");
-  EXPECT_EQ(line_count(text), 2);
-  EXPECT_HAS(described("flat-grid.noise_sigma_m"), "flat-grid.noise_sigma_m: a parameter of \"scenario\": ");
-}
-
-TEST(ParameterDescription, OfASectionIsThatOfEveryEntryThatHasIt) {
-  const std::string text = described("renderer.r1_m");
-  EXPECT_HAS(text, "proxy.r1_m: ");
-  EXPECT_HAS(text, "tracked-sheet.r1_m: ");
-  EXPECT_EQ(text.find("tool.r1_m"), std::string::npos);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 2);
+  const std::string all = described("renderer.r1_m");  // of every renderer that has it
+  EXPECT_HAS(all, "proxy.r1_m: ");
+  EXPECT_HAS(all, "tracked-sheet.r1_m: ");
+  EXPECT_EQ(all.find("tool.r1_m"), std::string::npos);
   EXPECT_HAS(described("run.seed"), "run.seed: a parameter of \"run\": ");
   EXPECT_EQ(described("fixtures.0.radius_m"), described("fixtures.radius_m"));
-}
-
-TEST(ParameterDescription, OfATraceIsThatOfAColumn) {
   EXPECT_EQ(described("trace.force"),
             "trace.force: a column of a trace: force of the renderer, world frame\n"
             "  unit N; 3 in each row; in every run\n");
   EXPECT_HAS(described("trace.state"), "0 free, 1 contact, 2 entrenched\n  with a tool: ");
 }
 
-TEST(ParameterDescription, RefusesAnUnknownParameterWithTheNearestOne) {
+TEST(Descriptions, RefuseUnknownNames) {
+  const auto refused = [](const char* name) { return refusal([&] { described(name); }); };
   EXPECT_EQ(refused("proxy.r1"), "proxy.r1: unknown; did you mean proxy.r1_m");
   EXPECT_EQ(refused("renderer.stifness_N_per_m"),
             "renderer.stifness_N_per_m: unknown; did you mean renderer.stiffness_N_per_m");
   EXPECT_EQ(refused("trace.forces"), "trace.forces: unknown; did you mean trace.force");
-}
-
-TEST(ParameterDescription, RefusesAnUnknownOwner) {
   for (const char* name : {"absent.r1_m", "fig4.12.seed", "proxy.0.1.r1_m", "proxy.", ".seed", ".", ""})
     EXPECT_HAS(refused(name), "expected a name from `remote-touch list`, or NAME.PARAMETER") << name;
+  const std::string message = refusal([] { named_kind("robots"); });
+  EXPECT_HAS(message, "robots: is not a kind: expected sections, scenarios, fixture rules, ");
+  for (const NamedKind& kind : named_kinds()) EXPECT_HAS(message, kind.kind);
 }
 
 // A sweep that keeps a tally, for example, has no plan of its runs.
 TEST(Descriptions, AreThereOfEverySweepAndFigure) {
   for (const char* kind : {"sweeps", "figures"})
     for (const auto& row : named_kind(kind).rows) EXPECT_HAS(described(row.name), row.name + ": a ");
-}
-
-TEST(NamedKind, HasTheRowsOfTheList) {
-  const NamedKind rules = named_kind("fixture rules");
-  ASSERT_FALSE(rules.rows.empty());
-  EXPECT_EQ(rules.rows.front().name, "everywhere");
-}
-
-TEST(NamedKind, IsRefusedWithAllKinds) {
-  const std::string message = refusal([] { named_kind("robots"); });
-  EXPECT_HAS(message, "robots: is not a kind: expected sections, scenarios, fixture rules, ");
-  for (const NamedKind& kind : named_kinds()) EXPECT_HAS(message, kind.kind);
 }
 
 }  // namespace

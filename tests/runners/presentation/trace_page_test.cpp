@@ -1,3 +1,4 @@
+// The page of a trace: events, claims, columns, points and notes.
 #include "runners/presentation/result_pages.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/test_files.h"
 
-namespace remote_touch::trace_event_test {
+namespace remote_touch::trace_page_test {
 namespace {
 
 Column column(const char* name, Values values, int width = 1) {
@@ -32,10 +33,42 @@ using Doubles = std::vector<double>;
 using Integers = std::vector<std::int32_t>;
 using Texts = std::vector<std::string>;
 
-TEST(TraceEvents, APopThroughIsWhereTheProxyGetsBelowTheTrueSurface) {
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(found({column("signed_distance", Doubles{0.1, 0, -0.1, -0.2, 0.1, -0.1, unknown, -0.1})}),
-            (Texts{"2 pop-through", "5 pop-through"}));
+TEST(TraceEvents, AreThoseOfTheirColumns) {
+  Integers often;
+  Texts not_converged;
+  for (int i = 0; i < 400; ++i) often.push_back(i % 2);
+  for (int i = 0; i < 50; ++i) not_converged.push_back(std::to_string(2 * i) + " not converged");
+  const std::pair<std::vector<Column>, Texts> cases[] = {
+      // The proxy gets below the true surface.
+      {{column("signed_distance", Doubles{0.1, 0, -0.1, -0.2, 0.1, -0.1, NAN, -0.1})},
+       {"2 pop-through", "5 pop-through"}},
+      {{column("force", Doubles{0, 0, 0, 0, 1, 0, 0, 1, 0, 3, 4, 0, 3, 4, 1}, 3)},
+       {"3 force jump", "4 largest force"}},
+      {{column("force", Doubles{0, 1, 0, 0, 1, 0}, 3)}, {"0 largest force"}},  // it never changes
+      {{column("force", Doubles{0, 0, 0, 0, 0, 0}, 3)}, {}},
+      {{column("slave_peak_force", Doubles{NAN, 0, 2, 7, 7, 3})}, {"2 slave contact", "3 hardest hit"}},
+      {{column("slave_peak_force", Doubles{NAN, 0, 0})}, {}},
+      {{column("contact_count", Integers{0, 0, 2, 0, 1})}, {"2 first contact"}},
+      {{column("contact_count", Integers{0, 0})}, {}},
+      {{column("converged", Integers{1, 0, 0, 1, 0})}, {"1 not converged", "4 not converged"}},
+      {{column("converged", Integers{0, 0, 1, 0})}, {"0 not converged", "3 not converged"}},
+      // A tool says it in another column.
+      {{column("converged", Integers{0, 0, 0}), column("budget_exhausted", Integers{0, 0, 1})},
+       {"2 not converged"}},
+      {{column("converged", often)}, not_converged},
+      // A step of a task can begin or end in the first tick: step 0 is done, step 1 begins.
+      {{column("sequence_step", Integers{0, 0}), column("sequence_running", Integers{1, 1})}, {"0 task"}},
+      {{column("sequence_step", Integers{1, 1}), column("sequence_running", Integers{1, 1})},
+       {"0 task", "0 task"}},
+      {{column("sequence_step", Integers{0, 0, 1, 1, 2}),
+        column("signed_distance", Doubles{1, 1, 1, -1, -1})},
+       {"2 task", "3 pop-through", "4 task"}}};
+  for (std::size_t i = 0; i < std::size(cases); ++i) EXPECT_EQ(found(cases[i].first), cases[i].second) << i;
+  const auto events = trace_events(ColumnsInMemory(
+      {column("slave_peak_force", Doubles{0, 12.34}), column("force", Doubles{0, 2, 0, 0, 2, 0}, 3)}));
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(events[0].text, "The largest force of the renderer, 2 N.");
+  EXPECT_EQ(events[2].text, "The largest force of the scene on the slave, 12.3 N.");
 }
 
 TEST(TraceEvents, AProxyThatRestsOnTheSurfaceDoesNotPopThroughIt) {
@@ -44,43 +77,6 @@ TEST(TraceEvents, AProxyThatRestsOnTheSurfaceDoesNotPopThroughIt) {
   EXPECT_EQ(trace_events(resting).size(), 2u);
   ASSERT_EQ(trace_events(resting, {}, 0.0025).size(), 1u);
   EXPECT_EQ(trace_events(resting, {}, 0.0025)[0].tick, 4u);
-}
-
-TEST(TraceEvents, HaveTheLargestForceAndTheLargestJump) {
-  EXPECT_EQ(found({column("force", Doubles{0, 0, 0, 0, 1, 0, 0, 1, 0, 3, 4, 0, 3, 4, 1}, 3)}),
-            (Texts{"3 force jump", "4 largest force"}));
-  EXPECT_EQ(found({column("force", Doubles{0, 1, 0, 0, 1, 0}, 3)}), Texts{"0 largest force"})
-      << "it never changes";
-  EXPECT_EQ(found({column("force", Doubles{0, 0, 0, 0, 0, 0}, 3)}), Texts{});
-}
-
-TEST(TraceEvents, HaveTheFirstAndTheHardestContactOfASlave) {
-  EXPECT_EQ(found({column("slave_peak_force", Doubles{NAN, 0, 2, 7, 7, 3})}),
-            (Texts{"2 slave contact", "3 hardest hit"}));
-  EXPECT_EQ(found({column("slave_peak_force", Doubles{NAN, 0, 0})}), Texts{});
-  const auto events = trace_events(ColumnsInMemory(
-      {column("slave_peak_force", Doubles{0, 12.34}), column("force", Doubles{0, 2, 0, 0, 2, 0}, 3)}));
-  ASSERT_EQ(events.size(), 3u);
-  EXPECT_EQ(events[0].text, "The largest force of the renderer, 2 N.");
-  EXPECT_EQ(events[2].text, "The largest force of the scene on the slave, 12.3 N.");
-}
-
-TEST(TraceEvents, HaveTheFirstContact) {
-  EXPECT_EQ(found({column("contact_count", Integers{0, 0, 2, 0, 1})}), Texts{"2 first contact"});
-  EXPECT_EQ(found({column("contact_count", Integers{0, 0})}), Texts{});
-}
-
-TEST(TraceEvents, HaveTheTicksThatDidNotConverge) {
-  EXPECT_EQ(found({column("converged", Integers{1, 0, 0, 1, 0})}),
-            (Texts{"1 not converged", "4 not converged"}));
-  EXPECT_EQ(found({column("converged", Integers{0, 0, 1, 0})}), (Texts{"0 not converged", "3 not converged"}))
-      << "a spell that begins the run";
-  EXPECT_EQ(found({column("converged", Integers{0, 0, 0}), column("budget_exhausted", Integers{0, 0, 1})}),
-            (Texts{"2 not converged"}))
-      << "a tool says it in another column";
-  Integers often;
-  for (int i = 0; i < 400; ++i) often.push_back(i % 2);
-  EXPECT_EQ(found({column("converged", often)}).size(), 50u);
 }
 
 TEST(TraceEvents, StepsOfATaskHaveTheirResult) {
@@ -98,27 +94,7 @@ TEST(TraceEvents, StepsOfATaskHaveTheirResult) {
                           "4 Step 1 of the task is missed, 0.5 mm and 90 deg from its goal."}));
 }
 
-TEST(TraceEvents, AStepOfATaskCanBeginOrEndInTheFirstTick) {
-  EXPECT_EQ(found({column("sequence_step", Integers{0, 0}), column("sequence_running", Integers{1, 1})}),
-            (Texts{"0 task"}));
-  EXPECT_EQ(found({column("sequence_step", Integers{1, 1}), column("sequence_running", Integers{1, 1})}),
-            (Texts{"0 task", "0 task"}))
-      << "step 0 is done, step 1 begins";
-}
-
-TEST(TraceEvents, HaveTheStepsOfATaskInOrder) {
-  EXPECT_EQ(found({column("sequence_step", Integers{0, 0, 1, 1, 2}),
-                   column("signed_distance", Doubles{1, 1, 1, -1, -1})}),
-            (Texts{"2 task", "3 pop-through", "4 task"}));
-}
-
-}  // namespace
-}  // namespace remote_touch::trace_event_test
-
-namespace remote_touch::trace_page_test {
-namespace {
-
-// The claims of a figure beside a run of its experiment.
+// --- the claims of a figure beside a run of its experiment ---
 
 constexpr const char* kClaims = R"([
   {"figure": "4.12", "claim": "height", "paper": "3 mm", "measured": 0.003, "criterion": "at most 0.004", "unit": "m",
@@ -164,6 +140,8 @@ TEST_F(ShownClaimsTest, AnotherFileIsRefused) {
   EXPECT_HAS(why("[{"), "bad.json");
   EXPECT_HAS(refusal([&] { shown_claims(folder_ / "none.json", run("fig4.12")); }), "none.json");
 }
+
+// --- the page ---
 
 class TracePageTest : public testing::Test {
  protected:
@@ -224,18 +202,6 @@ TEST_F(TracePageTest, ForbiddenRegionsTouchToo) {
       simulate(Experiment::load("fig5.6")));
 }
 
-TEST_F(TracePageTest, PointsAreLeftOutUntilThePageIsSmallEnough) {
-  store("a.h5", "fig4.16", {"duration_s=1"});
-  ViewOptions small = options();
-  const std::size_t whole = trace_page({folder_ / "a.h5"}, small).html.size();
-  small.max_bytes = viewer_script().size() + (whole - viewer_script().size()) / 2;
-  const ViewPage page = trace_page({folder_ / "a.h5"}, small);
-  EXPECT_LE(page.html.size(), small.max_bytes);
-  EXPECT_HAS(page.shown, "all points near the proxy and some of the others");
-  small.max_bytes = 1000;
-  EXPECT_HAS(refusal([&] { trace_page({folder_ / "a.h5"}, small); }), "expected --max-mb ");
-}
-
 TEST_F(TracePageTest, TwoTracesHaveTheTickAtWhichTheyDiffer) {
   const Trace a = store("a.h5", "fig4.12"), b = store("b.h5", "fig4.12", {"renderer.r3_m=0.0076"});
   std::size_t first = 0;
@@ -271,55 +237,26 @@ TEST_F(TracePageTest, HostileWordsStayWords) {
 }
 
 // A program that makes other frames than those of the run would show points that were not touched.
-TEST_F(TracePageTest, SaysWhereTheFramesAreNotThoseOfTheRun) {
-  const Experiment one = Experiment::load("fig4.12");
-  SimulationOptions with_hashes;
-  with_hashes.hash_frames = true;
-  Trace trace = simulate(one, with_hashes);
-  const auto note = [&] {
+TEST_F(TracePageTest, HasNotesOnOtherFramesAndOnAContactRadiusThatChanges) {
+  const auto note = [&](const std::string& parameter, const char* value, std::uint64_t other_frames) {
+    const Experiment one = Experiment::load(
+        "fig4.12", {"duration_s=0.1", R"(changes=[{"time_s": 0.05, "parameter": "renderer.)" + parameter +
+                                          R"(", "value": )" + value + "}]"});
+    SimulationOptions with_hashes;
+    with_hashes.hash_frames = true;
+    Trace trace = simulate(one, with_hashes);
+    for (std::uint64_t& hash : trace.frame_hash) hash += other_frames;
     write_trace(folder_ / "a.h5", trace, provenance(one.to_json(), "a test", ""), {});
     return ReadPage(trace_page({folder_ / "a.h5"}, options()).html)
         .json["runs"][0]["note"]
         .get<std::string>();
   };
-  EXPECT_EQ(note(), "");
-  for (std::uint64_t& hash : trace.frame_hash) ++hash;
-  EXPECT_HAS(note(), "These are not the frames of the run");
-}
-
-TEST_F(TracePageTest, ANoteOnOtherFramesKeepsTheOtherNotes) {
-  const Experiment one = Experiment::load(
-      "fig4.12",
-      {"duration_s=0.1", R"(changes=[{"time_s": 0.05, "parameter": "renderer.r1_m", "value": 0.003}])"});
-  SimulationOptions with_hashes;
-  with_hashes.hash_frames = true;
-  Trace trace = simulate(one, with_hashes);
-  for (std::uint64_t& hash : trace.frame_hash) ++hash;
-  write_trace(folder_ / "a.h5", trace, provenance(one.to_json(), "a test", ""), {});
-  const std::string note =
-      ReadPage(trace_page({folder_ / "a.h5"}, options()).html).json["runs"][0]["note"].get<std::string>();
-  EXPECT_HAS(note, "These are not the frames of the run");
-  EXPECT_HAS(note, "The contact radius changes");
-  EXPECT_EQ(count(note, "These are not the frames of the run"), 1u) << note;
-}
-
-TEST_F(TracePageTest, SaysThatTheContactRadiusChanges) {
-  const auto note = [&](const std::string& parameter, const char* value) {
-    store("a.h5", "fig4.12",
-          {"duration_s=0.1", R"(changes=[{"time_s": 0.05, "parameter": "renderer.)" + parameter +
-                                 R"(", "value": )" + value + "}]"});
-    return ReadPage(trace_page({folder_ / "a.h5"}, options()).html)
-        .json["runs"][0]["note"]
-        .get<std::string>();
-  };
-  EXPECT_HAS(note("r1_m", "0.003"), "The contact radius changes");
-  EXPECT_EQ(note("stiffness_N_per_m", "300"), "");
-}
-
-TEST_F(TracePageTest, RefusesWhatIsNoTrace) {
-  EXPECT_HAS(refusal([&] { trace_page({folder_ / "none.h5"}, options()); }), "none.h5");
-  folder_.write("text.h5", "no HDF5");
-  EXPECT_HAS(refusal([&] { trace_page({folder_ / "text.h5"}, options()); }), "text.h5");
+  EXPECT_EQ(note("stiffness_N_per_m", "300", 0), "");
+  const std::string radius = note("r1_m", "0.003", 0), both = note("r1_m", "0.003", 1);
+  EXPECT_HAS(radius, "The contact radius changes");
+  EXPECT_HAS(both, "The contact radius changes");
+  EXPECT_EQ(count(radius, "These are not the frames of the run"), 0u);
+  EXPECT_EQ(count(both, "These are not the frames of the run"), 1u) << both;
 }
 
 TEST_F(TracePageTest, RefusesTwoTracesOfOtherTickRates) {
@@ -330,24 +267,13 @@ TEST_F(TracePageTest, RefusesTwoTracesOfOtherTickRates) {
              "b.h5: has 500.0 ticks per second, but ");
 }
 
-TEST(PageFile, TextInItEndsNoElement) {
-  if (viewer_script().empty()) GTEST_SKIP() << "built without the viewer";
-  const std::string html = page_file("a < b & c", R"({"title":"</script><b>"})", "");
-  EXPECT_HAS(html, "<title>a &lt; b &amp; c</title>");
-  EXPECT_EQ(Json::parse(between(html, "id=\"view\">", "</script>"))["title"], "</script><b>");
-}
-
+// The last bytes cannot be made shorter, so that both are done in several pieces.
 TEST(PageFile, NumbersComeBackFromTheirCompressedForm) {
   std::string bytes;
   for (int i = 0; i < 100000; ++i) bytes += static_cast<char>(i % 251 * (i % 251) % 251);
   for (const std::size_t length : {0u, 1u, 2u, 3u, 1000u, 100000u})
     EXPECT_EQ(decompressed(gzip_base64(bytes.substr(0, length)), 200000), bytes.substr(0, length));
-}
-
-// Bytes that cannot be made shorter, so that both are done in several pieces.
-TEST(PageFile, NumbersOfSeveralPiecesComeBack) {
   std::mt19937 random(1);
-  std::string bytes;
   for (int i = 0; i < 7'000'001; ++i) bytes += static_cast<char>(random() & 0xff);
   EXPECT_TRUE(decompressed(gzip_base64(bytes), bytes.size() + 1) == bytes);
 }
