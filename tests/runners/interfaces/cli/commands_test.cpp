@@ -1,11 +1,16 @@
+// Parts of commands: what a word is, estimates, outputs, progress, and what merging keeps.
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <limits>
+#include <map>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/sweeps/sweep_file.h"
 #include "core/kernels/kernels.h"
+#include "runners/evaluation/figures/figure_recipe.h"
+#include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
 #include "tests/support/result_files.h"
@@ -32,22 +37,17 @@ CommandLine quiet_line() {
   return line;
 }
 
-TEST(OtherKind, NamesTheCommand) {
-  EXPECT_EQ(other_kind("4.12", "run"), "is a figure: expected `remote-touch figure 4.12 -o FOLDER`");
-  EXPECT_EQ(other_kind("fig4.13", "run"), "is a sweep: expected `remote-touch sweep fig4.13 -o FILE`");
-  EXPECT_EQ(other_kind("fig4.12", "sweep"), "is an experiment: expected `remote-touch run fig4.12 -o FILE`");
+TEST(OtherKind, NamesTheCommandOrIsEmpty) {
   EXPECT_EQ(other_kind("fig4.13", "figure"), "is a sweep: expected `remote-touch sweep fig4.13 -o FILE`");
   EXPECT_EQ(other_kind("figbounds", "figure"),
             "is a figure: expected `remote-touch figure bounds -o FOLDER`");
-}
-
-TEST(OtherKind, IsEmptyForTheCommandsOwnNamesForFilesAndForNoWord) {
-  EXPECT_EQ(other_kind("fig4.12", "run"), "");
-  EXPECT_EQ(other_kind("fig4.13", "sweep"), "");
-  EXPECT_EQ(other_kind("4.13", "figure"), "");
-  EXPECT_EQ(other_kind("/dev/null", "run"), "");
-  EXPECT_EQ(other_kind("nonsense", "run"), "");
-  EXPECT_EQ(other_kind("", "run"), "");
+  for (const auto& [name, command] : {std::pair("fig4.12", "run"),
+                                      {"fig4.13", "sweep"},
+                                      {"4.13", "figure"},
+                                      {"/dev/null", "run"},
+                                      {"nonsense", "run"},
+                                      {"", "run"}})
+    EXPECT_EQ(other_kind(name, command), "") << name;
 }
 
 // Tests of the text that the command `hashes` prints.
@@ -76,56 +76,24 @@ std::string printed(const CommandLine& line, const SweepRequest& request) {
   return testing::internal::GetCapturedStdout();
 }
 
+// A dry run reads the file as the sweep does.
 TEST(DryRun, HasNoTimeToEstimateIfNoRunIsLeft) {
   const TestFolder folder("dry_run");
   const CommandLine line = quiet_line();
-  SweepRequest request;
-  request.sweep = folder.write("quick.json", kQuick).string();
-  request.output = (folder / "map.h5").string(), request.shard = "1/1", request.dry_run = true;
-  EXPECT_HAS(printed(line, request), " in the 4 that were tried)\n");
-  request.dry_run = false;
-  printed(line, request);
-  request.dry_run = true;
-  const std::string done = printed(line, request);
-  EXPECT_HAS(done, "0 runs to do, all valid; 4 are done\n  no time to estimate: no run was tried\n");
-  EXPECT_EQ(done.find("about"), std::string::npos) << done;
-}
-
-TEST(DryRun, RefusesATallyThatTheSweepWouldRefuse) {
-  const TestFolder folder("dry_run");
-  const CommandLine line = quiet_line();
-  SweepRequest request;
-  request.sweep = folder.write("quick.json", kQuick).string(), request.dry_run = true;
-  request.overrides = {"keep=tally"};
-  EXPECT_HAS(printed(line, request), "4 runs to do, all valid\n");
-  request.overrides.emplace_back(
-      R"(axes=[{"parameter": "seed", "from": 0, "to": 1000, "count": 1001},
-               {"parameter": "scenario.noise_sigma_m", "from": 0, "to": 0.015, "count": 1000}])");
-  EXPECT_HAS(refusal([&] { command_sweep(line, request); }), "has 1001000 cells: expected 1 to 1000000");
-}
-
-// Each run is tried once if there are fewer than it would try.
-TEST(DryRun, TriesEachOfFewRuns) {
-  const TestFolder folder("dry_run");
-  const CommandLine line = quiet_line();
-  SweepRequest request;
-  request.sweep = folder.write("quick.json", kQuick).string(), request.dry_run = true;
-  request.overrides = {"duration_s=0.01"};
-  EXPECT_HAS(printed(line, request), "note on the runs that were tried: 4 of 4 runs: no contact");
-}
-
-// A dry run reads the file as the sweep does.
-TEST(DryRun, KnowsWhatATallyHas) {
-  const TestFolder folder("dry_run");
-  const CommandLine line = quiet_line();
-  SweepRequest request;
-  request.sweep = folder.write("quick.json", kQuick).string(), request.overrides = {"keep=tally"};
-  request.output = (folder / "tally.h5").string();
-  printed(line, request);
-  request.dry_run = true;
-  EXPECT_HAS(printed(line, request), "0 runs to do, all valid; 4 are done\n  no time to estimate");
-  request.overrides.emplace_back("replicates=3");
-  EXPECT_HAS(refusal([&] { command_sweep(line, request); }), "tally.h5: is of another configuration");
+  for (const std::string keep : {"runs", "tally"}) {
+    SweepRequest request;
+    request.sweep = folder.write("quick.json", kQuick).string(), request.overrides = {"keep=" + keep};
+    request.output = (folder / (keep + ".h5")).string(), request.shard = "1/1", request.dry_run = true;
+    EXPECT_HAS(printed(line, request), " that were tried)\n");
+    request.dry_run = false;
+    printed(line, request);
+    request.dry_run = true;
+    const std::string done = printed(line, request);
+    EXPECT_HAS(done, "0 runs to do, all valid; 4 are done\n  no time to estimate: no run was tried\n");
+    EXPECT_EQ(done.find("about"), std::string::npos) << done;
+    request.overrides.emplace_back("replicates=3");
+    EXPECT_HAS(refusal([&] { command_sweep(line, request); }), keep + ".h5: is of another configuration");
+  }
 }
 
 // A command writes no file twice, and none that it reads.
@@ -139,40 +107,18 @@ class Outputs : public testing::Test {
   const TestFolder folder_{"outputs_test"};
 };
 
-TEST_F(Outputs, OneFileForTwoOptionsIsRefusedHoweverItIsWritten) {
+TEST_F(Outputs, ALinkToAFileIsThatFile) {
   fs::create_directory(folder_ / "sub");
   fs::create_directory_symlink(folder_ / "sub", folder_ / "other");
   fs::create_symlink("sub/report", folder_ / "link");  // to a file that does not exist yet
-  EXPECT_EQ(refusal_of(file("x"), file("x")),
-            "--junit " + file("x") + ": is also the file of --json: expected another file");
-  const std::string here = fs::relative(folder_.path()).string();
-  for (const std::string& same : {file("sub/../x"), file("./x"), here + "/x", file("other/../x")})
-    EXPECT_HAS(refusal_of(file("x"), same), "is also the file of --json") << same;
-  EXPECT_HAS(refusal_of(file("sub/x"), file("other/x")), "is also the file of --json");
-  EXPECT_HAS(refusal_of(file("sub/report"), file("link")), "is also the file of --json");
-  EXPECT_EQ(refusal_of(file("x"), file("y")), kNone);
-  EXPECT_EQ(refusal_of(file("x"), file("sub/x")), kNone);
-}
-
-TEST_F(Outputs, TwoNamesOfOneFileAreRefused) {
   folder_.write("x", "x");
   fs::create_hard_link(folder_ / "x", folder_ / "y");
-  EXPECT_HAS(refusal_of(file("x"), file("y")), "is also the file of --json");
-}
-
-TEST_F(Outputs, AnEmptyNameAndADeviceMayComeTwice) {
-  EXPECT_EQ(refusal_of("", ""), kNone);
-  EXPECT_EQ(refusal_of("/dev/null", "/dev/null"), kNone);
-}
-
-// An input is no output, not even with --force.
-TEST_F(Outputs, AnInputOrAPlugInIsNoOutput) {
-  CommandLine line;
-  line.force = true;
-  line.plugins = {folder_.write("mine.so", "a library").string()};
-  const std::string input = folder_.write("in.h5", "a result").string();
-  for (const std::string& read : {input, line.plugins.front()})
-    EXPECT_HAS(refusal([&] { require_report(line, read, {input}, kJsonReport); }), "is the input file");
+  EXPECT_EQ(refusal_of(file("x"), file("y")),
+            "--junit " + file("y") + ": is also the file of --json: expected another file");
+  EXPECT_HAS(refusal_of(file("sub/x"), file("other/x")), "is also the file of --json");
+  EXPECT_HAS(refusal_of(file("sub/report"), file("link")), "is also the file of --json");
+  EXPECT_EQ(refusal_of(file("x"), file("z")), kNone);
+  EXPECT_EQ(refusal_of(file("x"), file("sub/x")), kNone);
 }
 
 // A run takes minutes: its output is checked before it and again after it.
@@ -194,14 +140,11 @@ TEST_F(Outputs, AFileThatAppearsMeanwhileIsKeptUnlessForced) {
   EXPECT_EQ(bytes_of(report), "new");
 }
 
+// The remaining time is unknown before anything is done, which differs from 0 s.
 TEST(ProgressText, StatesTheKnownProgress) {
   EXPECT_EQ(progress_text(0.25, 10), " 25 %, 2.5 %/s, 30 s left");
   EXPECT_EQ(progress_text(1, 10), "100 %, 10.0 %/s, 0 s left");
   EXPECT_EQ(progress_text(30, 100, 10, "runs", 10), "30 of 100 runs, 2/s, 35 s left");
-}
-
-// The remaining time is unknown before anything is done, which differs from 0 s.
-TEST(ProgressText, PromisesNothingBeforeAnythingIsDone) {
   EXPECT_EQ(progress_text(0, 10), "  0 %");
   EXPECT_EQ(progress_text(10, 100, 10, "runs", 10), "10 of 100 runs");
   EXPECT_EQ(progress_text(0, 100, 0, "runs", 0), "0 of 100 runs");
@@ -243,15 +186,6 @@ class Merge : public testing::Test {
   std::vector<std::string> shards_;
   std::string longer_;
 };
-
-TEST_F(Merge, ReplacesAnotherFileOnlyIfForced) {
-  const std::string output = folder_.write("notes.txt", "precious notes").string();
-  EXPECT_HAS(merged_to(output), "notes.txt: exists already and is not a result of this program");
-  EXPECT_EQ(bytes_of(output), "precious notes");
-  line_.force = true;
-  EXPECT_EQ(merged_to(output), kNone);
-  EXPECT_EQ(read_sweep(output).result.runs_in(RunState::done).size(), 4u);
-}
 
 TEST_F(Merge, ReplacesAnEmptyFileAndItsOwnResult) {
   const std::string output = folder_.write("empty.h5", "").string();
@@ -301,6 +235,131 @@ TEST_F(Merge, OfAnEmptyShardStatesTheSweep) {
   std::string printed;
   EXPECT_EQ(merged({{empty}, file("all.h5"), true}, &printed), kNone);
   EXPECT_HAS(printed, "all.h5: 2 cells, 0 runs done, 0 failed, 4 in other shards");
+}
+
+// The output and the exit code of the command `figure` for figures that are made side by side.
+
+Figure nothing(FigureContext&) {
+  return {};
+}
+
+// They have the names of real figures, because claims.json has an order of figures.
+const FigureEntry kFirst{"4.11", "the first", nothing, 1}, kSecond{"4.12", "the second", nothing, 2};
+const std::vector<FigureRun> kRuns = {{&kFirst}, {&kSecond}};
+
+Claim claim(const std::string& figure, bool holds) {
+  return claim_at_most(figure, "a claim of " + figure, "-", holds ? 1 : 3, 2, "m");
+}
+
+using Claims = std::map<std::string, std::vector<Claim>>;
+
+struct Told {
+  std::string out, err;
+  int code = -1;
+};
+
+// Makes the figures as command_figure() does.
+Told told(const std::filesystem::path& folder, const Claims& claims) {
+  const CommandLine line = quiet_line();
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Told result;
+  {
+    FigureFolder made(line, folder, kRuns);
+    Progress shown("figures", line.quiet);
+    make_figures(
+        line, kRuns,
+        [&](const FigureEntry& entry, FigureContext&) {
+          Figure figure{entry.name, entry.summary, "caption"};
+          figure.claims = claims.at(entry.name);
+          return figure;
+        },
+        [&](std::size_t run, const FigureContext& context, Figure figure) {
+          made.finish(run, context, std::move(figure));
+        },
+        [&](const FigureProgress& progress) { made.report(progress, shown); });
+    result.code = made.exit_code();
+  }
+  result.out = testing::internal::GetCapturedStdout();
+  result.err = testing::internal::GetCapturedStderr();
+  return result;
+}
+
+TEST(FigureFolder, EveryLineOfEveryFigureIsPrintedInTheirOrder) {
+  const TestFolder folder("figure_folder_test");
+  const Told all = told(folder.path(), {{"4.11", {claim("4.11", true)}}, {"4.12", {claim("4.12", true)}}});
+  EXPECT_EQ(all.out, "figure 4.11 -> " + (folder / "fig4.11.h5").string() +
+                         "\n  pass    a claim of 4.11: 1 m (at most 2)\n" + "figure 4.12 -> " +
+                         (folder / "fig4.12.h5").string() + "\n  pass    a claim of 4.12: 1 m (at most 2)\n");
+  EXPECT_EQ(all.err, "");
+  EXPECT_EQ(all.code, kDone);
+}
+
+TEST(FigureFolder, AFileThatIsNoResultIsNotOverwritten) {
+  const TestFolder folder("figure_folder_test");
+  const std::filesystem::path file = folder.write("fig4.12.h5", "of someone else");
+  const CommandLine line;
+  EXPECT_EQ(refusal([&] { FigureFolder(line, folder.path(), kRuns); }),
+            file.string() +
+                ": exists already and is not a result of this program: expected another file, or --force");
+  EXPECT_EQ(bytes_of(file), "of someone else");
+}
+
+TEST(FigureFolder, ALongClaimKeepsTheEndOfItsLine) {
+  const TestFolder folder("figure_folder_test");
+  Claim is_long = claim("4.11", true);
+  is_long.claim = std::string(3000, 'x');
+  const Told all = told(folder.path(), {{"4.11", {is_long}}, {"4.12", {claim("4.12", true)}}});
+  EXPECT_HAS(all.out, std::string(3000, 'x') + ": 1 m (at most 2)\nfigure 4.12 -> ");
+}
+
+TEST(FigureFolder, AClaimThatDiffersNamesItsSource) {
+  const TestFolder folder("figure_folder_test");
+  Figure models{"4.12", "", ""};
+  models.source = "the published models";
+  remote_touch::Claims(models).differs("width: ratio", 1.5, 1, 2, "1", "1 (equal)");
+  const Told all = told(folder.path(), {{"4.11", {claim_differs("4.11", "speed", "16", 29, 28, 30, "m/s")}},
+                                        {"4.12", models.claims}});
+  EXPECT_HAS(all.out, "speed: 29 m/s (expected here: from 28 to 30, the dissertation: 16)\n");
+  EXPECT_HAS(all.out, "width: ratio: 1.5 1 (expected here: from 1 to 2, the published models: 1 (equal))\n");
+  const std::string claims = bytes_of(folder / "claims.json");
+  EXPECT_HAS(claims, "\"source\": \"the dissertation\"");
+  EXPECT_HAS(claims, "\"source\": \"the published models\"");
+}
+
+// The exit code reports a failed claim, whatever else is claimed before or after it.
+TEST(FigureFolder, AFailedClaimIsTheExitCode) {
+  const Claim none = claim_not_run("4.11", "needs a recording", "it is not there");
+  const Claim open = [] {
+    Claim one = claim("4.11", true);
+    one.verdict = Verdict::open;
+    return one;
+  }();
+  const std::vector<Claims> all = {
+      {{"4.11", {claim("4.11", false)}}, {"4.12", {claim("4.12", true)}}},
+      {{"4.11", {claim("4.11", true)}}, {"4.12", {claim("4.12", false)}}},
+      {{"4.11", {claim("4.11", false), claim("4.11", true)}}, {"4.12", {claim("4.12", true)}}},
+      {{"4.11", {set_up(claim("4.11", false))}}, {"4.12", {claim("4.12", true)}}},
+      {{"4.11", {claim("4.11", true)}},
+       {"4.12", {claim_at_most("4.12", "no number", "-", std::numeric_limits<double>::quiet_NaN(), 2, "m")}}},
+      {{"4.11", {open}}, {"4.12", {claim_differs("4.12", "outside", "4", 3, 1, 2, "m")}}},
+      {{"4.11", {none}}, {"4.12", {claim("4.12", false)}}},
+      {{"4.11", {none, claim("4.11", false)}}, {"4.12", {none}}},
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const TestFolder folder("figure_folder_test");
+    const Told one = told(folder.path(), all[i]);
+    EXPECT_EQ(one.code, kCheckFailed) << i;
+    EXPECT_HAS(one.out, "  FAIL    ") << i;
+    EXPECT_HAS(bytes_of(folder / "claims.json"), "\"verdict\": \"fail\"") << i;
+  }
+}
+
+TEST(FigureFolder, ExitCodeIsBadInputIfNoFigureWasMade) {
+  const TestFolder folder("figure_folder_test");
+  const Claim none = claim_not_run("4.11", "needs a recording", "it is not there");
+  EXPECT_EQ(told(folder.path(), {{"4.11", {none}}, {"4.12", {none}}}).code, kBadInput);
+  EXPECT_EQ(told(folder.path(), {{"4.11", {none}}, {"4.12", {claim("4.12", true)}}}).code, kDone);
 }
 
 }  // namespace
