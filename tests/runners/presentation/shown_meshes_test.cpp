@@ -1,3 +1,4 @@
+// The true meshes that a page shows: on a grid, at their poses, and hidden where these are unknown.
 #include "runners/presentation/result_pages.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Shares of cells that hold, regions of the map of lifts, and deviations that are not known.
 #include "runners/evaluation/figures/pop_through_map.h"
 
 #include <gtest/gtest.h>
