@@ -37,7 +37,7 @@ TEST(TraceEvents, AreThoseOfTheirColumns) {
   Integers often;
   Texts not_converged;
   for (int i = 0; i < 400; ++i) often.push_back(i % 2);
-  for (int i = 0; i < 50; ++i) not_converged.push_back(std::to_string(2 * i) + " not converged");
+  for (int i = 0; i <= 50; ++i) not_converged.push_back(std::to_string(2 * i) + " not converged");
   const std::pair<std::vector<Column>, Texts> cases[] = {
       // The proxy gets below the true surface.
       {{column("signed_distance", Doubles{0.1, 0, -0.1, -0.2, 0.1, -0.1, NAN, -0.1})},
@@ -64,6 +64,8 @@ TEST(TraceEvents, AreThoseOfTheirColumns) {
         column("signed_distance", Doubles{1, 1, 1, -1, -1})},
        {"2 task", "3 pop-through", "4 task"}}};
   for (std::size_t i = 0; i < std::size(cases); ++i) EXPECT_EQ(found(cases[i].first), cases[i].second) << i;
+  EXPECT_EQ(trace_events(ColumnsInMemory({column("converged", often)})).back().text,
+            "The first of 150 more spells without convergence, which are not listed.");
   const auto events = trace_events(ColumnsInMemory(
       {column("slave_peak_force", Doubles{0, 12.34}), column("force", Doubles{0, 2, 0, 0, 2, 0}, 3)}));
   ASSERT_EQ(events.size(), 3u);
