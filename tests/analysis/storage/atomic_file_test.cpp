@@ -283,7 +283,7 @@ TEST(NewFiles, AppearTogetherOrNotAtAll) {
   EXPECT_HAS(refusal([&] { files.begin(folder.path()); }), "cannot be written (Is a directory)");
 }
 
-using Contents = std::vector<std::pair<fs::path, std::string>>;  // by target
+using Contents = std::vector<std::pair<fs::path, std::string>>;  // contents, by target
 
 void write_together(const Contents& contents) {
   NewFiles files;

@@ -12,10 +12,10 @@ struct Faults {
   struct Answer {
     int written, error;  // error: errno after the call
   };
-  std::vector<Answer> writes = {};  // of the first calls of write(), which write nothing
+  std::vector<Answer> writes = {};  // answers of the first calls of write(), which write nothing
   // This number of calls of rename() fail with this errno, after renames_before calls that are executed.
   int renames_before = 0, failed_renames = 0, error_of_rename = 0;
-  bool truncations_fail = false;  // with EIO
+  bool truncations_fail = false;  // the error is EIO
 };
 
 // The system has these faults until this object is destroyed. There may be only one object at a time, and

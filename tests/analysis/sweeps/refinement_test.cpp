@@ -51,7 +51,7 @@ RefinementRule rule(std::vector<std::size_t> strides, int first_replicates = 1, 
 }
 
 using Runs = std::vector<std::size_t>;
-using Samples = std::map<std::size_t, std::string>;  // by cell
+using Samples = std::map<std::size_t, std::string>;  // runs, by cell
 
 std::string of_200(std::size_t events) {
   return std::string(events, '+') + std::string(200 - events, '-');

@@ -227,7 +227,7 @@ std::string place(const Table& table, std::size_t row) {
   return {};
 }
 
-constexpr double kAny = -1;  // in these tests no limit is negative
+constexpr double kAny = -1;  // no limit is negative in these tests
 
 void expect_number(double value, double expected) {
   if (expected == kAny) return;

@@ -326,7 +326,7 @@ TEST_F(TallyFile, ReadsBackAWholeSweep) {
   for (const int replicates : {1, 3, 200})
     for (const bool keeps_events : {false, true})
       expect_read_back(folder, example_tally(replicates, keeps_events));
-  SweepTally bare = example_plan(4);  // without notes, and with one axis
+  SweepTally bare = example_plan(4);  // a tally without notes, with one axis
   bare.note_kinds.clear(), bare.axes.erase(bare.axes.begin());
   add_example_runs(bare, numbers_below(12));
   expect_read_back(folder, bare);

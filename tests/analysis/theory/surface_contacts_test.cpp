@@ -337,7 +337,7 @@ TEST(ScatterBound, HalfSurviveAtIt) {
   NoiseEffect sunk;
   sunk.thickness_m = -0.01, sunk.margin_sd_m = 0.001;
   EXPECT_EQ(scatter_bound(kLift, sunk), 0);  // pops through at rest
-  // Without noise.
+  // A surface without noise.
   EXPECT_NEAR(scatter_bound(kLift, {}), critical_acceleration(kLift), 1e-9);
   EXPECT_EQ(survival_probability(kLift, {}, 4.4), 1);
   EXPECT_EQ(survival_probability(kLift, {}, 4.6), 0);

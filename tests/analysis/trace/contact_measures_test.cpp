@@ -23,7 +23,7 @@ TEST(SurfaceSide, PopsThroughFromTheFrontToTheBackIfTheWayIsKnown) {
   const struct {
     std::vector<double> distance_m;
     double popped_through;
-    std::vector<std::size_t> ticks;  // those in which it pops through
+    std::vector<std::size_t> ticks;  // ticks in which it pops through
     double held_depth_m = 0;
   } rows[] = {{{0.01, 0, -1e-9}, 1, {2}},
               {{0.01, -0.01, 0.01}, 0, {1}},  // it came back
@@ -316,7 +316,7 @@ TEST(ToolMeasures, AreMeansAndMaximaOfTheTicks) {
                                        {"mean_tool_lag_angle", (0.2 + 0.3 + 0.1) / 4},
                                        {"max_tool_lag_angle", 0.3}})
     EXPECT_NEAR(example_traces::value(name, trace), expected, 1e-15) << name;
-  Tick alone;  // without a nearest point
+  Tick alone;  // no point is near
   alone.gap_m = none;
   EXPECT_TRUE(std::isnan(min_clearance_m(trace_of({alone, alone}))));
 }

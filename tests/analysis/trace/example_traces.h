@@ -31,7 +31,7 @@ struct Tick {
          nearest_m = 0.005;  // from the proxy to the true surface, and to the nearest point
   int contacts = 0, steps = 1;
   bool converged = true;
-  std::optional<Vec3> torque_Nm = {};   // of a tool
+  std::optional<Vec3> torque_Nm = {};   // a tool has one
   std::optional<Vec3> guidance_N = {};  // the part of the force that is guidance
   std::optional<Vec3> device_N = {};    // exerted on the hand
   std::optional<Trace::TrueContact> contact = {};

@@ -122,7 +122,7 @@ struct LeftCase {
 TEST(TimeLeft, IsThatOfTheJobsThatAreLeft) {
   constexpr JobState kWaiting = JobState::waiting, kRunning = JobState::running, kDone = JobState::done;
   const LeftCase cases[] = {
-      {{10, 30}, {{kWaiting, 0}, {kWaiting, 0}}, 2, {{10, 30}, 20}},  // what was expected
+      {{10, 30}, {{kWaiting, 0}, {kWaiting, 0}}, 2, {{10, 30}, 20}},  // the expected lines
       // The speed of the machine: the prior counts 2 s, and a job of 8 s took 18 s, so 20 s for 10 s.
       {{8, 30}, {{kDone, 18}, {kWaiting, 0}}, 1, {{0, 60}, 60}},
       {{10}, {{kRunning, 4}}, 1, {{6}, 6}},

@@ -41,7 +41,7 @@ double closed_form(const LiftMotion::Settings& s, double time_s) {
 TEST(LiftMotion, IsTheClosedFormAtAnyTime) {
   LiftMotion::Settings odd = lift();  // no update where a part begins or ends
   odd.wait_s = 0.123, odd.rise_s = 0.4567, odd.acceleration_s = 0.2345, odd.update_rate_hz = 17;
-  const LiftMotion::Settings receding{0.1, -0.02, -0.3, 0.1};  // from above zero
+  const LiftMotion::Settings receding{0.1, -0.02, -0.3, 0.1};  // the range begins above zero
   for (const LiftMotion::Settings& s : {lift(), odd, receding}) {
     const LiftMotion motion(s);
     for (int tick = 0; tick < 1500; ++tick)

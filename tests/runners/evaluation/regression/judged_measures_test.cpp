@@ -92,7 +92,7 @@ struct JudgedSweeps {
   ComparisonRules rules;
   Outcome outcome;
   std::string verdict;
-  int failures, errors, skipped;  // of two measures and the whole
+  int failures, errors, skipped;  // parts of two measures, and the whole
 };
 
 // The same difference in the other direction is neither a regression nor a pass. Equally many runs that

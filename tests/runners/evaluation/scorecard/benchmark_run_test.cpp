@@ -176,7 +176,7 @@ TEST(Benchmark, RefusesByName) {
        "method own: feedback: scene slave-organ-50 has its own"},
       {[&] { of_experiment(flat, R"({"renderer": {"name": "proxy"}})"); }, "methods define it"},
       {[&] { of_experiment(flat, R"({"seed": 1})"); }, "experiment.seed"},
-      // What is wrong in a file.
+      // The mistake in a file.
       {[] { read_method("y", R"({"title": "t"})"); }, "method y: renderer: missing"},
       {[] { read_benchmark_scene("x", "[]"); }, "scene x"},
       {[] { read_benchmark_scene("x", R"({"title": "t", "colour": 1})"); },

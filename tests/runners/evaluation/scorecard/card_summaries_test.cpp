@@ -1,4 +1,4 @@
-// What a scorecard says in few numbers: differences from a stored card, overview, weaknesses, thresholds.
+// A scorecard in few numbers: differences from a stored card, overview, weaknesses, thresholds.
 #include "runners/evaluation/scorecard/evaluation.h"
 
 #include <gtest/gtest.h>

@@ -320,7 +320,7 @@ double growth(const PositionForceLoop& loop, int round_trip_ticks) {
   double low[2] = {1, 1}, high[2] = {-1, -1};
   for (int tick = 0; tick < 30000; ++tick) {
     const double t = tick * kTick_s;
-    const double path = std::max(-0.06, 0.006 - 0.02 * t);  // at rest from 3.3 s on
+    const double path = std::max(-0.06, 0.006 - 0.02 * t);  // the hand rests from 3.3 s on
     const DeviceState device = hand.move({{0, path, 0}}, t, wrench);
     wrench = remote.tick(device, {}, t);
     const int window = tick >= 6000 && tick < 12000 ? 0 : tick >= 12000 && tick < 18000 ? 1 : -1;

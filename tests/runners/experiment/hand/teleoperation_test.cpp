@@ -289,7 +289,7 @@ TEST(SteeredTool, TheOrientationTravelsWithTheCommand) {
     for (int i = 0; i < 1500; ++i) {
       const double t = i * kTick_s;
       remote.tick(device(1, {0, 0, 0.5 * t}), {}, t);
-      const double late = t - (delay + 1) * kTick_s;  // of the command that the slave has reached
+      const double late = t - (delay + 1) * kTick_s;  // time of the command that the slave has reached
       const double lag = remote.state().tool->orientation_W.angularDistance(rotation({0, 0, 0.5 * late}));
       if (i > 1000) largest = std::max(largest, lag);
     }

@@ -195,7 +195,7 @@ TEST_F(LiveChannelTest, ALargeFrameKeepsAllPointsNearTheHand) {
   channel_.open();
   channel_.take(now);
   next();
-  constexpr double kRounding_m = 2e-5;  // of sent positions
+  constexpr double kRounding_m = 2e-5;  // largest error of sent positions
   const ShownFrame shown(next().bytes);
   EXPECT_LE(shown.points.size(), LiveChannel::kMaxPoints);
   EXPECT_GT(shown.points.size(), LiveChannel::kMaxPoints / 2);
