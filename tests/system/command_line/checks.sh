@@ -3,12 +3,14 @@
 # shellcheck shell=bash
 set -uo pipefail
 program=$(realpath "${1:?usage: $0 PROGRAM}") || exit 2
+helpers=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
+sources=${helpers%/tests/system/command_line}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
 # Settings of the user that change what the program does. REMOTE_TOUCH_MUTATION stays, by which scripts/mutate chooses.
 unset REMOTE_TOUCH_DATA REMOTE_TOUCH_ISA REMOTE_TOUCH_CACHE_MB "${!REMOTE_TOUCH_LIB@}" SPNAV_SOCKET DISPLAY WAYLAND_DISPLAY
-unset OMP_NUM_THREADS OMP_THREAD_LIMIT OMP_DYNAMIC GLIBC_TUNABLES
+unset OMP_NUM_THREADS OMP_THREAD_LIMIT OMP_DYNAMIC GLIBC_TUNABLES "${!SLURM_@}" "${!OMPI_@}"
 export LC_ALL=C
 
 failures=0
@@ -22,6 +24,18 @@ is() {
   shift
   if "$@" >is.log 2>&1; then pass "$name"; else fail "$name" "$* ($(head -c 300 is.log))"; fi
 }
+
+# says NAME TEXT...: the last command printed the texts.
+says() {
+  local text
+  for text in "${@:2}"; do is "$1: '$text'" grep -qF -e "$text" out; done
+}
+# python NAME ARGUMENT... <<CODE: the code, in which every claim is an assertion.
+python() {
+  if /usr/bin/python3 - "${@:2}" >log 2>&1; then pass "$1"; else fail "$1" "$(tail -n 5 log)"; fi
+}
+change() { /usr/bin/python3 "$helpers/change_result" "$@"; }
+write_recording() { /usr/bin/python3 "$helpers/write_recording" "$@"; }
 
 # What a slow machine shows of progress every ten seconds is no message: "figures: 1 of 3, making 4.13; about 9 s left",
 # "fig4.16:  12 %, 3.1 %/s, 28 s left".
@@ -47,13 +61,17 @@ takes_signals() {
 # is_under_way PID COMMAND...: it takes signals and the command succeeds; or it has ended, and there is nothing to wait for.
 is_under_way() { { takes_signals "$1" && "${@:2}"; } || ! kill -0 "$1"; }
 
-# succeeds NAME ARGUMENT...: exit 0 and a stderr without messages; stdout is kept in the file out.
-succeeds() {
+# exits NAME CODE ARGUMENT...: this exit code and a stderr without messages; stdout is kept in the file out.
+exits() {
   local name=$1 code=0
-  shift
-  "$program" "$@" >out 2>err || code=$?
-  if is_silent && [[ $code -eq 0 ]]; then pass "$name"; else fail "$name" "exit $code, $(head -c 300 err)"; fi
+  "$program" "${@:3}" >out 2>err || code=$?
+  if is_silent && [[ $code -eq $2 ]]; then
+    pass "$name"
+  else
+    fail "$name" "exit $code instead of $2: $(head -c 300 err) $(tail -n 1 out)"
+  fi
 }
+succeeds() { exits "$1" 0 "${@:2}"; }
 
 # The folder made is where every refused command would write.
 mkdir made
