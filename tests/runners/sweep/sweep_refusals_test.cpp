@@ -1,5 +1,5 @@
 // A sweep states what it runs: parts that overwrite each other are refused, as are axes that state nothing.
-// The test command_line/sweep_bad_input has more refusals; random_sweeps_test.cpp tries parts at random.
+// The test command_line/refusals has more refusals; random_sweeps_test.cpp tries parts at random.
 #include "runners/sweep/sweep.h"
 
 #include <gtest/gtest.h>

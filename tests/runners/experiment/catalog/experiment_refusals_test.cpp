@@ -1,5 +1,5 @@
 // Refusals of an experiment, each in one line: settings that contradict each other, unknown keys, and other
-// text. What is mistyped most often is refused in the test command_line_bad_input.
+// text. What is mistyped most often is refused in the test command_line/refusals.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <string>
