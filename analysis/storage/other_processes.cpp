@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -105,7 +106,33 @@ ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory
   return {kMinMemory + memory_for_each_byte * size, 1 + static_cast<unsigned>(size >> 20)};
 }
 
+namespace {
+
+// The descriptors of the locks that this process holds, plus one; 0: a free place. A lock lasts as long as
+// any process has its descriptor, so a child closes them: it may live a little longer than its parent. There
+// is no mutex, because fork() may copy a locked one.
+std::array<std::atomic<int>, 256> held_locks{};
+
+void note_lock(int descriptor) {
+  for (std::atomic<int>& place : held_locks)
+    if (int none = 0; place.compare_exchange_strong(none, descriptor + 1)) return;
+}
+
+void close_lock(int descriptor) {
+  for (std::atomic<int>& place : held_locks)
+    if (int held = descriptor + 1; place.compare_exchange_strong(held, 0)) break;
+  ::close(descriptor);
+}
+
+void close_locks_of_parent() {
+  for (std::atomic<int>& place : held_locks)
+    if (const int held = place.exchange(0); held > 0) ::close(held - 1);
+}
+
+}  // namespace
+
 void become_limited_child(const ChildLimits& limits) {
+  close_locks_of_parent();
   for (const int signal :
        {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP})
     std::signal(signal, SIG_DFL);
@@ -171,6 +198,7 @@ FileLock::FileLock(const std::filesystem::path& target) : lock_(resolved(target)
     if (error != EWOULDBLOCK) refuse_lock(target, error);
     throw InputError(target.string(), "another process is writing this file: expected one at a time");
   } while (!is_name_of(lock_, descriptor_));
+  note_lock(descriptor_);
   try {
     remove_leftovers(target);
   } catch (...) {  // the destructor does not run for a constructor that throws
@@ -185,7 +213,7 @@ FileLock::FileLock(FileLock&& other) noexcept
 void FileLock::release() {
   if (descriptor_ < 0) return;
   ::unlink(lock_.c_str());
-  ::close(descriptor_);
+  close_lock(descriptor_);
 }
 
 FileLock::~FileLock() {
@@ -212,14 +240,17 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ < 0) return;
   const int error = lock_error(descriptor_, LOCK_EX | LOCK_NB);
-  if (error == 0 || has_no_locks(error)) return;
+  if (error == 0 || has_no_locks(error)) {
+    note_lock(descriptor_);
+    return;
+  }
   ::close(descriptor_);
   if (error != EWOULDBLOCK) refuse_lock(folder, error);
   throw InputError(folder.string(), "another process is writing there: expected one at a time");
 }
 
 FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  if (descriptor_ >= 0) close_lock(descriptor_);
 }
 
 }  // namespace remote_touch

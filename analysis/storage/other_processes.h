@@ -38,7 +38,7 @@ using RunInChild =
 std::string in_own_child(const ChildLimits& limits, ChildReader reader, const std::string& question);
 
 // Prepares a child process that has just started. Signals then end it, whatever handlers the program has. The
-// end of its parent and exceeding the limits end it too.
+// end of its parent and exceeding the limits end it too. It holds no lock of its parent.
 void become_limited_child(const ChildLimits& limits);
 
 // Locks that let one process at a time write a file, or the files of a folder.

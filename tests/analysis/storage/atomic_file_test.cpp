@@ -347,6 +347,23 @@ TEST(NewFiles, KeepAnOldFileThatCannotBePutBack) {
 
 // --- a lock has one holder at a time ---
 
+// A child may live a little longer than its killed parent.
+TEST(FileLock, AChildHoldsNoneOfItsParent) {
+  const TestFolder folder("file_lock_child_test");
+  const FileLock lock(folder / "x.h5");
+  const FolderLock of_folder(folder.path());
+  const auto held = [&] {
+    std::error_code gone;
+    for (const auto& open : fs::directory_iterator("/proc/self/fd"))
+      if (const fs::path target = fs::read_symlink(open.path(), gone);
+          target == folder / "x.h5.lock" || target == folder.path())
+        return "holds " + target.string();
+    return std::string("holds none");
+  };
+  EXPECT_NE(held(), "holds none");
+  EXPECT_EQ(in_child({1u << 30, 5}, held), "holds none");
+}
+
 TEST(FileLock, OneHolderAtATime) {
   const TestFolder folder("file_lock_test");
   const auto file = folder / "x.h5";
