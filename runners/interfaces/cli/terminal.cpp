@@ -88,7 +88,9 @@ std::string wrapped(std::string_view line, std::size_t width) {
     const std::size_t end = first_line(rest, width);
     if (end == rest.size()) break;
     text += rest.substr(0, end) + "\n";
-    rest = indent + rest.substr(rest.find_first_not_of(' ', end));
+    const std::size_t next = rest.find_first_not_of(' ', end);
+    if (next == std::string::npos) return text;  // spaces at the end
+    rest = indent + rest.substr(next);
   }
   return text + rest + "\n";
 }

@@ -24,8 +24,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 TEST(Wrapped, LaterLinesBeginBelowTheLastColumn) {
   EXPECT_EQ(wrapped("  r1_m      the distance below which the proxy is entrenched", 40),
-            "  r1_m      the distance below which\n"
-            "            the proxy is entrenched\n");
+            "  r1_m      the distance below which the\n"
+            "            proxy is entrenched\n");
   EXPECT_EQ(wrapped("proxy: a renderer of an experiment", 20), "proxy: a renderer of\n  an experiment\n");
   EXPECT_EQ(wrapped("a line that fits", 40), "a line that fits\n");
   EXPECT_EQ(wrapped("", 40), "\n");
