@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "analysis/sweeps/sweep_result.h"
+#include "analysis/trace/columns.h"
 #include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/measures.h"
-#include "analysis/trace/columns.h"
 
 namespace remote_touch {
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/columns.h"
+#include "analysis/trace/interval_estimates.h"
 
 namespace remote_touch {
 

@@ -14,8 +14,8 @@
 
 #include "analysis/sweeps/sweep_means.h"
 #include "analysis/sweeps/sweep_result.h"
-#include "analysis/trace/measures.h"
 #include "analysis/trace/columns.h"
+#include "analysis/trace/measures.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
 #include "runners/experiment/settings/json_parameters.h"

@@ -316,9 +316,8 @@ Figure figure_eq4_15(FigureContext& context) {
                 "is constant. The velocity term of (4.15) as printed (plus), left out (none), and with "
                 "the sign that removes the jump (minus)."};
   // Three frames.
-  figure.panels = {
-      plot("A plane that rises at 0.1 m/s", "time (s)", "force (N)", {},
-           {.x_range = {{1.0, 1.1}}, .y_range = {{13, 19}}})};
+  figure.panels = {plot("A plane that rises at 0.1 m/s", "time (s)", "force (N)", {},
+                        {.x_range = {{1.0, 1.1}}, .y_range = {{13, 19}}})};
   std::vector<double> jump;
   const std::pair<const char*, const char*> readings[] = {
       {"plus", "plus (as printed)"}, {"none", "no term"}, {"minus", "minus (used)"}};

@@ -144,8 +144,8 @@ Panel path_panel(const std::string& title, const std::string& table) {
 
 // Force panels have the same range.
 Panel force_panel(const std::string& title, const std::string& table, const PanelFrame& frame = {}) {
-  Panel panel = plot(title, "x of the HIP (m)", "force (N)",
-                     {{table, "hip_x", "force", CurveStyle::line, ""}}, frame);
+  Panel panel =
+      plot(title, "x of the HIP (m)", "force (N)", {{table, "hip_x", "force", CurveStyle::line, ""}}, frame);
   panel.y_range = {0, 12};
   return panel;
 }

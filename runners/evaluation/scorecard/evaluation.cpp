@@ -9,8 +9,8 @@
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
-#include "analysis/trace/interval_estimates.h"
 #include "analysis/trace/columns.h"
+#include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/json_parameters.h"

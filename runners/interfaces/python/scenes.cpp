@@ -238,8 +238,7 @@ struct PythonSensor {
     {
       const py::gil_scoped_release without_lock;
       const AloneInThread alone;
-      const auto view =
-          sensor.view({camera.width, camera.height, std::move(true_depth)}, std::move(cosines), {});
+      const auto view = sensor.view({camera.width, camera.height, std::move(true_depth)}, cosines, {});
       for (const int frame : frames) depths.push_back(sensor.measured_depth(view, frame).z_m);
     }
     std::vector<py::array> images;
