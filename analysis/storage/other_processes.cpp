@@ -109,8 +109,9 @@ ChildLimits limits_to_read(const std::filesystem::path& file, std::size_t memory
 namespace {
 
 // The descriptors of the locks that this process holds, plus one; 0: a free place. A lock lasts as long as
-// any process has its descriptor, so a child closes them: it may live a little longer than its parent. There
-// is no mutex, because fork() may copy a locked one.
+// any process has its descriptor, so a child closes them: it may live a little longer than its parent. If
+// there are more locks than places, a child keeps the others. There is no mutex, because fork() may copy a
+// locked one.
 std::array<std::atomic<int>, 256> held_locks{};
 
 void note_lock(int descriptor) {

@@ -1,5 +1,5 @@
-// What a renderer receives and returns: frames of a sensor, with the targets of guidance in them, 7.3.2, the
-// state of a device, the output of a tick, and where that output says that the contact is.
+// The inputs and outputs of a renderer: frames of a sensor, with the targets of guidance in them, 7.3.2; the
+// state of a device; the output of a tick, and the contact point that it states.
 #pragma once
 
 #include <algorithm>

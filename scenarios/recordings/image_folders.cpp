@@ -263,7 +263,6 @@ std::vector<fs::path> files_in_order(const fs::path& folder, const std::string& 
 
 std::vector<fs::path> colour_images(const std::vector<fs::path>& depth, const fs::path& folder) {
   std::vector<fs::path> images(depth.size());
-  require_target(folder);
   if (!fs::is_directory(folder)) return images;
   const std::vector<fs::path> colours = files_in_order(folder, ".png");
   if (colours.empty() && !fs::is_empty(folder))

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <sstream>
-#include <utility>
 
 #include "analysis/storage/digest.h"
 #include "core/parameters/parameter.h"
@@ -13,10 +12,10 @@
 #include "runners/experiment/catalog/catalog.h"
 #include "runners/experiment/catalog/experiment.h"
 #include "runners/experiment/settings/changed_settings.h"
+#include "runners/experiment/settings/json_parameters.h"
 #include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
-#include "runners/interfaces/cli/terminal.h"
 #include "runners/interfaces/plugins/plugin_library.h"
 #include "runners/sweep/sweep.h"
 #include "runners/sweep/work_pool.h"
@@ -60,19 +59,18 @@ constexpr const char* kExamples = R"(Examples:
   remote-touch figure 4.12 -o out                # a figure of the dissertation, with its claims
 Pages: README.md and runners/interfaces/cli/README.md)";
 
-// Throws InputError if the name that `run` or `sweep` was given does not exist: that is told before what is
-// missing beside it.
+// Throws InputError if the name that `run` or `sweep` was given does not exist. A user needs this before the
+// message that an option is missing.
 void check_name(const CLI::App& command) {
-  for (const auto& [name, positional] : {std::pair{"run", "experiment"}, std::pair{"sweep", "sweep"}}) {
-    if (command.get_name() != name) continue;
-    const std::vector<std::string> given = command.get_option(positional)->results();
-    if (given.empty()) continue;
-    require_own_kind(given.front(), name);
-    if (command.get_name() == "run")
-      Experiment::load(given.front());
-    else
-      Sweep::load(given.front());
-  }
+  const bool is_run = command.get_name() == "run";
+  if (!is_run && command.get_name() != "sweep") return;
+  const std::vector<std::string> given = command.get_option(is_run ? "experiment" : "sweep")->results();
+  if (given.empty()) return;
+  require_own_kind(given.front(), command.get_name());
+  if (is_run)
+    Experiment::load(given.front());
+  else
+    Sweep::load(given.front());
 }
 
 // Returns the error of a word that is no command and no option here.
@@ -86,8 +84,10 @@ InputError unknown_word(const std::string& word, const CLI::App& place, const CL
   } else {
     for (const CLI::App* command : place.get_subcommands(nullptr)) known.push_back(command->get_name());
   }
-  const std::string what = word.starts_with('-') ? "unknown option" : "unknown";
-  return InputError(word, what + suggestion(word, known) + ": see " + called + " --help");
+  const std::string similar = similar_key(word, known);
+  return InputError(word, (word.starts_with('-') ? "unknown option" : "unknown") +
+                              (similar.empty() ? "" : "; did you mean " + similar) + ": see " + called +
+                              " --help");
 }
 
 // Returns an error that names an unknown command or option, because CLI11's own error does not.
@@ -145,9 +145,12 @@ int run_command_line(int argc, char** argv, CommandLine line, const Kernels& (*c
   std::function<int()> act;
   int threads = -1;
   Subcommands commands{app, line, act, threads};
-#define COMMAND(name, of) add_##name(commands), app.get_subcommand(#name)->group("Subcommands, " of);
-  REMOTE_TOUCH_COMMANDS(COMMAND)
+  std::string group;
+#define GROUP(name) group = "Subcommands, " name;
+#define COMMAND(name) add_##name(commands), app.get_subcommand(#name)->group(group);
+  REMOTE_TOUCH_COMMANDS(GROUP, COMMAND)
 #undef COMMAND
+#undef GROUP
   app.footer(kExamples);
   wrap_standard_output();
   try {

@@ -1,4 +1,5 @@
-// The outputs of a command: which files it may overwrite, its progress on stderr, and the summary of a sweep.
+// The outputs of a command: which files it may overwrite, its progress on stderr, the summary of a sweep, and
+// lines that fit into a terminal.
 #pragma once
 
 #include <chrono>
@@ -7,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/storage/other_processes.h"
@@ -140,5 +142,14 @@ class SweepSummary {
   std::vector<std::string> failures_;  // the first of them
   std::vector<NoteCount> notes_;
 };
+
+// Breaks a line at spaces into lines of at most `width` characters, each of which ends with a line feed. A
+// word that is longer than a line stays whole. Later lines begin below the last column of a table if that is
+// in the left half, else two spaces further than the first one. Characters are those of UTF-8.
+std::string wrapped(std::string_view line, std::size_t width);
+
+// If standard output is a terminal, wraps all lines that are printed by the C library from now on, at the
+// width of the terminal; at 80 characters if the width is not known. Nothing changes for a file or a pipe.
+void wrap_standard_output();
 
 }  // namespace remote_touch

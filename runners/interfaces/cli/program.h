@@ -132,21 +132,20 @@ void require_own_kind(const std::string& name, const std::string& command);
 
 // The commands in the order of --help, in the groups that it shows. add_run() adds `run`, and so on.
 // clang-format off
-#define REMOTE_TOUCH_COMMANDS(COMMAND) \
-  COMMAND(list, "what there is") COMMAND(describe, "what there is") COMMAND(devices, "what there is") \
-  COMMAND(run, "make results") COMMAND(sweep, "make results") COMMAND(merge, "make results") \
-  COMMAND(figure, "make results") COMMAND(scorecard, "make results") \
-  COMMAND(view, "look at results") COMMAND(inspect, "look at results") COMMAND(analyse, "look at results") \
-  COMMAND(export, "look at results") COMMAND(cite, "look at results") \
-  COMMAND(compare, "check results") COMMAND(replay, "check results") COMMAND(recheck, "check results") \
-  COMMAND(repro, "check results") COMMAND(hashes, "check results") COMMAND(baseline, "check results") \
-  COMMAND(verify, "check results") \
-  COMMAND(live, "in real time") COMMAND(recover, "in real time") COMMAND(jitter, "in real time") \
-  COMMAND(cache, "others")
+#define REMOTE_TOUCH_COMMANDS(GROUP, COMMAND) \
+  GROUP("what there is") COMMAND(list) COMMAND(describe) COMMAND(devices) \
+  GROUP("make results") COMMAND(run) COMMAND(sweep) COMMAND(merge) COMMAND(figure) COMMAND(scorecard) \
+  GROUP("look at results") COMMAND(view) COMMAND(inspect) COMMAND(analyse) COMMAND(export) COMMAND(cite) \
+  GROUP("check results") COMMAND(compare) COMMAND(replay) COMMAND(recheck) COMMAND(repro) COMMAND(hashes) \
+    COMMAND(baseline) COMMAND(verify) \
+  GROUP("in real time") COMMAND(live) COMMAND(recover) COMMAND(jitter) \
+  GROUP("others") COMMAND(cache)
 // clang-format on
-#define COMMAND(name, group) void add_##name(Subcommands& commands);
-REMOTE_TOUCH_COMMANDS(COMMAND)
+#define GROUP(name)
+#define COMMAND(name) void add_##name(Subcommands& commands);
+REMOTE_TOUCH_COMMANDS(GROUP, COMMAND)
 #undef COMMAND
+#undef GROUP
 
 // Parses the arguments and runs the command. Returns the exit code; throws InputError for arguments that are
 // not understood. choose_kernels is called once, before a command runs.

@@ -217,7 +217,7 @@ TEST_F(BlockJournal, RefusesToReadOtherFiles) {
   EXPECT_HAS(why(folder.path()), "is not an unfinished recording");
   write(folder);
   EXPECT_HAS(why(folder.write("x", "a result")), "expected " + (folder / "x.unfinished").string());
-  // Where a result is expected, its journal is named if the result is missing.
+  // A journal is named if its result is missing.
   const auto required = [&](const char* name) { return refusal([&] { require_no_journal(folder / name); }); };
   EXPECT_EQ(required("x"), "no InputError");
   EXPECT_EQ(required("other"), "no InputError");

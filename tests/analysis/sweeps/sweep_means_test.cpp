@@ -62,7 +62,8 @@ const CellStreams kFixed = changed_streams([](CellStreams& s) { s.draws[0] = s.d
 // degrees of freedom is 4.30265, with 4 it is 2.77645.
 const double kHalfOfThree = 4.30265 / std::sqrt(3.0);
 
-// What has no value, or did not finish, is left out; numbers that do not scatter have no interval.
+// Runs without a value, and those that did not finish, are left out. Numbers that do not scatter have no
+// interval.
 TEST(SweepMeans, HaveStudentsIntervalOfEachCell) {
   SweepResult result = sweep_of({{1, 2, 3}, {5, 5, kNaN}, {0, 4, 8}, {kNaN, kNaN, kNaN}});
   const Table table = sweep_means(result, "depth", {0, 1}, kOwn);

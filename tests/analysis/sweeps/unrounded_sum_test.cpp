@@ -350,7 +350,7 @@ TEST(MeasureTally, HasNoMeanWithoutValues) {
   EXPECT_EQ(tally.contradiction(), "");
 }
 
-// In every third round the values are 1e8 and some thousandths: a sum of rounded squares would have no digit
+// The values of every third round are 1e8 and some thousandths: a sum of rounded squares would have no digit
 // left.
 TEST(MeasureTally, HasTheVarianceOfALongInteger) {
   std::mt19937_64 random(2);

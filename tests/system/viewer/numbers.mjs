@@ -6,10 +6,10 @@ import { buildSync } from "esbuild";
 
 // Only what modules use while they load.
 globalThis.window = { matchMedia: () => ({ matches: false }), addEventListener() {} };
-const names = ["data", "live_run", "banner", "cloud", "hand"];
+const names = ["data", "live_run", "banner", "cloud", "hand", "words"];
 const contents = names.map((name) => `export * from "./${name}";`).join("\n");
 const [{ text }] = buildSync({ stdin: { contents, resolveDir: process.argv[2] }, bundle: true, format: "esm", write: false, nodePaths: ["node_modules"] }).outputFiles;
-const { Column, differenceOf, digits, LiveRun, missedText, regionKey, Run, timeDigits, wayTo } = await import(`data:text/javascript;base64,${Buffer.from(text).toString("base64")}`);
+const { Column, differenceOf, digits, LiveRun, missedText, named, regionKey, Run, timeDigits, wayTo } = await import(`data:text/javascript;base64,${Buffer.from(text).toString("base64")}`);
 
 const rateHz = 1000;
 // A stored run of these ticks. at(tick): its HIP and proxy, m.
@@ -106,4 +106,17 @@ test("each tick has its own time in the texts", () => {
   }
   assert.equal(new Column("time", "s", "", 1, [], Float64Array.of(123.456)).text(0), "123.456");
   assert.equal(timeDigits(Number.NaN), digits(Number.NaN));
+});
+
+test("a value that only rounding has left is shown as 0", () => {
+  const force = new Column("force", "N", "", 3, [], Float64Array.of(2.5, 1e-17, -3e-33, 1e-9, 0, 2.4e-12));
+  assert.deepEqual([0, 1].map((tick) => force.text(tick)), ["2.5  0  0", "1e-9  0  0"]);
+  const small = new Column("energy", "J", "", 1, [], Float64Array.of(1e-13, 2e-14));
+  assert.deepEqual([0, 1].map((tick) => small.text(tick)), ["1e-13", "2e-14"], "a column of small numbers keeps them");
+});
+
+test("parameters have words and the units that people read", () => {
+  const texts = ["scenario.noise_sigma_m", "renderer.stiffness_N_per_m", "scenario.acceleration_m_per_s2", "frame_rate_hz", "renderer.gamma"]
+    .map((name) => { const { words, name: unit, factor } = named(name); return `${words}: ${factor * 0.5} ${unit}`.trimEnd(); });
+  assert.deepEqual(texts, ["noise sigma: 500 mm", "stiffness: 0.5 N/m", "acceleration: 0.5 m/s\u00b2", "frame rate: 0.5 Hz", "gamma: 0.5"]);
 });

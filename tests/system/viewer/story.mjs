@@ -105,6 +105,13 @@ test("the list of events shows the current one, and is one stop of the keyboard"
   });
 });
 
+test("marks of events do not hide the slider", async () => {
+  await withPage("pop.html", {}, async (page) => {
+    const sizes = await page.locator(".mark").evaluateAll((all) => all.map((one) => [one.offsetWidth, one.offsetHeight]));
+    assert.ok(sizes.length > 1 && sizes.every(([width, height]) => width <= 8 && height <= 12), sizes.join(" "));
+  });
+});
+
 test("two runs have their story in one sentence", async () => {
   await withPage("both.html", {}, async (page) => {
     const pop = await page.evaluate(() => window.remoteTouch.runs.map((run) => run.events.find((event) => event.kind === "pop-through")?.tick));

@@ -1,16 +1,14 @@
-// The scene from the side, x to the right and y up: an overview in the corner of the 3-D view, and all there is without WebGL 2.
+// Where there is no WebGL 2: the scene from the side, x to the right and y up.
 import { colours } from "./colours";
-import { type Frame, round125, type Run, type Vector } from "./data";
+import { round125, type Run, type Vector } from "./data";
 import { longestArrow } from "./hand";
 import { fullForce, largestForce } from "./scene";
-
-const overviewPoints = 1500; // of a frame, at most
 
 export class FlatView {
   readonly mmPerN: number;
   readonly longestMm: number; // of the arrow of a force
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly runs: Run[], private readonly isOverview = false) {
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly runs: Run[]) {
     const { low_m: low, high_m: high } = runs[0].stored, sizeMm = Math.max(1000 * Math.hypot(...high.map((x, k) => x - low[k])), 1);
     this.mmPerN = (fullForce * sizeMm) / Math.max(largestForce(runs), 1e-9);
     this.longestMm = longestArrow * sizeMm;
@@ -24,31 +22,19 @@ export class FlatView {
     this.canvas.height = ratio * height;
     pen.scale(ratio, ratio);
     const { low_m: low, high_m: high } = this.runs[0].stored;
-    const factor = (0.95 * Math.min(width / (high[0] - low[0]), height / (high[1] - low[1])));
+    const factor = Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
     const at = (p: Vector): [number, number] =>
       [width / 2 + (p[0] - (low[0] + high[0]) / 2) * factor, height / 2 - (p[1] - (low[1] + high[1]) / 2) * factor];
     const frame = this.runs[0].frameAt(this.runs[0].known(tick));
-    if (frame) this.drawPoints(pen, frame, at);
-    if (this.isOverview) this.drawRing(pen, at(this.runs[0].vector("proxy_position", this.runs[0].known(tick))));
-    else this.drawHands(pen, tick, factor, at);
-    if (!this.isOverview) this.drawBar(pen, factor, height);
+    pen.fillStyle = "#8888";
+    for (let i = 0; frame && i < frame.positions.length / 3; ++i) {
+      const [x, y] = at(this.runs[0].point(frame, i));
+      pen.fillRect(x - 1, y - 1, 2, 2);
+    }
+    this.drawHands(pen, tick, factor, at);
+    this.drawBar(pen, factor, height);
   }
 
-  private drawPoints(pen: CanvasRenderingContext2D, frame: Frame, at: (p: Vector) => [number, number]): void {
-    const count = frame.positions.length / 3, every = this.isOverview ? Math.ceil(count / overviewPoints) : 1, wide = this.isOverview ? 1 : 2;
-    pen.fillStyle = "#8888";
-    for (let i = 0; i < count; i += every) {
-      const [x, y] = at(this.runs[0].point(frame, i));
-      pen.fillRect(x - wide / 2, y - wide / 2, wide, wide);
-    }
-  }
-  private drawRing(pen: CanvasRenderingContext2D, [x, y]: [number, number]): void {
-    pen.strokeStyle = colours.proxy;
-    pen.lineWidth = 2;
-    pen.beginPath();
-    pen.arc(x, y, 6, 0, 2 * Math.PI);
-    pen.stroke();
-  }
   private drawHands(pen: CanvasRenderingContext2D, tick: number, factor: number, at: (p: Vector) => [number, number]): void {
     const dot = (p: Vector, radius: number, colour: string) => {
       pen.fillStyle = colour;

@@ -25,7 +25,7 @@ function isUsed(run: Run, name: string): boolean {
   const column = run.columns.get(name);
   return column !== undefined && (run.ticks === 0 || column.numbers.some((value) => Number.isFinite(value) && value !== 0));
 }
-// Of a live run that has not begun nobody knows.
+// Nobody knows it of a live run that has not begun; then the answer is true if there is a slave.
 function slaveDiffers(run: Run): boolean {
   for (let tick = 0; tick < run.ticks; ++tick) {
     const proxy = run.vector("proxy_position", tick);
@@ -34,7 +34,7 @@ function slaveDiffers(run: Run): boolean {
   return run.ticks === 0 && run.slaveRadiusM > 0;
 }
 
-// Whether an arrow of a column can be longer than the longest that is drawn. Of a live run nobody knows.
+// Returns whether some arrow of a column is cut at the longest length. The answer is true for a live run that has not begun.
 function isCut(run: Run, name: string, mmPerUnit: number, longestMm: number): boolean {
   const column = run.columns.get(name);
   if (!column || run.ticks === 0) return column !== undefined;
@@ -42,7 +42,7 @@ function isCut(run: Run, name: string, mmPerUnit: number, longestMm: number): bo
   return false;
 }
 
-// What is in the picture. longestMm: of an arrow.
+// The list of what is in the picture. longestMm: the longest arrow that is drawn.
 export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_INFINITY): HTMLElement {
   const list = element("ul", "", "legend"), run = runs[0], { tool } = run.stored, frames = [...run.frames.values()];
   const add = (colour: string, text: string) => {
@@ -76,8 +76,8 @@ function settings(value: unknown, name = ""): Map<string, string> {
   return new Map(Object.entries(value).flatMap(([key, part]) => [...settings(part, name ? `${name}.${key}` : key)]));
 }
 
-// What happens in two runs, and a list of them: the file of each, and the settings in which they differ. The titles say the
-// same at greater length.
+// The story of two runs, and a list of them: the file of each, and the settings in which they differ. The titles say the same
+// at greater length.
 export function whichIsWhich(runs: Run[]): HTMLElement[] {
   const most = 4, [a, b] = runs.map((run) => settings(run.stored.configuration));
   const names = [...new Set([...a.keys(), ...b.keys()])].filter((name) => name !== "title" && a.get(name) !== b.get(name));

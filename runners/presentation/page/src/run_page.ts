@@ -38,11 +38,7 @@ function makePicture(runs: Run[]): Picture {
       scene.draw();
       savePng(canvas, bar, name);
     };
-    const overview = new FlatView(overviewIn(box), runs, true);
-    const show = (tick: number) => {
-      scene.show(tick);
-      overview.show(tick);
-    };
+    const show = (tick: number) => scene.show(tick);
     return { box, scene, save, show, mmPerN: scene.mmPerN, longestMm: scene.longestMm };
   } catch (error) {
     const note = document.createElement("p");
@@ -56,15 +52,6 @@ function makePicture(runs: Run[]): Picture {
     const { mmPerN, longestMm } = flat;
     return { box, scene: null, save: (name) => savePng(plain, null, name), show: (tick) => flat.show(tick), mmPerN, longestMm };
   }
-}
-
-function overviewIn(box: HTMLElement): HTMLCanvasElement {
-  const canvas = document.createElement("canvas");
-  canvas.className = "overview";
-  canvas.role = "img";
-  canvas.ariaLabel = "overview of the whole scene from the side, with a ring around the proxy";
-  box.append(canvas);
-  return canvas;
 }
 
 const presets: CameraPreset[] = ["sensor", "side", "follow", "across"];

@@ -26,8 +26,8 @@ export function leastImportantFirst(events: RunEvent[]): RunEvent[] {
   return [...events].sort((a, b) => rank(b) - rank(a));
 }
 
-// What happens in two runs, in one sentence: the most important kind of event that only one of them has, or that they have
-// at different times, such as "Run 2 pops through at 0.567 s, run 1 does not."
+// The difference between two runs in one sentence, such as "Run 2 pops through at 0.567 s, run 1 does not.": the most
+// important event that only one of them has, or that they have at different times.
 export function storyOf(runs: Run[]): string {
   const acts: [string, string][] = [["pop-through", "pops through"], ["slave contact", "touches the scene with its slave"], ["first contact", "first touches"]];
   for (const [kind, act] of acts) {

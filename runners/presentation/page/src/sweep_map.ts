@@ -13,11 +13,11 @@ function axisName({ name, unit }: Axis): string {
   return of ? `${words} (${of})` : words;
 }
 
-// At most `most` values of an axis, evenly apart and with the first and the last: how far along the axis each is, and its text.
+// At most `most` values of an axis, evenly apart from the first on: how far along the axis each is, and its text.
 function ticksOf(values: (number | string)[], factor: number, most: number): [number, string][] {
-  const count = Math.max(Math.min(values.length, most, 6), Math.min(values.length, 2)), ticks: [number, string][] = [];
-  for (let k = 0; k < count; ++k) {
-    const i = count > 1 ? Math.round((k * (values.length - 1)) / (count - 1)) : 0, value = values[i];
+  const every = Math.ceil(values.length / Math.max(Math.min(most, 6), 1)), ticks: [number, string][] = [];
+  for (let i = 0; i < values.length; i += every) {
+    const value = values[i];
     ticks.push([(i + 0.5) / values.length, typeof value === "number" ? digits(Number((factor * value).toPrecision(3))) : value]);
   }
   return ticks;

@@ -1,11 +1,14 @@
-// Lines that fit into a terminal, and suggestions for words that are not known.
-#include "runners/interfaces/cli/terminal.h"
-
+// Lines that fit into a terminal, and words that are spelt similarly.
 #include <gtest/gtest.h>
 
 #include <iterator>
 #include <random>
 #include <sstream>
+#include <string>
+#include <vector>
+
+#include "runners/experiment/settings/json_parameters.h"
+#include "runners/interfaces/cli/outputs.h"
 
 namespace remote_touch {
 namespace {
@@ -64,12 +67,12 @@ TEST(Wrapped, NoWordIsLostAndNoLineIsTooLong) {
   }
 }
 
-TEST(Suggestion, NamesTheSimilarWordOnly) {
+TEST(SimilarKey, IsTheSimilarWordOnly) {
   const std::vector<std::string> commands{"run", "sweep", "describe", "compare"};
-  EXPECT_EQ(suggestion("descirbe", commands), "; did you mean describe");
-  EXPECT_EQ(suggestion("swep", commands), "; did you mean sweep");
-  EXPECT_EQ(suggestion("frobnicate", commands), "");
-  EXPECT_EQ(suggestion("run", {}), "");
+  EXPECT_EQ(similar_key("descirbe", commands), "describe");
+  EXPECT_EQ(similar_key("swep", commands), "sweep");
+  EXPECT_EQ(similar_key("frobnicate", commands), "");
+  EXPECT_EQ(similar_key("run", {}), "");
 }
 
 }  // namespace
