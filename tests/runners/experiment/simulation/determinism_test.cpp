@@ -98,6 +98,8 @@ Json with_setting(const ExperimentSection& section, const SectionEntry& entry, c
       "trajectory": {"name": "waypoints", "waypoints": [[0, 0.002, 0, 0], [0, -0.002, 0, 0.1]]}})");
   Json& part = section.is_top_level ? json : json[section.key];
   if (!entry.name.empty()) part = {{"name", entry.name}};
+  for (const Parameter& other : entry.make()->settings())
+    if (other.name == "tool_voxel_m") part[other.name] = 0.002;  // a fine tool takes seconds to make
   part[parameter] = value;
   json["duration_s"] = 0.035;
   return json;
