@@ -5,7 +5,7 @@ import os
 from .claims import address, claim_table, esc, figure_of, overview
 from .gallery import gallery
 from .progress import duration
-from .style import COLUMN_IN
+from .style import COLOURS, COLUMN_IN, page_colour
 from .typeset import in_mm, typeset_html
 
 CSS = """
@@ -25,20 +25,19 @@ th, td { text-align: left; vertical-align: top; padding: .35rem .6rem; border-bo
 th { color: #555; font-weight: 600; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; } th.number { text-align: right; }
 tr:target { background: #fff3cd; }
-.pass { color: #1d6b37; font-weight: 600; } .fail { color: #b3141c; font-weight: 700; } .none { color: #666; }
-.differs { color: #8a5a00; font-weight: 700; }
+.pass { font-weight: 600; } .fail, .differs { font-weight: 700; }
 td.verdict, td.short { white-space: nowrap; }
 .count { font-size: 1.15rem; }
 .progress { background: #eef3f8; border-left: 4px solid #1f4e79; padding: .6rem 1rem; }
 details { margin-top: .6rem; font-size: .9rem; color: #444; } pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 footer { margin-top: 3rem; border-top: 1px solid #ddd; padding-top: 1rem; font-size: .85rem; color: #555; }
 @media (prefers-color-scheme: dark) {
-  body { color: #e2e2e2; background: #16181b; } a { color: #8fbfe8; } th, footer, details, .none { color: #a8a8a8; }
+  body { color: #e2e2e2; background: #16181b; } a { color: #8fbfe8; } th, footer, details { color: #a8a8a8; }
   h2, th, td, footer { border-color: #3a3d42; } img { background: #fff; border-radius: 4px; }
-  .pass { color: #6fce92; } .fail { color: #ff7b80; } .differs { color: #e8b45a; } tr:target { background: #4a3d10; }
+  tr:target { background: #4a3d10; }
   .progress { background: #1f2a35; border-color: #8fbfe8; } .gallery li > a:first-child { border-color: #3a3d42; }
 }
-"""
+""" + "".join(f".{name} {{ color: {page_colour(COLOURS[name])}; }}\n" for name in ("pass", "fail", "differs", "none"))
 
 INTRODUCTION = """Haptic rendering of streaming point clouds, computed from simulated and recorded scenes: each figure with \
 its claims, and whether they hold. No haptic device was used."""

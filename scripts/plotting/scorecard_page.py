@@ -12,20 +12,21 @@ from .scorecard_plots import level_text, looks_css, noise_plot, shapes
 from .scorecard_tables import (audit_table, behind_summary, behind_table, cost_table, has_rule_before,
                                        level_heads, level_tables, measure_table, overview_table, success_table,
                                        threshold_value)
+from .style import COLOURS, page_colour
 
 SCHEMA = "remote-touch-scorecard/5"
 # /4 has no thresholds; the weaknesses of /3 also have the key "shown" in place of "significant".
 EARLIER_SCHEMAS = ("remote-touch-scorecard/4", "remote-touch-scorecard/3")
-OWN_CSS = """
-body { font-size: 15px; max-width: 78rem; }
-h2#reading ~ p { max-width: 60rem; }
-table { width: auto; margin: .5em 0; font-size: 13px; }
-th, td { border: 1px solid #ddd; padding: 2px 7px; text-align: right; font-weight: normal; }
-th.name { text-align: left; white-space: nowrap; } td.left { text-align: left; }
-small { color: #777; } code { font-size: 11px; }
-td.best { background: #c8ecd2; font-weight: bold; } td.worst { background: #f6cdc6; }
-td.all { background: #eaf7ee; } td.zero { background: #fbe9e6; }
-.scene { display: flex; flex-wrap: wrap; gap: 0 1.5em; align-items: flex-start; }
+OWN_CSS = f"""
+body {{ font-size: 15px; max-width: 78rem; }}
+h2#reading ~ p {{ max-width: 60rem; }}
+table {{ width: auto; margin: .5em 0; font-size: 13px; }}
+th, td {{ border: 1px solid light-dark(#ddd, #3a3d42); padding: 2px 7px; text-align: right; font-weight: normal; }}
+th.name {{ text-align: left; white-space: nowrap; }} td.left {{ text-align: left; }}
+small {{ color: light-dark(#666, #a8a8a8); }} code {{ font-size: 11px; }}
+td.best, td.all {{ background: {page_colour(COLOURS['best'])}; }} td.best {{ font-weight: bold; }}
+td.worst, td.zero {{ background: {page_colour(COLOURS['worst'])}; }}
+.scene {{ display: flex; flex-wrap: wrap; gap: 0 1.5em; align-items: flex-start; }}
 """
 
 

@@ -1,13 +1,13 @@
 """The small pictures of a scorecard's page: successes over noise, a line for each method."""
 from .claims import esc
-from .style import DASHES, MARKERS, method_looks
+from .style import DASHES, MARKERS, method_looks, page_colour
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 420, 190, 34, 8, 8, 26
 
 CSS = """
-svg { width: 420px; max-width: 100%; height: 190px; font-size: 11px; } svg text { fill: #555; }
+svg { width: 420px; max-width: 100%; height: 190px; font-size: 11px; } svg text { fill: currentColor; opacity: .75; }
 svg.key { width: 28px; height: 10px; margin-right: 5px; }
-.grid { stroke: #e4e4e4; fill: none; } .line { fill: none; stroke-width: 1.4; } .bar { stroke-width: 1; fill: none; }
+.grid { stroke: #8884; fill: none; } .line { fill: none; stroke-width: 1.4; } .bar { stroke-width: 1; fill: none; }
 """
 
 # Paths of markers about the origin, by the names that matplotlib has for them.
@@ -23,8 +23,8 @@ def dash_array(look):
 
 def looks_css(names):
     """A method has one colour and dash everywhere on the page, those of the figures."""
-    return "".join(f".c{c} path {{ stroke: {look.colour}; }} .c{c} .line {{ stroke-dasharray: {dash_array(look)}; }} "
-                   f".c{c} use {{ fill: {look.colour}; }}\n" for c, look in enumerate(method_looks(names)))
+    return "".join(f".c{c} path {{ stroke: {page_colour(look.colour)}; }} .c{c} .line {{ stroke-dasharray: {dash_array(look)}; }} "
+                   f".c{c} use {{ fill: {page_colour(look.colour)}; }}\n" for c, look in enumerate(method_looks(names)))
 
 
 def shapes(names):

@@ -1,10 +1,11 @@
 """The style of all pictures: sizes for print, and one colour for each meaning, also on the page of a scorecard.
 
-Sizes are those of a journal: columns of 3.5 in, text of 8 pt. Every colour has a contrast of at least 3:1 to white. Two
-colours are at least 15 apart in CIELAB, as normal, deutan and protan eyes see them; tests/system/plot_style_test
-computes this. Curves with equal colours differ in dash or marker.
+Sizes are those of a journal: columns of 3.5 in, text of 8 pt. The colours, and which of them can meet, are a file that
+the pages of results read too. Curves with equal colours differ in dash or marker.
 """
 import dataclasses
+import json
+import pathlib
 import re
 
 COLUMN_IN, PAGE_IN = 3.5, 7.16  # widths of one column and of two with the gap between them
@@ -25,12 +26,9 @@ RC = {
     "agg.path.chunksize": 20000,  # without it a long dense line can overflow the rasteriser
 }
 
-# The colours of hip to estimate are those of the viewer on a light ground: runners/presentation/page/src/colours.ts.
-COLOURS = {"hip": "#c08800", "proxy": "#146bab", "truth": "#3691ba", "force": "#b34c00", "normal": "#00a67c",
-           "points": "#81939f", "estimate": "#822055", "limit": "#000000", "fixture": "#452700", "measured": "#1b2a83",
-           "region": "#8a3ffc",
-          "rose": "#e43054", "olive": "#546030", "lavender": "#8478f0"}  # the last three have no meaning
-COMPONENTS = {"x": "#a81e3c", "y": "#4f9a2a", "z": "#4a55d8"}
+TABLE = json.loads((pathlib.Path(__file__).parents[2] / "runners/presentation/page/src/colours.json").read_text())
+COLOURS = {name: pair["light"] for name, pair in TABLE["colours"].items() if "light" in pair}
+ON_DARK = {pair["light"]: pair["dark"] for pair in TABLE["colours"].values() if len(pair) == 2}
 SERIES = ("measured", "rose", "olive", "lavender", "points", "fixture")  # for curves without a known meaning
 NOTHING_COLOUR = "#d4d4d4"  # cells without a value
 
@@ -64,13 +62,13 @@ METHODS = {
     "proxy": ("proxy", 0, 0), "proxy-density": ("proxy", 1, 1), "proxy-mean-of-4": ("proxy", 2, 2),
     "proxy-temporal-filter": ("proxy", 3, 3), "oracle-proxy": ("truth", 2, 4), "predecessor": ("measured", 0, 4),
     "god-object": ("rose", 0, 3), "finger-proxy": ("fixture", 0, 5), "penalty": ("points", 0, 4),
-    "metaballs-tuned": ("region", 0, 1), "metaballs-wyvill": ("region", 1, 2), "surfels-wendland": ("fixture", 1, 3),
+    "metaballs-tuned": ("violet", 0, 1), "metaballs-wyvill": ("violet", 1, 2), "surfels-wendland": ("fixture", 1, 3),
     "mls-surface": ("rose", 3, 5), "inner-spheres": ("truth", 3, 4),
     "tracked-sheet": ("estimate", 0, 3), "tracked-no-denoise": ("estimate", 1, 1), "look-ahead": ("measured", 0, 1),
     "continuous": ("lavender", 0, 2), "voxels": ("fixture", 0, 0), "voxmap": ("points", 1, 5),
     "slave-none": ("truth", 0, 5), "slave-position-force": ("force", 0, 1), "slave-passivity": ("force", 2, 2),
     "slave-rendered": ("proxy", 0, 1), "slave-rendered-registered": ("proxy", 3, 2), "slave-tracked": ("estimate", 2, 4),
-    "slave-region": ("region", 0, 0), "slave-region-registered": ("region", 3, 3), "slave-model-mediated": ("lavender", 2, 4),
+    "slave-region": ("violet", 0, 0), "slave-region-registered": ("violet", 3, 3), "slave-model-mediated": ("lavender", 2, 4),
 }
 OTHER_NAMES = {"as printed": "voxels", "proxy of chapter 4": "proxy", "tracked sheet": "tracked-sheet",
                "tracked sheets": "tracked-sheet", "tracked": "tracked-sheet", "penalty method": "penalty"}
@@ -83,6 +81,11 @@ class Look:
     marker: int = 0  # of MARKERS
     phase: float = 0  # where in its dash a line begins, from 0 to 1
     edged: bool = False  # with a white edge, above a line of the same colour
+
+
+def page_colour(colour):
+    """A colour of a style sheet, which follows the ground of the page. colour: that on a light ground."""
+    return f"light-dark({colour}, {ON_DARK[colour]})"
 
 
 def method_look(name):
@@ -138,7 +141,7 @@ def known_look(curve):
     elif method_look(base(label)):
         return method_look(base(label))
     elif component := re.fullmatch(r"(?:.*, )?([xyz])|.*\broll\b.*|red valve", label):
-        return Look(COMPONENTS[component[1] or "x"])
+        return Look(COLOURS[component[1] or "x"])
     elif label.startswith(("measured, ", "derived, ")):
         name = "measured" if label.startswith("m") else "estimate"
     else:

@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { goTo, noComplaints, openBrowser, openPage, tick } from "./browser.mjs";
 
-const [program, chromium] = process.argv.slice(2);
+const [program, chromium] = process.argv.slice(2), { colours } = JSON.parse(readFileSync("colours.json"));
 const remoteTouch = (...args) => execFileSync(program, ["-q", "--force", ...args], { encoding: "utf8" });
 function makePage(name, ...args) {
   remoteTouch("run", ...args, "-o", `${name}.h5`);
@@ -71,7 +71,7 @@ test("events are a list in words, with next and previous", async () => {
     assert.ok(texts.some((text) => /^tick \d+: The proxy's centre passes behind the true surface\.$/.test(text)), texts.join("\n"));
     const ticks = [...new Set(all.map((event) => event.tick))], last = ticks.at(-1);
     const marks = await page.evaluate(() => [...window.remoteTouch.plots.svg().matchAll(/<rect[^>]*fill="(#\w+)"/g)].map((found) => found[1]));
-    assert.equal(marks.at(-1), "#df225d", "the mark of the pop-through lies above those of the same tick");
+    assert.equal(marks.at(-1), colours["pop-through"].light, "the mark of the pop-through lies above those of the same tick");
     await page.locator(".events button").last().click();
     assert.equal(await tick(page), last);
     assert.equal(await page.locator(".events [aria-current=time]").last().textContent(), texts.at(-1));
@@ -348,6 +348,6 @@ test("picture and plots are saved as PNG and SVG", async () => {
     assert.equal(groups, await page.locator("aside figure").count());
     assert.ok(texts.some((text) => /force x \(N\).*force y \(N\)/.test(text)), texts.join("\n"));
     assert.ok(paths > 3 * groups, `${paths} lines`);
-    assert.match(plots.bytes.toString(), /fill="#bf7c00"/, "the mark of the largest change of the force");
+    assert.ok(plots.bytes.toString().includes(`fill="${colours["force jump"].light}"`), "the mark of the largest change of the force");
   });
 });

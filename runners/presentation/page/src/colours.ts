@@ -1,34 +1,10 @@
-// One colour for each thing, in 3-D, plots and legend: on a dark ground, and where curves are drawn on a light one. Any two
-// colours for one ground differ also for colour-blind eyes, and each has a contrast of at least 3:1 to the ground:
-// tests/system/viewer/colours.mjs.
-export const table = {
-  hip: ["#e9a200", "#c08800"],
-  proxy: ["#5590ee", "#146bab"],
-  force: ["#f57a3a", "#b34c00"],
-  normal: ["#2ba46f", "#00a67c"],
-  slave: ["#f399c4", "#9c3c52"], // its command
-  robot: ["#8b50ff", "#5b3fd6"], // the slave itself
-  truth: ["#59b4eb", "#3691ba"],
-  velocity: ["#bb70b2", "#822055"],
-  second: ["#8a8a8e", "#81939f"],
-  fixture: ["#cd4021"], // those of the 3-D view only
-  touching: ["#f0e949"],
-  guidance: ["#f4f4f4"],
-} as const;
+// One colour for each meaning, in 3-D, plots and legend: those of colours.json, which scripts/plot reads too.
+import { colours as table } from "./colours.json";
 
-type Thing = keyof typeof table;
-export const colours = Object.fromEntries(Object.entries(table).map(([thing, [dark]]) => [thing, dark])) as Record<Thing, string>;
-
-// Components along x, y and z, which are curves only.
-export const components = [["#e0525f", "#a81e3c"], ["#7fd06a", "#4f9a2a"], ["#7f8cf7", "#4a55d8"]] as const;
-
-// Kinds of events, on both grounds.
-export const eventColours: Record<string, string> = {
-  "pop-through": "#df225d", divergence: "#7b5bf0", "force jump": "#bf7c00", "largest force": "#c86034", "first contact": "#228f6b",
-  "not converged": "#7f8291", task: "#0088bd", "slave contact": "#ff2dcd", "hardest hit": "#7830f8",
-};
-
-const onLight = new Map<string, string>([...Object.values(table), ...components].map(([dark, light]) => [dark, light ?? dark]));
+export type Meaning = keyof typeof table;
+const pairs = Object.entries<{ dark?: string; light?: string }>(table);
+export const colours = Object.fromEntries(pairs.map(([name, { dark }]) => [name, dark])) as Record<Meaning, string>; // on a dark ground
+const onLight = new Map(pairs.map(([, { dark, light }]) => [dark, light]));
 
 export const darkPage = window.matchMedia("(prefers-color-scheme: dark)");
 
@@ -37,10 +13,19 @@ export function curveColour(colour: string, isDark = darkPage.matches): string {
   return isDark ? colour : (onLight.get(colour) ?? colour);
 }
 
+export function eventColour(kind: string): string {
+  return colours[kind as Meaning] ?? "grey";
+}
+
+// A colour of a style sheet, which follows the ground of the page.
+export function pageColour(colour: string): string {
+  return `light-dark(${curveColour(colour, false)}, ${colour})`;
+}
+
 // The colour of the thing that a column of a trace belongs to.
 export function columnColour(name: string): string {
-  const things: [RegExp, Thing][] = [[/^slave_(?!command|distance)/, "robot"], [/^hip/, "hip"], [/force|torque/, "force"],
-    [/normal|contact/, "normal"], [/slave|received_command/, "slave"], [/signed_distance/, "truth"], [/velocity/, "velocity"],
+  const things: [RegExp, Meaning][] = [[/^slave_(?!command|distance)/, "robot"], [/^hip/, "hip"], [/force|torque/, "force"],
+    [/normal|contact/, "normal"], [/slave|received_command/, "slave"], [/signed_distance/, "truth"], [/velocity/, "estimate"],
     [/proxy|tool|nearest/, "proxy"]];
   return colours[things.find(([pattern]) => pattern.test(name))?.[1] ?? "second"];
 }

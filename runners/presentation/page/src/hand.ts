@@ -102,7 +102,7 @@ export class HandView {
     if (this.spheres) this.proxy.add(this.spheres);
     this.force = new Arrow(colours.force, 1.3 * head, longestArrow * sizeMm, true);
     this.normal = new Arrow(colours.normal, head);
-    this.velocity = new Arrow(colours.velocity, head, longestArrow * sizeMm);
+    this.velocity = new Arrow(colours.estimate, head, longestArrow * sizeMm);
     this.spring = this.line(hipColour, 2);
     this.way = this.line(proxyColour, Math.round(wayS * run.stored.haptic_rate_hz) + 1);
     const parts = [this.hip, this.slave, this.goal, this.proxy, this.spring, this.way, this.force.object,

@@ -23,7 +23,7 @@ const keys: [string, string][] = [
 ];
 const plotted: [string, string, string][] = [
   ["nearest_distance", colours.proxy, "nearest distance"],
-  ["contact_count", colours.normal, "contacts"], ["surface_velocity", colours.velocity, "velocity estimate"],
+  ["contact_count", colours.normal, "contacts"], ["surface_velocity", colours.estimate, "velocity estimate"],
 ];
 
 const plottedS = 5;

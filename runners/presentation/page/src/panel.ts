@@ -62,7 +62,7 @@ export function legend(runs: Run[], mmPerN: number, longestMm = Number.POSITIVE_
   if (frames.length === 0 || frames.some((frame) => !frame.colours)) add(rampStyle(heights), frames.length === 0 ? "points: own colours, or dark low" : "points: dark low, light high");
   if (run.stored.truth) add(colours.truth, run.truthName);
   if (run.stored.true_meshes) add(colours.truth, `true surface: ${run.stored.true_meshes.map((mesh) => mesh.name).join(", ")}`);
-  if (isUsed(run, "surface_velocity")) add(colours.velocity, `velocity estimate: ${two(mmPerMetreASecond)} mm per m/s${most(isCut(run, "surface_velocity", mmPerMetreASecond, longestMm))}`);
+  if (isUsed(run, "surface_velocity")) add(colours.estimate, `velocity estimate: ${two(mmPerMetreASecond)} mm per m/s${most(isCut(run, "surface_velocity", mmPerMetreASecond, longestMm))}`);
   if (frames.some((frame) => frame.fixtureRadiusM)) add(colours.fixture, "forbidden regions");
   if (isUsed(run, "guidance_goal")) add(colours.guidance, "goal of the guidance");
   if (slaveDiffers(run)) add(colours.slave, "slave command, if not the proxy");

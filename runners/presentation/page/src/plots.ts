@@ -1,5 +1,5 @@
 // Curves over time below each other, with a line at the tick that is shown. Lengths are in mm.
-import { colours, components, curveColour, darkPage, eventColours } from "./colours";
+import { colours, curveColour, darkPage, eventColour } from "./colours";
 import type { Column, Run } from "./data";
 import { digits, round125, timeDigits } from "./data";
 import type { TimeAxis } from "./time_axis";
@@ -211,7 +211,7 @@ export class Plot {
     for (const { tick, kind } of this.axis.events) {
       if (!inside(tick)) continue;
       const x = this.x(tick, width);
-      pen.strokeStyle = pen.fillStyle = eventColours[kind] ?? ink.quiet;
+      pen.strokeStyle = pen.fillStyle = curveColour(eventColour(kind), ink.isDark);
       this.line(pen, x, 0, x, foot);
       pen.fillRect(x - 2.5, 0, 5, 6);
     }
@@ -312,5 +312,5 @@ export function curvesOf(runs: Run[], name: string, colour: string, label: strin
 export function componentCurves(run: Run, name: string, label: string): Curve[] {
   const column = run.columns.get(name);
   if (column?.width !== 3) return [];
-  return components.map(([colour], part) => ({ column, colour, label: `${label} ${"xyz"[part]}`, dashed: false, part }));
+  return (["x", "y", "z"] as const).map((axis, part) => ({ column, colour: colours[axis], label: `${label} ${axis}`, dashed: false, part }));
 }

@@ -29,7 +29,7 @@ function standardCurves(runs: Run[]): Curve[][] {
   const run = runs[0], components = runs.length === 1 ? componentCurves(run, run.forceName, "force") : [];
   const lists = [forceCurves(runs), components, curvesOf(runs, "signed_distance", colours.truth, distanceLabel(run)),
     curvesOf(runs, "slave_force", colours.robot, "force on the slave"), curvesOf(runs, "slave_clearance", colours.robot, "clearance of the slave"),
-    curvesOf(runs, "contact_count", colours.normal, "contacts"), curvesOf(runs, "surface_velocity", colours.velocity, "velocity estimate")];
+    curvesOf(runs, "contact_count", colours.normal, "contacts"), curvesOf(runs, "surface_velocity", colours.estimate, "velocity estimate")];
   for (const [name, colour] of runs.length === 2 ? [["force", colours.force], ["proxy_position", colours.proxy]] : []) {
     const column = differenceOf(runs, name);
     if (column) lists.push([{ column, colour, label: column.name, dashed: false }]);

@@ -1,8 +1,8 @@
 // The events of a run: as a list in words, and which of them is the most important one.
-import { eventColours } from "./colours";
+import { eventColour, type Meaning, pageColour } from "./colours";
 import { differenceOf, digits, type Run, type RunEvent } from "./data";
 
-const byImportance = ["divergence", "pop-through", "slave contact", "hardest hit", "force jump", "largest force", "first contact", "task", "not converged"];
+const byImportance: Meaning[] = ["divergence", "pop-through", "slave contact", "hardest hit", "force jump", "largest force", "first contact", "task", "not converged"];
 
 // Returns the events of one run, or of both runs with the number of the run in the text.
 export function eventsOf(runs: Run[]): RunEvent[] {
@@ -22,7 +22,7 @@ export function mostImportantTick(events: RunEvent[]): number {
 
 // Returns the events in the order in which their marks are drawn: the most important one is drawn last, above the others.
 export function leastImportantFirst(events: RunEvent[]): RunEvent[] {
-  const rank = (event: RunEvent) => byImportance.indexOf(event.kind);
+  const rank = (event: RunEvent) => (byImportance as string[]).indexOf(event.kind);
   return [...events].sort((a, b) => rank(b) - rank(a));
 }
 
@@ -56,7 +56,7 @@ export class EventList {
       const row = document.createElement("button"), item = document.createElement("li");
       row.type = "button";
       row.textContent = `tick ${event.tick}: ${event.text}`;
-      row.style.setProperty("--dot", eventColours[event.kind] ?? "grey");
+      row.style.setProperty("--dot", pageColour(eventColour(event.kind)));
       row.tabIndex = -1; // the list is one stop of the keyboard; arrows move in it
       row.addEventListener("click", () => goTo(event.tick));
       item.append(row);

@@ -1,6 +1,6 @@
 // Play, step, speed, and a slider over all ticks with marks where something happened.
 import { button } from "./button";
-import { eventColours } from "./colours";
+import { eventColour, pageColour } from "./colours";
 import type { RunEvent } from "./data";
 import { digits } from "./data";
 import { type Player, speeds } from "./player";
@@ -73,7 +73,7 @@ export class Timeline {
       mark.type = "button";
       mark.className = "mark";
       mark.tabIndex = -1; // the list of events is for the keyboard
-      mark.style.background = eventColours[event.kind] ?? "";
+      mark.style.background = pageColour(eventColour(event.kind));
       mark.title = `tick ${event.tick}: ${event.text}`;
       mark.ariaLabel = mark.title;
       mark.style.left = `calc(${(100 * event.tick) / Math.max(this.player.ticks - 1, 1)}% + ${8 * before}px)`;
