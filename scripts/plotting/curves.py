@@ -17,7 +17,7 @@ NOTHING = "no value"  # where a map or a bar chart has none
 CELLS = ("squares", "map")  # the styles that draw cells
 MANY = 3000  # plots with more samples are stored as pixels in vector formats
 FEW = 20  # samples of a line that have a marker each
-DOT_PT, RING_PT, CAP_PT, ARROW_PT = 3.8, 6, 4.5, 11  # ARROW_PT: its length
+DOT_PT, RING_PT, CAP_PT, ARROW_PT, APART_PT = 3.8, 6, 4.5, 11, 5.5  # ARROW_PT: its length; APART_PT: between marks of clipped values
 ARROW = matplotlib.path.Path([(0, 0), (0, 1), (-0.22, 0.7), (0, 1), (0.22, 0.7)], [1, 2, 1, 2, 2])  # 1: begins a line
 HALO = [matplotlib.patheffects.withStroke(linewidth=2.6, foreground="white")]  # about a line over cells
 LETTERS_IN = 0.15  # height of the letters above a panel
@@ -68,6 +68,29 @@ def draw_line(axes, curve, panel, look, **options):
                       label=typeset(curve.label), zorder=layer(curve, panel, look), **options)
     line.dash = look.dash  # for its legend
     put_aside(axes, line, curve, panel)
+    mark_clipped(axes, curve, panel, look)
+
+
+def clipped(curve, panel):
+    """Which samples that have a marker are below the panel, and which are above it."""
+    low, high = panel.y_range
+    marked = is_finite(curve) & (is_sampled(curve) or curve.style == "dots" and np.count_nonzero(is_finite(curve)) <= 100)
+    return marked & (curve.y.values < low), marked & (curve.y.values > high)
+
+
+def mark_clipped(axes, curve, panel, look):
+    """Marks samples beyond the panel at its edge, by a triangle that points out of it. Those of several curves at one
+    place stand above each other."""
+    for end, (marker, inwards, words) in enumerate((("v", 1, "below the axis"), ("^", -1, "above the axis"))):
+        own = {"marker": marker, "markersize": DOT_PT, "markerfacecolor": "white", "linestyle": "none"}
+        at = curve.x.values[clipped(curve, panel)[end]]
+        for x in at:
+            alike = [other for other in panel.curves if x in other.x.values[clipped(other, panel)[end]]]
+            aside_in = inwards * next(i for i, other in enumerate(alike) if other is curve) * APART_PT / 72
+            axes.plot(x, end, color=look.colour, clip_on=False, zorder=5, **own, transform=axes.get_xaxis_transform() +
+                      matplotlib.transforms.ScaledTranslation(0, aside_in, axes.figure.dpi_scale_trans))
+        if at.size:
+            axes.plot([], [], color="#555555", label=words, **own)
 
 
 def dashed(look):
@@ -120,7 +143,12 @@ def draw_steps(axes, curve, panel, look):
 
 def draw_dots(axes, curve, panel, look):
     """The fewer dots are in sight, the larger they are. Few dots of a second series may lie on those of the first. Dots
-    from the second series on are therefore open, and larger than those of the first."""
+    from the second series on are therefore open, and larger than those of the first. Dots of which no x is known stand on
+    the right edge of the panel."""
+    if curve.x.values.size and np.isnan(curve.x.values).all():
+        axes.plot(np.ones(curve.y.values.size), curve.y.values, linestyle="none", marker=MARKERS[look.marker], color=look.colour,
+                  markersize=DOT_PT, clip_on=False, label=typeset(curve.label), transform=axes.get_yaxis_transform())
+        return
     count = np.count_nonzero(in_sight(curve, panel))
     size = DOT_PT if count <= 30 else 3 if count <= 100 else 1.8 if count <= 300 else 1.1 if count <= MANY else 0.7
     series = [other for other in panel.curves if other.style == "dots"].index(curve)
@@ -132,6 +160,7 @@ def draw_dots(axes, curve, panel, look):
                       color=look.colour, markersize=size, label=typeset(curve.label), rasterized=count > MANY,
                       clip_on=not automatic or count > 100, zorder=layer(curve, panel, look), **options)
     put_aside(axes, line, curve, panel)
+    mark_clipped(axes, curve, panel, look)
 
 
 def draw_letters(axes, curve, _, __):

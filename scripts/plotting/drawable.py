@@ -1,10 +1,22 @@
 """Reads what can be drawn: a figure, or a trace or a sweep as one."""
+import json
+
 from .figure_file import SCHEMA, Figure, open_file, read_figure, text
 from .plot_error import PlotError
 from .results import trace_panels
 from .sweeps import left_out, sweep_panels
+from .typeset import without_json
 
 TRACE, SWEEP = "remote-touch-trace/3", "remote-touch-sweep/3"
+
+
+def title_of(file, path):
+    """That of the experiment or sweep, else the command that made the file."""
+    try:
+        title = json.loads(text(file.attrs, "config")).get("title")
+    except (ValueError, AttributeError, RecursionError):
+        title = None
+    return without_json(title[:1].upper() + title[1:]) if title and isinstance(title, str) else text(file.attrs, "command") or path.name
 
 
 def read_drawable(path, wanted=()):
@@ -15,7 +27,7 @@ def read_drawable(path, wanted=()):
             raise PlotError(f"{path}: --slice is for sweeps, this is {schema!r}")
         if schema in (TRACE, SWEEP):
             panels = sweep_panels(file, wanted) if schema == SWEEP else trace_panels(file)
-            heading = (text(file.attrs, "command") or path.name) + (left_out(file, wanted) if schema == SWEEP else "")
+            heading = title_of(file, path) + (left_out(file, wanted) if schema == SWEEP else "")
             return Figure(path.stem, {name: text(file.attrs, name) for name in file.attrs} | {"heading": heading}, panels)
     if schema.startswith("remote-touch-tally/"):
         raise PlotError(f"{path}: is a tally: expected a figure, which `remote-touch analyse {path} -o FILE.h5` makes of it")

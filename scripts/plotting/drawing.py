@@ -13,6 +13,8 @@ from .typeset import typeset, with_unit
 from .wrapping import TITLE, folded, text_width_in, wrapped
 
 LONGEST_NAME_IN, LONGEST_BAR_LABEL_IN = 1.4, 1.8
+LOG_PARTS = ((1,), (1, 3), (1, 2, 5), (1, 2, 3, 5, 7), range(1, 10))  # of a decade, that may have labels
+MOST_DECADES = 6  # labels of an axis
 
 
 def axis_label(label, columns):
@@ -30,14 +32,18 @@ def wrapped_label(label, width_in):
     return wrapped(label, width_in).replace("\u00a0", " ")
 
 
-def asks_for_log_heights(curves):
+def asks_for_log_heights(panel):
     """Few positive values that span four decades would all lie on the axis. More than eight decades are rounding
-    errors."""
+    errors, unless y_range leaves them out."""
+    curves = panel.curves
     if not curves or any(curve.style not in (*LINES, "dots") for curve in curves):
         return False
     values = np.concatenate([curve.y.values for curve in curves])
     values = values[np.isfinite(values)]
-    return 4 <= values.size <= 200 and values.min() > 0 and 1e4 < values.max() / values.min() < 1e8
+    if not 4 <= values.size <= 200:
+        return False
+    low, high = panel.y_range if np.isfinite(panel.y_range).all() else (values.min(), values.max())
+    return low > 0 and 1e4 < high / low < 1e8
 
 
 def set_y_range(axes, panel):
@@ -78,14 +84,29 @@ def set_names(axis, names):
             label.set(rotation=25, ha="right", rotation_mode="anchor")
 
 
-def set_log_ticks(axis, narrow):
-    """At 1, 2 and 5 of each decade, or at its beginning where there is no room."""
+def log_places(low, high, parts):
+    """Returns these parts of each decade that lie between two positive values."""
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    return [part * 10.0**k for k in decades for part in parts if low * (1 - 1e-9) <= part * 10.0**k <= high * (1 + 1e-9)]
+
+
+def power_of_ten(value, _=None):
+    return f"$10^{{{round(math.log10(value))}}}$"
+
+
+def set_log_ticks(axis, values=None):
+    """Three labels or more, at values or at as few parts of a decade as suffice, and minor ticks between them. Labels are
+    powers of ten if one of them has to be."""
     low, high = sorted(axis.get_view_interval())
-    decades = math.log10(high / low) if low > 0 else 3
-    subs = (1,) if decades > (2 if narrow else 3.5) else (1, 3) if decades > 1.2 and narrow else (1, 2, 5)
-    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=subs, numticks=6 if len(subs) == 1 else 20))
-    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: plain(float(f"{value:.3g}"))))
-    axis.set_minor_locator(matplotlib.ticker.NullLocator())
+    parts = next((parts for parts in LOG_PARTS if len(log_places(low, high, parts)) > 2), ())
+    places = log_places(low, high, parts) or matplotlib.ticker.MaxNLocator(4).tick_values(low, high)
+    step = math.ceil(len(places) / MOST_DECADES) if parts == (1,) else 1
+    places = [place for place in places if step == 1 or round(math.log10(place)) % step == 0]
+    is_power = parts == (1,) and (min(places) < 1e-3 or max(places) > 1e4)
+    axis.set_major_locator(matplotlib.ticker.FixedLocator(places if values is None or len(values) < 3 else values))
+    axis.set_major_formatter(power_of_ten if is_power else lambda value, _: plain(float(f"{value:.3g}")))
+    axis.set_minor_locator(matplotlib.ticker.FixedLocator(log_places(low, high, range(1, 10) if step == 1 else (1,))))
+    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
 def few_values(columns, length_in, is_upright):
@@ -123,17 +144,15 @@ def set_ticks(axis, limits, columns, few=(), length_in=3.0):
         set_names(axis, names)
         return
     values = few_values(few, length_in, axis.axis_name == "y")
-    room = max(2, round(length_in / 0.45)) if axis.axis_name == "x" else 5
     if axis.get_scale() == "log":
-        set_log_ticks(axis, axis.axis_name == "x" and length_in < 2.2)
-    else:
-        whole = bool(columns) and all(column.is_count for column in columns)
-        axis.set_major_locator(matplotlib.ticker.MaxNLocator(min(room, 7), steps=[1, 2, 2.5, 5, 10] if not whole else
-                                                             [1, 2, 5, 10], integer=whole))
+        set_log_ticks(axis, values)
+        return
+    room = max(2, round(length_in / 0.45)) if axis.axis_name == "x" else 5
+    whole = bool(columns) and all(column.is_count for column in columns)
+    axis.set_major_locator(matplotlib.ticker.MaxNLocator(min(room, 7), steps=[1, 2, 2.5, 5, 10] if not whole else
+                                                         [1, 2, 5, 10], integer=whole, min_n_ticks=3))
     if values is not None:
         axis.set_major_locator(matplotlib.ticker.FixedLocator(values))
-    if axis.get_scale() == "log":
-        return
     size = max(abs(limit) for limit in limits)
     if 1e-3 <= size < 1e6:
         formatter = matplotlib.ticker.ScalarFormatter(useOffset=False)
@@ -173,7 +192,7 @@ def set_scales(axes, panel):
         axes.set_xscale("log")
     ys = [curve.y for curve in panel.curves]
     of_cells = any(curve.style in ("map", "squares") for curve in panel.curves)
-    if any(y.is_log for y in ys) or (of_cells and asks_for_log(ys)) or asks_for_log_heights(panel.curves):
+    if any(y.is_log for y in ys) or (of_cells and asks_for_log(ys)) or asks_for_log_heights(panel):
         axes.set_yscale("log")
 
 
@@ -192,7 +211,7 @@ def draw_panel(axes, panel, looks, width_in=3.0, bar=True, height_in=2.0):
     """Draws everything but the title, which add_words() writes. looks: of each curve, by curve_key. width_in,
     height_in: about the size of the panel. bar: whether a colour bar explains the colours of a map."""
     if is_surface(panel):
-        draw_surface(axes, panel, axis_label)
+        draw_surface(axes, panel, add_colour_bar)
         return
     set_scales(axes, panel)
     for curve, look in zip(panel.curves, looks_in_panel(panel, looks)):

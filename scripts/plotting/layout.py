@@ -14,7 +14,7 @@ from .legends import LARGEST_SHARE, add_legends, share
 from .picture_file import save
 from .scene import draw_scene
 from .style import COLUMN_IN, LINES, PAGE_IN, PNG_DPI, RC, looks
-from .surface import add_title, is_surface
+from .surface import is_surface, use_width
 from .units import in_shown_units
 from .wrapping import HEADING, TITLE, text_width_in, wrapped
 
@@ -157,7 +157,7 @@ def align(drawn):
     for _, axes, panel in drawn:
         axes.apply_aspect()
         if is_surface(panel):
-            add_title(axes)
+            use_width(axes)
     for (_, column), narrowed, panel in drawn:
         if not (panel.equal_aspect and has_range(panel)):
             continue

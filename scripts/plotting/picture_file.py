@@ -10,7 +10,8 @@ from .typeset import CONTROL
 
 MADE_BY = "remote-touch, scripts/plot"
 FORMATS = ("png", "svg", "pdf")
-PIXELS_DPI = 600  # of what vector formats have as pixels
+PIXELS_DPI = (600, 300, 200)  # of what vector formats have as pixels: the first that gives a file of LARGEST_BYTES or less
+LARGEST_BYTES = 1_000_000
 
 
 def origin(figure):
@@ -45,6 +46,15 @@ def save_png(canvas, file, said):
     pixels.convert("RGB").save(file, "PNG", compress_level=5, dpi=(canvas.dpi, canvas.dpi), pnginfo=info)
 
 
+def save_vectors(canvas, memory, kind, said):
+    for dpi in PIXELS_DPI:
+        memory.seek(0)
+        memory.truncate()
+        canvas.savefig(memory, format=kind, metadata=said, dpi=dpi)
+        if memory.tell() <= LARGEST_BYTES:
+            break
+
+
 def require_own(file):
     """A picture that something else has made is kept."""
     if file.is_file() and file.stat().st_size and MADE_BY.encode() not in file.read_bytes():
@@ -58,7 +68,7 @@ def save(canvas, file, figure):
     if kind == "png":
         save_png(canvas, memory, metadata(figure, kind))
     else:
-        canvas.savefig(memory, format=kind, metadata=metadata(figure, kind), dpi=PIXELS_DPI)
+        save_vectors(canvas, memory, kind, metadata(figure, kind))
     partial = file.with_name(f"{file.name}.partial")
     partial.write_bytes(memory.getvalue())
     partial.replace(file)

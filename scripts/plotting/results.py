@@ -33,16 +33,30 @@ def dataset(file, path):
 
 
 def trace_panels(file):
-    """Each component of the positions, then of the force."""
-    time = column(dataset(file, "/trace/time"))
-    along = {name: dataset(file, f"/trace/{name}") for name in ("hip_position", "proxy_position", "force")}
+    """The positions and the force of a trace; of a slave also its clearance, and magnitudes instead of components of the
+    forces."""
+    names = {"HIP": "hip_position", "proxy": "proxy_position", "slave": "slave_position"}
+    time, along = column(dataset(file, "/trace/time")), {}
+    for label, name in names.items():
+        if label != "slave" or f"/trace/{name}" in file:
+            along[label] = dataset(file, f"/trace/{name}")
+    of = dataset(file, "/trace/force")
 
-    def curve(name, k, style, label):
-        return Curve(time, column(along[name], along[name][:, k]), style, label, 0, None)
+    def curve(values, label, data=of):
+        return Curve(time, column(data, values), "dashed" if label == "HIP" else "line", label, 0, None)
 
     panels = []
     for k, axis in enumerate("xyz"):
-        curves = [curve("hip_position", k, "dashed", "HIP"), curve("proxy_position", k, "line", "proxy")]
+        curves = [curve(data[:, k], label, data) for label, data in along.items()]
         panels.append(panel(f"Position, {axis}", "time (s)", with_unit(axis, curves[0].y.units), curves))
-    force = [curve("force", k, "line", f"force, {axis}") for k, axis in enumerate("xyz")]
-    return [*panels, panel("Force", "time (s)", with_unit("force", force[0].y.units), force)]
+    if "slave" not in along:
+        return [*panels, panel("Force", "time (s)", "force (N)", [curve(of[:, k], f"force, {axis}") for k, axis in enumerate("xyz")])]
+    moved = [np.nanmax([np.ptp(each.y.values) for each in one.curves]) for one in panels]
+    panels = [one for one, path in zip(panels, moved) if path > 0.1 * max(moved)]  # a slave moves along few axes
+    if "/trace/slave_clearance" in file:
+        clearance = curve(None, "", dataset(file, "/trace/slave_clearance"))
+        panels.append(panel("Clearance of the slave, negative in contact", "time (s)", "clearance (mm)", [clearance]))
+    forces = {"force on the hand": "device_force", "on the slave": "slave_force"}
+    curves = [curve(np.linalg.norm(file[f"/trace/{name}"][()], axis=1), label) for label, name in forces.items()
+              if f"/trace/{name}" in file]
+    return [*panels, panel("Magnitude of the forces", "time (s)", "force (N)", curves)]

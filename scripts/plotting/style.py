@@ -18,6 +18,7 @@ RC = {
     "axes.titleweight": "bold", "axes.titlepad": 4, "axes.labelpad": 2,
     "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#555555", "axes.linewidth": 0.6,
     "xtick.major.size": 2.5, "ytick.major.size": 2.5, "xtick.major.width": 0.6, "ytick.major.width": 0.6,
+    "xtick.minor.size": 1.5, "ytick.minor.size": 1.5, "xtick.minor.width": 0.4, "ytick.minor.width": 0.4,
     "axes.grid": True, "axes.axisbelow": True, "grid.color": "#e3e3e3", "grid.linewidth": 0.5,
     "legend.frameon": False, "legend.handlelength": 2.75, "legend.handletextpad": 0.5, "legend.columnspacing": 1.2,
     "legend.labelspacing": 0.25, "legend.borderpad": 0, "lines.markersize": 3.5,
@@ -47,7 +48,7 @@ OF_LABEL = (
     (r".*region", "fixture"),
 )
 BOUND_DASH = 3  # index of the dash of a bound, which would look like a solid line of another dark colour
-FORMULA = re.compile(r".*\b(derived|predicted|refitted|with scatter)\b")
+FORMULA = re.compile(r".*\b(derived|predicted|refitted|with scatter|law)\b")
 OF_QUANTITY = ((r".*\bforce\b", "force"), (r".*\btorque\b", "fixture"), (r".*\b(proxy|tool|contact point)\b", "proxy"),
                (r".*\bHIP\b", "hip"), (r".+", "measured"))
 

@@ -9,6 +9,7 @@ from .typeset import typeset
 LONGEST = 150  # lines of the grid along each axis that are drawn
 DEGREES_UP, DEGREES_ROUND = 32, -62  # where the viewer is
 TICKS = 6  # along the longest axis
+BAR_IN = 0.1  # the width of the colour bar
 
 
 def is_surface(panel):
@@ -35,16 +36,8 @@ def thinned(heights, axis):
     return np.unique([0, count - 1, *(share[end(of[share])] for share in shares for of, end in ((low, np.argmin), (high, np.argmax)))])
 
 
-def few_ticks(low, high):
-    """Returns round ticks of a short axis, and their labels. There is room for the first and the last label only."""
-    ticks = matplotlib.ticker.MaxNLocator(3, steps=[1, 2, 5, 10]).tick_values(low, high)
-    ticks = ticks[(ticks >= low) & (ticks <= high)]
-    labels = [f"{tick:g}".replace("-", "\u2212") for tick in ticks]
-    return ticks, [*labels[:1], *("" for _ in labels[1:-1]), *labels[1:][-1:]]
-
-
-def draw_surface(axes, panel, axis_label):
-    """axes: of three dimensions, equally scaled. axis_label: names an axis."""
+def draw_surface(axes, panel, add_colour_bar):
+    """axes: of three dimensions, equally scaled. add_colour_bar: of plotting.drawing."""
     curve = next(curve for curve in panel.curves if curve.style == "surface")
     across, along, heights = grid_of(curve)
     columns, rows = thinned(heights, 1), thinned(heights, 0)
@@ -58,21 +51,22 @@ def draw_surface(axes, panel, axis_label):
         set_limits(*ends)
     axes.set_box_aspect([max(high - low, 1e-9) for low, high in limits], zoom=1.7)
     axes.tick_params(pad=-3)
-    axes.tick_params("z", pad=-1)
     axes.view_init(DEGREES_UP, DEGREES_ROUND)
-    labels = (panel.x_label, panel.y_label, axis_label("", [curve.z]))
     longest = max(max(high - low for low, high in limits), 1e-9)
-    for axis, label, (low, high), pad in zip((axes.xaxis, axes.yaxis, axes.zaxis), labels, limits, (2, -5, -4)):
-        bins = round(TICKS * (high - low) / longest)
-        if bins > 1:
-            axis.set_major_locator(matplotlib.ticker.MaxNLocator(bins))
-        else:
-            axis.set_ticks(*few_ticks(low, high))
+    for axis, label, (low, high), pad in zip((axes.xaxis, axes.yaxis), (panel.x_label, panel.y_label), limits, (2, -5)):
+        axis.set_major_locator(matplotlib.ticker.MaxNLocator(max(2, round(TICKS * (high - low) / longest))))
         axis.set_label_text(typeset(label))
         axis.labelpad = pad
+    axes.set_zticks([])  # the colour bar says the heights
+    add_colour_bar(axes, surface, curve.z, BAR_IN)
 
 
-def add_title(axes):
-    """Moves the title above the left end of the panel, because a view in perspective takes only the middle of it."""
+def use_width(axes):
+    """Moves the title and the colour bar to the left end of the panel, because a view in perspective takes only the middle
+    of it."""
     whole, middle = axes.get_position(original=True), axes.get_position()
     axes.set_title(axes.get_title(loc="left"), loc="left", x=(whole.x0 - middle.x0) / middle.width)
+    width_in, height_in = axes.figure.get_size_inches()
+    bar, = axes.child_axes
+    bar.set_axes_locator(None)
+    bar.set_position([whole.x0, whole.y0 + 0.15 * whole.height, BAR_IN / width_in, 0.65 * whole.height])

@@ -1,7 +1,7 @@
 """Panels of a sweep: measures over its axes, with 95 % intervals and the number of runs.
 
-Over one axis: a line. Over two: a map. Over more: slices, a panel each, with a line for each value of an axis of few
-values, or a map."""
+Over one axis: a line. Over two: a map, or a line for each of few names, such as renderers. Over more: slices, a panel
+each, with a line for each value of an axis of few values, or a map."""
 import dataclasses
 import itertools
 import json
@@ -15,7 +15,7 @@ from .figure_file import Column, Curve, enum_names, text
 from .plot_error import PlotError
 from .results import AUTOMATIC, column, dataset, panel
 from .states import DONE, read_states
-from .typeset import SHOWN_UNITS, unit_words
+from .typeset import SHOWN_UNITS, UNIT_OF_NAME, unit_words, without_json
 
 MAX_PANELS, MAX_SLICES, ACROSS = 8, 12, 4
 FEW = 5  # values of an axis that has a line for each
@@ -111,7 +111,7 @@ def read_measure(file, name, axes, chosen, is_done):
 
 def with_shown_unit(name, units):
     """In words, with the unit that is shown. Names of parameters end with that in which they are stored."""
-    name = re.sub(r"_(m|s|hz|deg|kg|N|J|m2)(_per_\w+)?$", "", name, flags=re.I) if units not in ("", "1") else name
+    name = UNIT_OF_NAME.sub("", name) if units not in ("", "1") else name
     name = name.replace("_", " ") if not re.fullmatch(r"[A-Za-z]_\w{1,3}", name) else name
     return f"{name} ({unit_words(units)})" if units not in ("", "1") else name
 
@@ -150,6 +150,7 @@ def read_axes(file):
     axes = [Axis(name, column(dataset(file, f"/sweep/{name}"))) for name in names]
     for axis, is_log in zip(axes, log_axes(file, len(axes))):
         axis.at.is_log = is_log
+        axis.at.names = {value: without_json(words) for value, words in axis.at.names.items()}
     return axes
 
 
@@ -199,7 +200,7 @@ def roles(axes):
     order = sorted(range(len(axes)), key=lambda i: (bool(axes[i].at.names), -axes[i].at.values.size, i))
     if len(axes) == 1:
         return 0, None, [], False
-    if len(axes) == 2:
+    if len(axes) == 2 and not (axes[order[1]].at.names and axes[order[1]].at.values.size <= FEW):
         return 0, 1, [], True
     across, others = order[0], order[1:]
     few = [i for i in others if axes[i].at.values.size <= FEW]

@@ -1,6 +1,7 @@
-"""Sets words as print has them: r_c with a subscript, m/s^2 with a superscript, lengths in mm. A dollar sign in a name
-stays a dollar sign."""
+"""Sets words as print has them: r_c with a subscript, m/s^2 with a superscript, lengths in mm, settings without JSON. A
+dollar sign in a name stays a dollar sign."""
 import html
+import json
 import re
 
 GREEK = {"sigma": "σ", "beta": "β", "tau": "τ", "lambda": "λ", "alpha": "α", "mu": "µ"}
@@ -19,6 +20,39 @@ MM = {"m": 1000, "cm": 10, "micrometres": 0.001, "um": 0.001}  # in each unit
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff\ufffe\uffff]")  # neither XML nor a font has these
 
 
+UNIT_OF_NAME = re.compile(r"_(m|s|hz|deg|kg|N|Ns|J|m2)((?:_per_\w+)?)$", re.I)  # names of parameters end with it
+
+
+def said(value):
+    """A value of JSON in words: `penalty, stiffness 300 N/m` for {"name": "penalty", "stiffness_N_per_m": 300}."""
+    if isinstance(value, dict):
+        return ", ".join(said(each) if name == "name" else said_of(name, each) for name, each in value.items())
+    if isinstance(value, list):
+        return ", ".join(map(said, value))
+    if isinstance(value, bool) or value is None:
+        return {True: "yes", False: "no", None: "none"}[value]
+    return value if isinstance(value, str) else f"{value:.6g}"
+
+
+def said_of(name, value):
+    unit = UNIT_OF_NAME.search(name)
+    words = f"{UNIT_OF_NAME.sub('', name).replace('_', ' ')} {said(value)}"
+    return in_mm(f"{words} {unit[1].replace('hz', 'Hz')}{unit[2].replace('_per_', '/')}") if unit else words
+
+
+def without_json(words):
+    """Writes objects of JSON in words."""
+    at = words.find('{"')
+    while at >= 0:
+        try:
+            value, end = json.JSONDecoder().raw_decode(words, at)
+            words, at = words[:at] + said(value) + words[end:], at + len(said(value))
+        except (ValueError, RecursionError):
+            at += 1
+        at = words.find('{"', at)
+    return words
+
+
 def superscript(match):
     """Returns the power after a symbol or variable as mathematics; it is group 3 or 4 of the match."""
     return f"^{{{match[3] or match[4]}}}" if match[3] or match[4] else ""
@@ -34,7 +68,7 @@ def symbol(match):
 
 def typeset(words):
     """As matplotlib draws it, with mathematics between dollar signs."""
-    words = TIMES.sub(" × ", CONTROL.sub("?", words).replace("$", r"\$"))
+    words = TIMES.sub(" × ", CONTROL.sub("?", without_json(words)).replace("$", r"\$"))
     words = SYMBOL_WITH_POWER.sub(symbol, words)
     words = VARIABLE_WITH_POWER.sub(lambda match: f"${match[1] or match[2]}{superscript(match)}$", words)
     words = POWER.sub(r"$^{\1\2}$", words)
@@ -53,7 +87,7 @@ def html_symbol(match):
 
 def typeset_html(words):
     """As a page shows it. No words make another tag than those of symbols."""
-    words = TIMES.sub(" × ", html.escape(str(words), quote=True))
+    words = TIMES.sub(" × ", html.escape(without_json(str(words)), quote=True))
     words = SYMBOL.sub(html_symbol, VARIABLE.sub(r"<i>\1\2</i>", words))
     words = re.sub(rf"\b({'|'.join(GREEK)})\b", lambda match: GREEK[match[1]], words)
     return DEGREES.sub("°", POWER.sub(r"<sup>\1\2</sup>", words))

@@ -196,7 +196,7 @@ def add_picture(s, shake):
                 {axis: (points[:, i], "m", f"{axis} of the point") for i, axis in enumerate(axes)})
     proxy_m = shake.pressed.proxy_position[tick_of(shake.pressed, HIGHEST_S)]
     s.table("proxy", "proxy when the hand is highest", {axis: ([proxy_m[i]], "m", axis) for i, axis in enumerate(axes)})
-    parts = (("lowest", 0xC3CCD2, 0.0022, "lowest position"), ("highest", 0x81939F, 0.0022, "highest position"),
+    parts = (("lowest", 0x8478F0, 0.0022, "lowest position"), ("highest", 0x546030, 0.0022, "highest position"),
              ("proxy", 0x146BAB, 0.01, "proxy"))
     s.panel("What the camera sees of the hand", "", "", [], at=(0, 0), scene={
         "eye": (0.42, 0.30, 0.30), "target": (0, 0.115, 0), "up": (0, 1, 0), "width_m": 0.30, "height_per_width": 0.62,
@@ -218,7 +218,7 @@ def add_panels(s, shake):
               (line, "proxy", "proxy", ""))
     over_time("Gap between the proxy's ball and the hand", "gap (m)", (1, 0), "pressed", (line, "high", "bound", "bounds"),
               (line, "low", "bound", "bounds"), (line, "gap", "to the moving hand", ""),
-              (line, "gap_at_capture", "to the hand at capture", ""), (line, "exact_gap", "the same, exact sensor", ""))
+              (line, "gap_at_capture", "to the hand at capture", ""), (line, "exact_gap", "at capture, exact sensor", ""))
     over_time("Force on the pressing HIP", "force (N)", (1, 1), "pressed", (line, "force", "", ""))
     over_time("A passive hand is shaken", "displacement (m)", (2, 0), "passive", hand, hip)
     over_time("Force on the passive hand", "force (N)", (2, 1), "passive", (line, "force", "", ""))

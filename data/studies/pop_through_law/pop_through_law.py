@@ -157,8 +157,8 @@ def draw_spacings(s, lifts, limits, share, law, with_law):
         limit_table(s, name, f"limits of {share} % at a spacing of {spacing:.2g} r_c", lifts, limits, i, SPEED, law)
         curves.append(dots(name, "noise", "limit", f"spacing {spacing:.2g} r_c"))
         if with_law:
-            curves.append(line(name, "noise", "law"))
-    s.panel(f"{share} % pop through" + (" (dots), the law (lines)" if with_law else ""), "noise (r_c)", "acceleration (r_c f_c^2)",
+            curves.append(line(name, "noise", "law", f"spacing {spacing:.2g} r_c, law"))
+    s.panel(f"{share} % pop through" + (", and the law" if with_law else ""), "noise (r_c)", "acceleration (r_c f_c^2)",
             curves, y_range=(0, 1.7))
 
 

@@ -64,13 +64,11 @@ def banded(s, whole, name, setting, bands, bound_per_s, band_column, panel):
                    held=([run.measures[rate] for run in held], "1/s", "packets per second, values are held"),
                    predicted=([run.measures[rate] for run in predicted], "1/s", "packets per second, linear prediction"),
                    bound=([*map(bound_per_s, held, bands)], "1/s", "bound for values that are held"),
-                   shift=([shift_m(run, whole) for run in held], "m", "rms distance from the slave that gets every sample"),
-                   **{f"published_{fewer}": (np.full(len(bands), (1 - fewer / 100) / TICK_S), "1/s", f"{fewer} % fewer, published")
-                      for fewer in PUBLISHED})
+                   shift=([shift_m(run, whole) for run in held], "m", "rms distance from the slave that gets every sample"))
     s.panel(*panel, "packets per second",
             [dots(table, "band", "held", "held"), dots(table, "band", "predicted", "linear prediction"),
              dashed(table, "band", "bound", "bound, held"),
-             *(dashed(table, "band", f"published_{fewer}", f"{fewer} % fewer, published") for fewer in PUBLISHED)])
+             dots("published", "band", "rate", f"published: {', '.join(map(str, PUBLISHED))} % fewer, for other dead-bands")])
     return rows
 
 
@@ -79,10 +77,13 @@ def banded(s, whole, name, setting, bands, bound_per_s, band_column, panel):
        A hand presses a slave of 5 Hz into a soft surface with waves of 3 mm, slides along it and back, and feels half of the
        force of the slave. Packets per second over the dead-band of the forces (Weber fraction) and of the commands (length),
        with values that are held and with linear prediction (dots); the bound for held values from the path of the signal
-       (dashed); and the largest reductions that publications report for the signals of human hands (dashed). Without a
-       dead-band there are 1000 packets per second. Simulated.""")
+       (dashed); and, on the right edge, the largest reductions that publications report for the signals of human hands and
+       dead-bands of their own. Without a dead-band there are 1000 packets per second. Simulated.""")
 def slave_packets(s):
     whole = s.run(*contour({}))
+    s.table("published", "published reductions; their dead-bands are not those of this figure",
+            band=(np.full(len(PUBLISHED), np.nan), "1", "dead-band, not comparable"),
+            rate=((1 - np.array(PUBLISHED) / 100) / TICK_S, "1/s", "packets per second"))
     forces = banded(s, whole, "force", "weber_fraction", FRACTIONS, bound_of_forces_per_s, ("1", "Weber fraction"),
                     ("Forces", "Weber fraction"))
     commands = banded(s, whole, "command", "least", LENGTHS_M, bound_of_commands_per_s, ("m", "least difference that is sent"),

@@ -16,7 +16,7 @@ BAR_HALF_M, BAR_HALF_HEIGHT_M, SLOT_HALF_M = 0.04, 0.005, 0.02  # of bar, and of
 ABOVE_M, DEEP_M = 0.002, 0.006  # a press starts above the touch and ends below it
 SMALL_FORCE_N, SMALL_TORQUE_NM = 0.5, 0.005  # a tick counts if the exact vector is longer
 GAP = 0.02  # the continuous rule and the god-object keep a gap of 0.05 mm, which is 1.7 % of the mean depth of a press
-LEAST_ERROR, LEAST_ANGLE_DEG = 1e-5, 1e-4  # smaller deviations are drawn at these
+ERRORS, ANGLES_DEG = (1e-5, 10), (1e-4, 100)  # ranges of the axes; smaller deviations are marked below them
 
 METHODS = {  # column: label and renderer
     "look_ahead": ("look-ahead", {"name": "tool"}),
@@ -138,15 +138,12 @@ def add_deviations(s, scene, methods=METHODS):
     return s.table(scene.table, scene.title, columns)
 
 
-def draw(s, scene, rows, title, quantity, x_label, more_curves=()):
-    """A panel of a quantity, which is a suffix of columns, with a logarithmic axis, and its table."""
-    is_angle, name = quantity.endswith("direction"), f"{scene.table}_{quantity}_drawn"
-    least, units = (LEAST_ANGLE_DEG, "deg") if is_angle else (LEAST_ERROR, "1")
-    drawn = {method: (np.maximum(rows[f"{method}_{quantity}"], least), units, "value, or the least value that is drawn")
-             for method in METHODS}
-    s.table(name, f"{title}, as drawn", {scene.setting: (scene.settings_deg, "deg", scene.meaning), **drawn})
+def draw(s, scene, title, quantity, x_label, more_curves=()):
+    """A panel of a quantity, which is a suffix of columns, with a logarithmic axis."""
+    is_angle = quantity.endswith("direction")
     s.panel(title, x_label, "angle to the exact force (deg)" if is_angle else f"relative error of {quantity}",
-            [*(line(name, scene.setting, method, label) for method, (label, _) in METHODS.items()), *more_curves])
+            [*(line(scene.table, scene.setting, f"{method}_{quantity}", label) for method, (label, _) in METHODS.items()),
+             *more_curves], y_range=ANGLES_DEG if is_angle else ERRORS)
 
 
 def add_slot(s):
@@ -174,8 +171,8 @@ def draw_slot(s):
        Presses of 6 mm in 0.4 s in which force and torque are known in closed form: a block of 40 x 10 mm on a plane that is tilted
        as the block is, and on a level plane where the hand tilts the block; a ball of 10 mm in a valley; a bar between two walls.
        Mean deviation from the closed form of magnitude and direction over the ticks with a force of 0.5 N or more; points 1.5 mm
-       apart (slot: 2 mm), no noise; simulated. The axes of errors and angles are logarithmic. Smaller errors than 0.00001 are drawn
-       at 0.00001, smaller angles than 0.0001 deg at 0.0001 deg. Protocol: Weller et al. 2010.""")
+       apart (slot: 2 mm), no noise; simulated. The axes of errors and angles are logarithmic. Errors below 0.00001 and
+       angles below 0.0001 deg are marked below the axis. Protocol: Weller et al. 2010.""")
 def tool_forces(s):
     tilted = Scene("planes", "A block on a tilted plane", "tilt", "tilt of plane and block", on_plane, [0, 5, 10, 20, 30, 40])
     turned = Scene("blocks", "A tilted block on a level plane", "turn", "turn of the block, by the hand", turned_block,
@@ -185,12 +182,12 @@ def tool_forces(s):
     slot = add_slot(s)
     of_coupling = add_deviations(s, turned._replace(table="of_coupling", title="A tilted block, M of the coupling"), OF_COUPLING)
 
-    draw(s, tilted, planes, "Block on a tilted plane: force", "force", "tilt (deg)")
-    draw(s, tilted, planes, "Block on a tilted plane: direction", "force_direction", "tilt (deg)")
+    draw(s, tilted, "Block on a tilted plane: force", "force", "tilt (deg)")
+    draw(s, tilted, "Block on a tilted plane: direction", "force_direction", "tilt (deg)")
     for quantity in ("force", "torque"):
-        draw(s, turned, blocks, f"Tilted block on a level plane: {quantity}", quantity, "tilt by the hand (deg)",
+        draw(s, turned, f"Tilted block on a level plane: {quantity}", quantity, "tilt by the hand (deg)",
              [dashed("of_coupling", "turn", f"look_ahead_{quantity}", OF_COUPLING["look_ahead"][0])])
-    draw(s, valley, grooves, "Ball in a valley: direction", "force_direction", "slope (deg)")
+    draw(s, valley, "Ball in a valley: direction", "force_direction", "slope (deg)")
     draw_slot(s)
     s.place_in_rows(2)
 
