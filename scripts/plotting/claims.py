@@ -2,15 +2,18 @@
 import html
 import json
 import os
+import re
 import sys
 import urllib.parse
 
 from .plot_error import PlotError
-from .typeset import typeset_html
+from .typeset import SHOWN_UNITS, in_mm, typeset_html, unit_words
 
 DISSERTATION = "the dissertation"
 COLUMNS = {"claim": "Claim", "paper": "Dissertation", "measured": "Measured", "criterion": "Criterion", "unit": "Unit"}
 NOTHING = {"paper": ("-",), "unit": ("1", None)}  # the cell stays empty
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+OF_CRITERIA = ("at", "most", "least", "from", "to", "up")  # words beside numbers in the unit of the claim
 SHORT = 24  # a cell of so few characters stays on one line
 
 
@@ -62,13 +65,28 @@ def is_set_up(claim):
     return claim.get("set_up") is True
 
 
+def in_shown_unit(claim):
+    """The claim as the axes of figures have it: with a length in mm, if its criterion is one of numbers only."""
+    stored, criterion, measured = claim.get("unit"), str(claim.get("criterion", "")), claim.get("measured")
+    if not isinstance(stored, str):
+        return claim
+    if stored not in SHOWN_UNITS:
+        return claim | {"unit": unit_words(stored)}
+    is_plain = all(word in OF_CRITERIA or NUMBER.fullmatch(word) for word in criterion.split())
+    if not (is_plain and isinstance(measured, (int, float))):
+        return claim
+    factor, unit = SHOWN_UNITS[stored]
+    scaled = NUMBER.sub(lambda each: f"{factor * float(each[0]):.6g}", criterion)
+    return claim | {"measured": factor * measured, "criterion": scaled, "unit": unit}
+
+
 def claim_row(anchor, claim):
-    cells = []
+    cells, claim = [], in_shown_unit(claim)
     for name in COLUMNS:
         value = claim.get(name)
         shown = "" if value in NOTHING.get(name, ()) else value_text(value)
         style = " class=number" if name == "measured" else " class=short" if len(shown) <= SHORT else ""
-        cells.append(f"<td{style}>{typeset_html(shown)}</td>")
+        cells.append(f"<td{style}>{typeset_html(in_mm(shown))}</td>")
     style, word = verdict(claim)
     return f'<tr id="{esc(anchor)}">{"".join(cells)}<td class="verdict {style}">{esc(word)}</td></tr>'
 
@@ -106,7 +124,7 @@ def claim_table(anchored):
 def differing_from(name, anchored):
     """The values of one source that this program does not give."""
     rows = []
-    for anchor, claim in anchored:
+    for anchor, claim in ((anchor, in_shown_unit(claim)) for anchor, claim in anchored):
         unit = "" if claim.get("unit") in NOTHING["unit"] else f" {claim['unit']}"
         rows.append(f'<tr><td class=short><a href="#{esc(anchor)}">{esc(claim.get("figure", ""))}</a></td>'
                     f'<td>{typeset_html(claim.get("claim", ""))}</td><td>{typeset_html(claim.get("paper", ""))}</td>'

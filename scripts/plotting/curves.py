@@ -154,7 +154,7 @@ def draw_dots(axes, curve, panel, look):
     series = [other for other in panel.curves if other.style == "dots"].index(curve)
     options = {"markeredgewidth": 0}
     if series > 0 and count <= 100:
-        size, options = RING_PT, {"markerfacecolor": "none", "markeredgewidth": 0.9}
+        size, options = RING_PT if count <= FEW else DOT_PT, {"markerfacecolor": "none", "markeredgewidth": 0.9}
     automatic = np.isnan(panel.x_range + panel.y_range).all()
     line, = axes.plot(curve.x.values, curve.y.values, linestyle="none", marker=MARKERS[look.marker] if count <= 100 else "o",
                       color=look.colour, markersize=size, label=typeset(curve.label), rasterized=count > MANY,

@@ -8,7 +8,8 @@ import sys
 from .claims import is_set_up, read_claims, verdict
 from .drawable import read_drawable
 from .figure_file import SCHEMA, schema_of
-from .layout import draw_figure
+from .gallery import SMALL
+from .layout import draw_figure, draw_small
 from .page import page, write_page
 from .plot_error import PlotError
 from .progress import read_progress
@@ -29,14 +30,16 @@ def is_figure(path):
     return schema == SCHEMA
 
 
-def plot_file(path, files, titled=False, wanted=()):
+def plot_file(path, files, titled=False, wanted=(), small=None):
     """One figure, in a process of its own. Returns what the page says about it, without the curves. files: the pictures,
-    of several formats. wanted: slices of a sweep."""
+    of several formats. wanted: slices of a sweep. small: the picture for the gallery."""
     figure = read_drawable(path, wanted)
     if figure.panels:
         figure.width_in = draw_figure(figure, files, titled).get_figwidth()
+        if small:
+            draw_small(figure, small)
     else:
-        for file in files:
+        for file in filter(None, [*files, small]):
             file.unlink(missing_ok=True)  # of an earlier run
     for panel in figure.panels:
         panel.curves.clear()
@@ -79,7 +82,7 @@ class Folder:
             self.stamps[path] = stamp
             if is_figure(path):
                 files = [self.out / f"{path.stem}.{each}" for each in self.formats]
-                self.drawing[path] = self.pool.submit(plot_file, path, files)
+                self.drawing[path] = self.pool.submit(plot_file, path, files, small=self.out / f"{path.stem}{SMALL}.png")
 
     def collect(self):
         """The drawn ones; whether there was one."""

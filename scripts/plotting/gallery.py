@@ -4,6 +4,7 @@ import re
 from .claims import address, esc, is_set_up, verdict
 from .typeset import in_mm, typeset_html
 
+SMALL = ".small"  # at the end of the names of the pictures
 LONGEST = 170  # letters of a sentence
 WORDS = {"pass": "hold", "differs": "differ", "FAIL": "failed", "open": "open", "not run": "not run"}  # in this order
 STYLES = {"FAIL": "fail", "differs": "differs", "pass": "pass"}  # the first that occurs gives the colour
@@ -42,7 +43,7 @@ def verdict_words(claims):
 
 def item(figure, anchored, views):
     there = f"#{esc(figure.name)}"
-    image = f'<img src="{address(figure.name)}.png" alt="" loading=lazy>' if figure.panels else "not drawn"
+    image = f'<img src="{address(figure.name)}{SMALL}.png" alt="" loading=lazy>' if figure.panels else "not drawn"
     view = f'<p><a href="{address(views[0])}">in 3-D</a></p>' if views else ""
     return (f'<li><a href="{there}" tabindex="-1" aria-hidden="true">{image}</a>'
             f'<b><a href="{there}">{typeset_html(in_mm(figure.heading))}</a></b>'

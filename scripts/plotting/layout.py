@@ -1,6 +1,7 @@
 """Puts the panels of a figure on one canvas, one or two columns of a journal wide."""
 import dataclasses
 import math
+import re
 
 import matplotlib
 import matplotlib.figure
@@ -23,6 +24,7 @@ MARGIN_IN = 0.45  # the widest right margin that is made for titles
 LABELS_IN = 0.6  # about what the labels of an axis and the gap to the next panel take
 TALLEST_IN, SMALLEST = 9.2, 0.5  # a picture fits on a page, unless its plots became smaller than this share
 BESIDE = 0.75  # how high a plot is, if a panel beside it cannot be higher
+SMALL_IN = 2.2  # width of a picture in a gallery
 FLAT = 0.3  # a panel of equal aspect that is lower than this share of its width needs a wide picture
 DENSE = 30  # a curve that goes up and down so often needs a wide picture
 
@@ -211,6 +213,11 @@ def letter_of(cells, i):
     return ("" if at < 26 else chr(96 + at // 26)) + chr(97 + at % 26) if len(cells) > 1 else ""
 
 
+def title_of(panel, letter):
+    """Returns the title of a panel. Beside others one without a title has the name of its vertical axis."""
+    return panel.title or (letter and re.sub(r" \([^()]*\)$", "", panel.y_label))
+
+
 def draw_panels(figure, canvas, cells, size):
     """Draws the panels without titles. Returns the cell, the axes and the panel of each."""
     of_curve, drawn, (rows, columns) = looks(figure.panels), [], size
@@ -248,7 +255,7 @@ def write_words(drawn, titles, columns):
         add_words(axes, panel, title, inner, inner + gap_in)
 
 
-def composed(figure, width_in, with_heading):
+def composed(figure, width_in, with_heading, with_legends=True):
     """Returns the canvas with everything in its place, and the result of arrange()."""
     cells = places(figure.panels)
     size = tuple(1 + max(cell[i] for cell in cells) for i in (0, 1))
@@ -257,17 +264,28 @@ def composed(figure, width_in, with_heading):
     drawn = draw_panels(figure, canvas, cells, size)
     say_once(drawn)
     guess(canvas, drawn, size)
-    titles = [title_words(panel.title, letter_of(cells, i)) for i, panel in enumerate(figure.panels)]
+    letters = [letter_of(cells, i) for i in range(len(cells))]
+    titles = [title_words(title_of(panel, letter), letter) for panel, letter in zip(figure.panels, letters)]
     columns = with_room_for_titles(columns_in(canvas, drawn, size[1]), drawn, titles)
     write_words(drawn, titles, columns)
     heading = wrapped(figure.heading, width_in - 2 * PAD_IN, HEADING) if with_heading else ""
     top_in = PAD_IN + (HEADING_LINE_IN * (1 + heading.count("\n")) + PAD_IN if heading else 0)
     panels = [(cell, axes, room_above_in(panel)) for cell, axes, panel in drawn]
-    top_in += add_legends(canvas, panels, columns[2], top_in, PAD_IN)
+    if with_legends:
+        top_in += add_legends(canvas, panels, columns[2], top_in, PAD_IN)
     smaller = arrange(canvas, drawn, size, columns, top_in)
     canvas.suptitle(heading, x=PAD_IN / width_in, y=1 - PAD_IN / canvas.get_figheight(), ha="left", va="top")
     align(drawn)
     return canvas, smaller
+
+
+def draw_small(figure, file):
+    """Draws one panel so small that its letters can be read in a gallery: the first that is a picture, else the first."""
+    matplotlib.rcParams.update(RC)
+    shown = in_shown_units(figure)
+    chosen = next((panel for panel in shown.panels if not is_plot(panel) or has_cells(panel)), shown.panels[0])
+    alone = dataclasses.replace(shown, panels=[dataclasses.replace(chosen, title="", place=None)])
+    save(composed(alone, SMALL_IN, False, with_legends=False)[0], file, figure)
 
 
 def draw_figure(figure, files, titled):

@@ -13,8 +13,8 @@ TEXT_PT, HEADING_PT = 8, 9
 PNG_DPI = 300
 RC = {
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "mathtext.fontset": "dejavusans",
-    "font.size": TEXT_PT, "axes.titlesize": TEXT_PT, "axes.labelsize": TEXT_PT, "legend.fontsize": TEXT_PT,
-    "xtick.labelsize": TEXT_PT, "ytick.labelsize": TEXT_PT, "figure.titlesize": HEADING_PT,
+    "font.size": TEXT_PT, "figure.titlesize": HEADING_PT,
+    **{f"{what}size": "medium" for what in ("axes.title", "axes.label", "legend.font", "xtick.label", "ytick.label")},
     "axes.titleweight": "bold", "axes.titlepad": 4, "axes.labelpad": 2,
     "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#555555", "axes.linewidth": 0.6,
     "xtick.major.size": 2.5, "ytick.major.size": 2.5, "xtick.major.width": 0.6, "ytick.major.width": 0.6,
@@ -26,6 +26,15 @@ RC = {
     "svg.hashsalt": "remote-touch",  # equal results are equal files
     "agg.path.chunksize": 20000,  # without it a long dense line can overflow the rasteriser
 }
+
+
+def set_text(size_pt, font=None):
+    """Call it before a module is imported that draws. font: a family, which the default one follows."""
+    global TEXT_PT, HEADING_PT
+    TEXT_PT, HEADING_PT = size_pt, size_pt + 1
+    RC.update({"font.size": TEXT_PT, "figure.titlesize": HEADING_PT})
+    RC["font.sans-serif"] = [*([font] if font else []), "DejaVu Sans"]
+
 
 TABLE = json.loads((pathlib.Path(__file__).parents[2] / "runners/presentation/page/src/colours.json").read_text())
 COLOURS = {name: pair["light"] for name, pair in TABLE["colours"].items() if "light" in pair}
@@ -85,8 +94,8 @@ class Look:
 
 
 def page_colour(colour):
-    """A colour of a style sheet, which follows the ground of the page. colour: that on a light ground."""
-    return f"light-dark({colour}, {ON_DARK[colour]})"
+    """A colour of a style sheet, which follows the ground of the page. colour: that on a light ground, or the user's."""
+    return f"light-dark({colour}, {ON_DARK.get(colour, colour)})"
 
 
 def method_look(name):

@@ -16,6 +16,7 @@ UNIT_WORDS = {"deg": "°", "us": "µs", "N m": "N·m", "N s/m": "N·s/m"}
 LENGTH = re.compile(r"(?<![\w.])((?:\d+(?:\.\d+)?(?: to | or | x ))*\d+(?:\.\d+)?) (m|cm|micrometres|um)(?![\w/^·])")
 DEGREES = re.compile(r"(?<=\d) deg\b")
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
+EXPONENT = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?)e([+-]?\d+)\b")
 MM = {"m": 1000, "cm": 10, "micrometres": 0.001, "um": 0.001}  # in each unit
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff\ufffe\uffff]")  # neither XML nor a font has these
 
@@ -86,10 +87,11 @@ def html_symbol(match):
 
 
 def typeset_html(words):
-    """As a page shows it. No words make another tag than those of symbols."""
+    """As a page shows it, 1e-05 as a power of ten. No words make another tag than those of symbols and powers."""
     words = TIMES.sub(" × ", html.escape(without_json(str(words)), quote=True))
     words = SYMBOL.sub(html_symbol, VARIABLE.sub(r"<i>\1\2</i>", words))
     words = re.sub(rf"\b({'|'.join(GREEK)})\b", lambda match: GREEK[match[1]], words)
+    words = EXPONENT.sub(lambda match: f"{match[1]} × 10<sup>{int(match[2])}</sup>".replace("-", "\u2212"), words)
     return DEGREES.sub("°", POWER.sub(r"<sup>\1\2</sup>", words))
 
 

@@ -7,7 +7,7 @@ from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.cbook import is_math_text
 from matplotlib.font_manager import FontProperties
 
-from .style import HEADING_PT, PNG_DPI, TEXT_PT
+from .style import HEADING_PT, PNG_DPI, RC, TEXT_PT
 from .typeset import typeset
 
 NARROWEST_IN = 0.5  # the least width of a line
@@ -26,7 +26,7 @@ def text_width_in(words, font=TEXT):
     weight, size = font
     is_math = is_math_text(words)
     shown = words if is_math else words.replace(r"\$", "$")
-    properties = FontProperties(family="DejaVu Sans", weight=weight, size=size)
+    properties = FontProperties(family=RC["font.sans-serif"], weight=weight, size=size)
     return renderer().get_text_width_height_descent(shown, properties, is_math)[0] / PNG_DPI
 
 
