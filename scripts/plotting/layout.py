@@ -218,8 +218,8 @@ def title_of(panel, letter):
     return panel.title or (letter and re.sub(r" \([^()]*\)$", "", panel.y_label))
 
 
-def draw_panels(figure, canvas, cells, size):
-    """Draws the panels without titles. Returns the cell, the axes and the panel of each."""
+def draw_panels(figure, canvas, cells, size, with_keys):
+    """Draws the panels without titles. with_keys: also colour bars of maps. Returns the cell, the axes and the panel of each."""
     of_curve, drawn, (rows, columns) = looks(figure.panels), [], size
     about_in = canvas.get_figwidth() / columns - LABELS_IN
     label_in = min(plot_height(about_in, size), 0.95 * TALLEST_IN / rows - LABELS_IN) + 0.1
@@ -228,7 +228,7 @@ def draw_panels(figure, canvas, cells, size):
         if panel.scene:
             draw_scene(axes, panel, canvas.get_figwidth() / columns, add_colour_bar)
         else:
-            draw_panel(axes, panel, of_curve, about_in, bar, label_in)
+            draw_panel(axes, panel, of_curve, about_in, bar and with_keys, label_in)
         if panel.equal_aspect:
             set_equal_aspect(axes, panel)
         drawn.append((cell, axes, panel))
@@ -255,13 +255,13 @@ def write_words(drawn, titles, columns):
         add_words(axes, panel, title, inner, inner + gap_in)
 
 
-def composed(figure, width_in, with_heading, with_legends=True):
-    """Returns the canvas with everything in its place, and the result of arrange()."""
+def composed(figure, width_in, with_heading, with_keys=True):
+    """Returns the canvas with everything in its place, and the result of arrange(). with_keys: legends and colour bars."""
     cells = places(figure.panels)
     size = tuple(1 + max(cell[i] for cell in cells) for i in (0, 1))
     canvas = matplotlib.figure.Figure(figsize=(width_in, 1.8 * size[0]), dpi=PNG_DPI)
     FigureCanvasAgg(canvas)
-    drawn = draw_panels(figure, canvas, cells, size)
+    drawn = draw_panels(figure, canvas, cells, size, with_keys)
     say_once(drawn)
     guess(canvas, drawn, size)
     letters = [letter_of(cells, i) for i in range(len(cells))]
@@ -271,7 +271,7 @@ def composed(figure, width_in, with_heading, with_legends=True):
     heading = wrapped(figure.heading, width_in - 2 * PAD_IN, HEADING) if with_heading else ""
     top_in = PAD_IN + (HEADING_LINE_IN * (1 + heading.count("\n")) + PAD_IN if heading else 0)
     panels = [(cell, axes, room_above_in(panel)) for cell, axes, panel in drawn]
-    if with_legends:
+    if with_keys:
         top_in += add_legends(canvas, panels, columns[2], top_in, PAD_IN)
     smaller = arrange(canvas, drawn, size, columns, top_in)
     canvas.suptitle(heading, x=PAD_IN / width_in, y=1 - PAD_IN / canvas.get_figheight(), ha="left", va="top")
@@ -283,9 +283,11 @@ def draw_small(figure, file):
     """Draws one panel so small that its letters can be read in a gallery: the first that is a picture, else the first."""
     matplotlib.rcParams.update(RC)
     shown = in_shown_units(figure)
-    chosen = next((panel for panel in shown.panels if not is_plot(panel) or has_cells(panel)), shown.panels[0])
-    alone = dataclasses.replace(shown, panels=[dataclasses.replace(chosen, title="", place=None)])
-    save(composed(alone, SMALL_IN, False, with_legends=False)[0], file, figure)
+    pictures = [panel for panel in shown.panels if panel.scene or is_image(panel) or has_cells(panel)]
+    plots = [panel for panel in shown.panels if not is_surface(panel)]
+    chosen = [*pictures, *plots, *shown.panels][0]
+    alone = dataclasses.replace(shown, panels=[dataclasses.replace(chosen, title="", place=(2, 0))])  # as low as one of three
+    save(composed(alone, SMALL_IN, False, with_keys=False)[0], file, figure)
 
 
 def draw_figure(figure, files, titled):
