@@ -24,7 +24,9 @@ namespace {
 
 using CaseState = ReportCase::State;
 
-// A report whose JSON is not yet text.
+constexpr const char* kNoValueText = "no value";
+
+// A report whose JSON is not yet text. The text is that of the details, below the verdict.
 struct DraftReport {
   std::string text;
   Json json;
@@ -47,6 +49,19 @@ std::string tolerance_text(const Tolerance& tolerance) {
   return tolerance.relative > 0 ? all + formatted(" + %.3g relative", tolerance.relative) : all;
 }
 
+// The shortest text of a number, in words if there is none.
+std::string value_text(double value) {
+  return std::isnan(value) ? kNoValueText : shortest_text(value);
+}
+
+// Returns the width of a column of a table that has these names.
+template <class Named>
+int width_of(const std::vector<Named>& all, const std::string& heading) {
+  std::size_t width = heading.size();
+  for (const Named& each : all) width = std::max(width, each.name.size());
+  return static_cast<int>(width);
+}
+
 // "2 of 867 rows outside, the largest deviation 0.25"; empty for none.
 std::string outside_text(std::size_t outside, std::size_t of, const char* things, double max) {
   if (outside == 0) return {};
@@ -55,12 +70,12 @@ std::string outside_text(std::size_t outside, std::size_t of, const char* things
 
 // --- columns ---
 
-std::string line_of(const ColumnComparison& column) {
+std::string line_of(const ColumnComparison& column, int width) {
   const double percent =
       column.rows == 0 ? 0 : 100.0 * static_cast<double>(column.outside) / static_cast<double>(column.rows);
-  std::string line =
-      formatted("  %-28s %-6s %9zu %12.4g %12.4g %8.3g%%  %s", column.name.c_str(), column.units.c_str(),
-                column.rows, column.max, column.rms, percent, tolerance_text(column.tolerance).c_str());
+  std::string line = formatted("  %-*s %-5s %7zu %10.4g %10.4g %7.3g%%  %s", width, column.name.c_str(),
+                               column.units.c_str(), column.rows, column.max, column.rms, percent,
+                               tolerance_text(column.tolerance).c_str());
   if (column.not_numbers > 0) line += formatted("; %zu rows: NaN against a number", column.not_numbers);
   if (!column.problem.empty()) line += "; " + column.problem;
   return line + (column.is_same() ? "\n" : "  DIFFERS\n");
@@ -124,11 +139,27 @@ Json divergence_json(const Divergence& found) {
           {"candidate", rows_json(found.candidate)}};
 }
 
+// Returns the columns with any difference as a table, and the names of the others.
+std::string columns_text(const std::vector<ColumnComparison>& columns) {
+  const int width = width_of(columns, "column");
+  std::string rows;
+  std::vector<std::string> equal;
+  for (const ColumnComparison& column : columns)
+    if (column.is_same() && !column.first_difference)
+      equal.push_back(column.name);
+    else
+      rows += line_of(column, width);
+  if (!rows.empty())
+    rows.insert(0, formatted("  %-*s %-5s %7s %10s %10s %8s  %s\n", width, "column", "units", "rows", "max",
+                             "rms", "outside", "tolerance"));
+  if (equal.empty()) return rows;
+  return rows + formatted("  %zu of %zu columns are equal: ", equal.size(), columns.size()) +
+         joined(equal, ", ") + "\n";
+}
+
 void add_columns(const TraceComparison& comparison, DraftReport& report) {
-  report.text += formatted("  %-28s %-6s %9s %12s %12s %9s  %s\n", "column", "units", "rows", "max", "rms",
-                           "outside", "tolerance");
+  report.text += columns_text(comparison.columns);
   for (const ColumnComparison& column : comparison.columns) {
-    report.text += line_of(column);
     report.json["columns"].push_back(column_json(column));
     report.cases.push_back(case_of(column));
   }
@@ -144,7 +175,7 @@ std::string row_text(const Column& column, std::size_t row) {
   for (std::size_t i = row * width; i < (row + 1) * width; ++i) {
     if (!all.empty()) all += " ";
     if (const auto* numbers = std::get_if<std::vector<double>>(&column.values))
-      all += shortest_text((*numbers)[i]);
+      all += value_text((*numbers)[i]);
     else if (const auto* hashes = std::get_if<std::vector<std::uint64_t>>(&column.values))
       all += formatted("%016" PRIx64, (*hashes)[i]);
     else if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values)) {
@@ -155,13 +186,18 @@ std::string row_text(const Column& column, std::size_t row) {
   return all;
 }
 
-std::string divergence_text(const Divergence& found) {
+std::string headline_of(const Divergence& found) {
   const std::string time = std::isnan(found.time_s) ? "" : formatted(" (%.6g s)", found.time_s);
-  std::string all = formatted("first divergent tick %zu%s: %s, by %.4g\n", found.tick, time.c_str(),
-                              found.quantity.c_str(), found.deviation);
+  const std::string by = std::isnan(found.deviation) ? ", not finite in one of the two"
+                                                     : formatted(", by %.4g", found.deviation);
+  return formatted("first divergent tick %zu%s: ", found.tick, time.c_str()) + found.quantity + by + "\n";
+}
+
+std::string divergence_text(const Divergence& found) {
+  std::string all = "  at the first divergent tick:\n";
   if (found.first_difference != found.tick)
-    all += "  the runs first differ at tick " + std::to_string(found.first_difference) +
-           ", within the tolerances; the lines below describe that tick\n";
+    all = "  the runs first differ at tick " + std::to_string(found.first_difference) +
+          ", within the tolerances; the lines below describe that tick\n";
   all += std::string("  cause   ") + name_of(found.cause) + ": " + found.explanation + "\n";
   if (found.cause != found.situation)
     all += std::string("  there   ") + name_of(found.situation) + ": " + found.observation + "\n";
@@ -231,29 +267,49 @@ Json measure_json(const MeasureComparison& measure, Judgement judgement) {
           {"judgement", name_of(judgement)}};
 }
 
-// Adds the measures of two traces that differ; the text has those that are not equal.
+// "max_force  N  40.57389  no value  -  changed"
+std::string line_of(const ValueComparison& measure, int width) {
+  const auto text = [](const char* format, double value, const char* none) {
+    return std::isnan(value) ? none : formatted(format, value);
+  };
+  std::string verdict = word_for(measure.judgement);
+  if (measure.judgement == Judgement::better || measure.judgement == Judgement::worse)
+    verdict += std::string(" (") + text_of(measure.better) + ")";
+  return formatted("  %-*s %-5s %12s %12s %10s  ", width, measure.name.c_str(), measure.units.c_str(),
+                   text("%.7g", measure.baseline, kNoValueText).c_str(),
+                   text("%.7g", measure.candidate, kNoValueText).c_str(),
+                   text("%+.3g", measure.candidate - measure.baseline, "-").c_str()) +
+         verdict + "\n";
+}
+
+// Returns the measures that are not equal as a table, and the number of the others.
+std::string measures_text(const std::vector<ValueComparison>& measures) {
+  const int width = width_of(measures, "measure");
+  std::string rows;
+  std::size_t equal = 0;
+  for (const ValueComparison& measure : measures)
+    if (measure.judgement == Judgement::equal)
+      ++equal;
+    else
+      rows += line_of(measure, width);
+  if (!rows.empty())
+    rows.insert(0, formatted("  %-*s %-5s %12s %12s %10s  %s\n", width, "measure", "units", "baseline",
+                             "candidate", "difference", "verdict"));
+  return rows + formatted("  %zu of %zu measures are equal\n", equal, measures.size());
+}
+
+// Adds the measures of two traces that differ.
 void add_measures(const ResultComparison& comparison, DraftReport& report) {
   const std::vector<ValueComparison>& measures = comparison.measures;
-  std::size_t equal = 0;
-  if (!measures.empty())
-    report.text += formatted("  %-23s %-6s %13s %13s %11s  %s\n", "measure", "units", "baseline", "candidate",
-                             "difference", "verdict");
   for (const ValueComparison& measure : measures) {
     report.json["measures"].push_back(measure_json(measure));
     report.cases.push_back(
         case_of(measure, measure.judgement, comparison.outcome,
                 shortest_text(measure.baseline) + " against " + shortest_text(measure.candidate)));
-    if (measure.judgement == Judgement::equal)
-      ++equal;
-    else
-      report.text += formatted("  %-23s %-6s %13.7g %13.7g %+11.3g  %s (%s)\n", measure.name.c_str(),
-                               measure.units.c_str(), measure.baseline, measure.candidate,
-                               measure.candidate - measure.baseline, word_for(measure.judgement),
-                               text_of(measure.better));
   }
   report.json["no_measures"] = comparison.no_measures, report.json["not_judged"] = comparison.not_judged;
   if (measures.empty()) return;
-  report.text += formatted("  %zu of %zu measures are equal\n", equal, measures.size());
+  report.text += measures_text(measures);
   if (!comparison.not_judged.empty()) report.text += "  " + comparison.not_judged + "\n";
   std::vector<std::string> left_out;
   for (const Measure& measure : remote_touch::measures())
@@ -279,9 +335,10 @@ std::string verdict_text(const MeasureComparison& measure, Judgement judgement) 
 void add_measures(const ResultComparison& comparison, Json& json, DraftReport& report) {
   const SweepComparison& sweep = *comparison.sweep;
   const bool is_compared = sweep.problems.empty();
+  const int width = width_of(sweep.measures, "measure");
   if (is_compared)
-    report.text += formatted("  %-22s %-6s %9s %12s %12s %9s  %-15s %s\n", "measure", "units", "runs", "max",
-                             "rms", "outside", "tolerance", "verdict");
+    report.text += formatted("  %-*s %-5s %7s %10s %10s %7s  %-9s %s\n", width, "measure", "units", "runs",
+                             "max", "rms", "outside", "tolerance", "verdict");
   for (std::size_t i = 0; i < sweep.measures.size(); ++i) {
     const MeasureComparison& measure = sweep.measures[i];
     const Judgement judgement = judgement_of(sweep, i, comparison.paired);
@@ -290,7 +347,7 @@ void add_measures(const ResultComparison& comparison, Json& json, DraftReport& r
     const auto runs = static_cast<std::size_t>(measure.compared),
                outside = static_cast<std::size_t>(measure.outside);
     report.text +=
-        formatted("  %-22s %-6s %9zu %12.4g %12.4g %9zu  %-15s %s\n", measure.name.c_str(),
+        formatted("  %-*s %-5s %7zu %10.4g %10.4g %7zu  %-9s %s\n", width, measure.name.c_str(),
                   measure.units.c_str(), runs, measure.max_deviation, measure.rms_deviation, outside,
                   tolerance_text(measure.tolerance).c_str(), verdict_text(measure, judgement).c_str());
     report.cases.push_back(case_of(measure, judgement, comparison.outcome,
@@ -392,16 +449,16 @@ std::string regions_text(const SweepComparison& sweep) {
   return all;
 }
 
-std::string text_of(const FirstDifference& first) {
+std::string headline_of(const FirstDifference& first) {
   std::string cell;
   for (const std::size_t index : first.axis_indices)
     cell.append(cell.empty() ? "" : ",").append(std::to_string(index));
   const std::string replicate = std::to_string(first.replicate);
-  std::string text = "  first run that differs: cell " + cell + ", replicate " + replicate;
+  std::string text = "first run that differs: cell " + cell + ", replicate " + replicate;
   if (!first.measure.empty())
-    text += ", " + first.measure + " " + shortest_text(first.baseline) + " against " +
-            shortest_text(first.candidate);
-  return text + "\n  see it: remote-touch replay FILE --cell " + cell + " --replicate " + replicate +
+    text +=
+        ", " + first.measure + " " + value_text(first.baseline) + " against " + value_text(first.candidate);
+  return text + "\nsee it: remote-touch replay FILE --cell " + cell + " --replicate " + replicate +
          " -o trace.h5, of both, then compare\n";
 }
 
@@ -426,13 +483,60 @@ void add_sweep(const ResultComparison& comparison, DraftReport& report) {
   for (const RegionComparison& region : sweep.by_region)
     json["regions"].push_back(region_json(sweep, region));
   report.json["sweep"] = json;
-  if (sweep.first && sweep.problems.empty()) report.text += regions_text(sweep) + text_of(*sweep.first);
+  if (sweep.first && sweep.problems.empty()) report.text += regions_text(sweep);
+}
+
+// --- the headline ---
+
+// Returns one act of the story: "the candidate first touches at 0.434 s, the baseline does not". Empty if
+// the two runs do not differ in it, or if it is not known whether one does it.
+std::string act_of(const ValueComparison& time_s, const std::string& what, bool is_known) {
+  const auto at = [](double time) { return formatted(" at %.3f s", time); };
+  const bool has_first = std::isfinite(time_s.baseline), has_second = std::isfinite(time_s.candidate);
+  if (has_first && has_second && time_s.baseline != time_s.candidate)
+    return "the baseline " + what + at(time_s.baseline) + ", the candidate" + at(time_s.candidate);
+  if (!is_known || has_first == has_second) return {};
+  return has_first ? "the baseline " + what + at(time_s.baseline) + ", the candidate does not"
+                   : "the candidate " + what + at(time_s.candidate) + ", the baseline does not";
+}
+
+// Returns in one line what happens in only one of two runs, or at another time; else how far their proxies
+// are apart. Empty if neither is so.
+std::string story_of(const ResultComparison& comparison) {
+  const std::vector<ValueComparison>& measures = comparison.measures;
+  const auto is_unknown = [](const ValueComparison& measure) {
+    return measure.name.ends_with("popped_through") &&
+           (std::isnan(measure.baseline) || std::isnan(measure.candidate));
+  };
+  const bool is_known = std::none_of(measures.begin(), measures.end(), is_unknown);
+  for (const bool passes : {true, false})
+    for (const ValueComparison& measure : measures) {
+      if (measure.name != (passes ? "first_pop_through_time" : "first_contact_time")) continue;
+      const std::string act = passes ? act_of(measure, "passes through the true surface", is_known)
+                                     : act_of(measure, "first touches", true);
+      if (!act.empty()) return act + "\n";
+    }
+  for (const ColumnComparison& column : comparison.columns->columns)
+    if (column.name == "proxy_position" && column.max > 0)
+      return formatted("the proxies are at most %.4g mm apart\n", 1e3 * column.max);
+  return {};
+}
+
+// The verdict, the first difference, and what happens in only one of two runs.
+std::string headline_of(const ResultComparison& comparison) {
+  constexpr const char* kWords[] = {"same", "REGRESSED", "COULD NOT COMPARE", "", "CHANGED"};
+  std::string text =
+      kWords[static_cast<std::size_t>(comparison.outcome)] + std::string(": ") + comparison.verdict + "\n";
+  if (comparison.columns && comparison.columns->divergence)
+    text += headline_of(*comparison.columns->divergence) + story_of(comparison);
+  if (comparison.sweep && comparison.sweep->first && comparison.sweep->problems.empty())
+    text += headline_of(*comparison.sweep->first);
+  return text;
 }
 
 }  // namespace
 
 ComparisonReport report_of(const ResultComparison& comparison) {
-  constexpr const char* kWords[] = {"same", "REGRESSED", "COULD NOT COMPARE", "", "CHANGED"};
   constexpr CaseState kStates[] = {
       CaseState::passed, CaseState::failed, CaseState::error, {}, CaseState::skipped};
   const auto outcome = static_cast<std::size_t>(comparison.outcome);
@@ -460,9 +564,9 @@ ComparisonReport report_of(const ResultComparison& comparison) {
     report.json["hashes"] = {{"compared", comparison.hashes->compared},
                              {"same_up_to_tick", optional_json(comparison.hashes->same)},
                              {"different_at_tick", optional_json(comparison.hashes->different)}};
-  report.text += std::string(kWords[outcome]) + ": " + comparison.verdict + "\n";
   report.cases.push_back({comparison.kind, kStates[outcome], comparison.verdict});
-  return {report.text, report.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", report.cases};
+  return {headline_of(comparison) + report.text,
+          report.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", report.cases};
 }
 
 }  // namespace remote_touch
