@@ -185,7 +185,7 @@ constexpr const char* kExitCodesOfCompare = R"(Exit code:
 }  // namespace
 
 int command_hashes(const CommandLine& line, const HashesRequest& request) {
-  if (request.every < 1) throw InputError("--every " + std::to_string(request.every), "expected 1 or more");
+  require_every(request.every);
   const FileLock lock = lock_output(line, request.output, {request.trace});
   const StoredTrace trace(request.trace);
   const TickHashes hashes = hashes_of_trace(trace, request.every);

@@ -1,5 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include "core/parameters/parameter.h"
 #include "runners/experiment/sessions/session_file.h"
 #include "runners/experiment/settings/json_parameters.h"
+#include "runners/experiment/settings/provenance.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
 #include "runners/sweep/stored_sweep.h"
@@ -26,6 +28,7 @@ namespace {
 
 struct InspectRequest {
   std::string file;
+  bool all = false;
 };
 
 // "867 x 3": rows, and numbers in a row. An array of a sweep has one value for each cell and replicate. Its
@@ -49,6 +52,7 @@ class Extents {
     if (path.starts_with("/sweep/") && !is_scale && dimensions_ > 1 && size == runs_) return text_;
     return std::to_string(column.length()) + " x " + std::to_string(column.width);
   }
+  const std::string& of_sweep() const { return text_; }
 
  private:
   std::vector<std::string> scales_;
@@ -116,12 +120,15 @@ void print_values(const Column& column) {
 void print_datasets(const Hdf5Content& content) {
   const Extents extents(content);
   const std::vector<std::string> note_kinds = split_names(attribute(content.attributes, "note_kinds"));
+  std::size_t longest = 0, widest = 0;
+  for (const auto& [path, column] : content.datasets)
+    longest = std::max(longest, path.size()), widest = std::max(widest, extents.of(path, column).size());
   for (const auto& [path, column] : content.datasets) {
     const bool has_unit =
         std::holds_alternative<std::vector<double>>(column.values) ||
         (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
-    std::printf("  %-32s %12s  %-6s", path.c_str(), extents.of(path, column).c_str(),
-                has_unit ? column.units.c_str() : "");
+    std::printf("  %-*s %*s  %-5s", static_cast<int>(longest), path.c_str(), static_cast<int>(widest),
+                extents.of(path, column).c_str(), has_unit ? column.units.c_str() : "");
     const auto* const bits = std::get_if<std::vector<std::uint64_t>>(&column.values);
     if (bits && path == "/sweep/notes")
       print_counts(note_kinds, *bits,
@@ -139,13 +146,57 @@ void print_attribute(const std::string& name, std::string value) {
   std::printf("  %-12s %s\n", name.c_str(), value.c_str());
 }
 
-void print_attributes(const std::string& file, const TextAttributes& attributes) {
+// What only programs read, what other lines state, and what is long: only --all prints it.
+constexpr std::array kSeldomRead{"axes",          "columns",    "compiler",  "config",     "default",
+                                 "flags",         "git_commit", "git_dirty", "isa",        "live_parameters",
+                                 "measures",      "note_kinds", "recipe",    "replicates", "schema",
+                                 "source_digest", "version",    "view"};
+// What the summary has, in its order: the title, the command, the maker and the digest.
+constexpr std::array kInSummary{"title", "command", "made by", "digest"};
+
+// Returns the attributes of the summary; an attribute is empty if the file does not have it.
+TextAttributes summary_of(const std::string& file, const TextAttributes& attributes) {
+  std::string maker = attribute(attributes, "version");
+  if (!maker.empty()) maker += ", " + commit_text(attributes);
+  for (const char* const name : {"compiler", "isa"})
+    if (const std::string value = attribute(attributes, name); !maker.empty() && !value.empty())
+      maker += ", " + value;
+  return {{"title", title_of(file, attributes)},
+          {"command", attribute(attributes, "command")},
+          {"made by", maker},
+          {"digest", attribute(attributes, "digest")}};
+}
+
+void print_main_attributes(const std::string& file, const TextAttributes& attributes) {
+  for (const auto& [name, value] : summary_of(file, attributes))
+    if (!value.empty()) print_attribute(name, value);
+  std::size_t more = 0;
+  for (const auto& [name, value] : attributes)
+    if (std::find(kSeldomRead.begin(), kSeldomRead.end(), name) != kSeldomRead.end())
+      ++more;
+    else if (std::find(kInSummary.begin(), kInSummary.end(), name) == kInSummary.end())
+      print_attribute(name, value);
+  if (more > 0) std::printf("  (%zu more with --all, among them the configuration)\n", more);
+}
+
+void print_attributes(const std::string& file, const TextAttributes& attributes, bool all) {
+  if (!all) return print_main_attributes(file, attributes);
   for (const auto& [name, value] : attributes) {
     if (name == "config" && !value.empty())
       std::printf("  config\n%s\n", parse_json(value, file + " config").dump(2).c_str());
     else
       print_attribute(name, value);
   }
+}
+
+// ": trace of 867 ticks", ": sweep of 3 x 4 x 2 runs", ": figure"; empty for a file of another program.
+std::string kind_text(const Hdf5Content& content) {
+  const std::string schema = attribute(content.attributes, "schema"), ours = "remote-touch-";
+  if (!schema.starts_with(ours)) return {};
+  const std::string kind = schema.substr(ours.size(), schema.find('/') - ours.size());
+  for (const auto& [path, column] : content.datasets)
+    if (path == "/trace/time") return ": trace of " + std::to_string(column.length()) + " ticks";
+  return ": " + kind + (kind == "sweep" ? " of " + Extents(content).of_sweep() + " runs" : "");
 }
 
 // Returns what a user may not expect of a result, a line each.
@@ -161,7 +212,7 @@ std::vector<std::string> notes_on(const std::string& file, const Hdf5Content& co
   return notes;
 }
 
-void print_unfinished(const std::string& file) {
+void print_unfinished(const std::string& file, bool all) {
   const UnfinishedSession session = read_unfinished(file);
   std::printf("%s\n  unfinished, %" PRIu64 " ticks and %" PRIu64 " frames%s\n", printable(file).c_str(),
               session.ticks, session.frames, session.is_growing ? "; it is being recorded" : "");
@@ -170,8 +221,9 @@ void print_unfinished(const std::string& file) {
     print_attribute("note", "the last " + std::to_string(session.left_out_bytes) +
                                 " bytes are left out, from the first damaged or incomplete block on");
   print_attribute("next", "remote-touch recover " + printable(file) + " -o FILE");
-  print_attributes(file, session.attributes);
-  print_attributes(file, session.ending);
+  TextAttributes attributes = session.attributes;
+  attributes.insert(attributes.end(), session.ending.begin(), session.ending.end());
+  print_attributes(file, attributes, all);
 }
 
 // --- a folder with the shards of a sweep ---
@@ -258,9 +310,9 @@ void print_arrays(const SweepTally& tally, const Hdf5Content& content) {
   }
 }
 
-// Prints the runs and the measures of a tally, and the extent, unit, meaning and values of each of its
-// arrays.
-void print_tally(const std::string& file, const Hdf5Content& content) {
+// Prints the runs and the measures of a tally. all_arrays: also the extent, unit, meaning and values of each
+// of its arrays.
+void print_tally(const std::string& file, const Hdf5Content& content, bool all_arrays) {
   const StoredTally stored = read_tally(Hdf5Reader(file));
   const SweepTally& tally = stored.tally;
   const CellTally all = tally.over_all_cells();
@@ -273,7 +325,7 @@ void print_tally(const std::string& file, const Hdf5Content& content) {
                 measure_text(all.measures[i], tally.measures[i].units).c_str(),
                 tally.measures[i].long_name.c_str());
   print_equal_runs(tally, attribute(stored.attributes, "config"));
-  print_arrays(tally, content);
+  if (all_arrays) print_arrays(tally, content);
 }
 
 int command_inspect(const CommandLine&, const InspectRequest& request) {
@@ -281,20 +333,20 @@ int command_inspect(const CommandLine&, const InspectRequest& request) {
   std::error_code unreachable;
   if (std::filesystem::is_directory(file, unreachable)) return inspect_folder(file);
   if (is_journal(file)) {
-    print_unfinished(file);
+    print_unfinished(file, request.all);
     return kDone;
   }
   const Hdf5Content content = read_hdf5(file);
-  std::printf("%s\n", printable(file).c_str());
+  std::printf("%s%s\n", printable(file).c_str(), printable(kind_text(content)).c_str());
   for (const std::string& note : notes_on(file, content)) print_attribute("note", printable(note));
   if (is_tally(content.attributes)) {
     TextAttributes others = content.attributes;  // all but those that print_tally() prints
     std::erase_if(others, [](const auto& each) { return each.first.starts_with("measure_"); });
-    print_attributes(file, others);
-    print_tally(file, content);
+    print_attributes(file, others, request.all);
+    print_tally(file, content, request.all);
     return kDone;
   }
-  print_attributes(file, content.attributes);
+  print_attributes(file, content.attributes, request.all);
   print_datasets(content);
   if (attribute(content.attributes, "schema") == schema_name("sweep"))
     print_equal_runs(read_sweep_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
@@ -308,6 +360,8 @@ void add_inspect(Subcommands& commands) {
       commands.add("inspect", "show what a result file contains", command_inspect, kNoThreads);
   inspect->add_option("file", inspected->file, "an HDF5 file, or a folder with the shards of a sweep")
       ->required();
+  inspect->add_flag("--all", inspected->all,
+                    "also show the configuration, all other attributes, and all arrays of a tally");
 }
 
 }  // namespace remote_touch

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/storage/hdf5_file.h"
 #include "core/kernels/kernels.h"
 #include "runners/experiment/catalog/catalog.h"
 
@@ -78,6 +79,13 @@ struct ViewRequest {
   std::string claims = {};  // claims.json of figures; empty: none
 };
 void write_view(const CommandLine& line, const ViewRequest& request);
+
+// Throws InputError unless --every is 1 or more.
+void require_every(int every);
+
+// Returns the title of a result: a figure has one of its own, others have that of their configuration. Empty
+// if there is none.
+std::string title_of(const std::string& file, const TextAttributes& attributes);
 
 // A subcommand is a line in the list below, and one file with the request, the work and the options.
 

@@ -122,15 +122,6 @@ int command_describe(const CommandLine&, const DescribeRequest& request) {
   return kDone;
 }
 
-// Figures have a title of their own. Other results have the title of their configuration; empty if there is
-// none.
-std::string title_of(const std::string& file, const TextAttributes& attributes) {
-  if (const std::string title = attribute(attributes, "title"); !title.empty()) return title;
-  const Json config = parse_json(attribute(attributes, "config"), file + " config");
-  const auto title = config.is_object() ? config.find("title") : config.end();
-  return title != config.end() && title->is_string() ? title->get<std::string>() : std::string();
-}
-
 // Hashes and sessions store no digest.
 std::string digest_text(const std::string& file, const TextAttributes& attributes) {
   const std::string digest = attribute(attributes, "digest");
@@ -193,6 +184,18 @@ int command_cache(const CommandLine& line, const CacheRequest& request) {
 }
 
 }  // namespace
+
+void require_every(int every) {
+  if (every < 1) throw InputError("--every " + std::to_string(every), "expected 1 or more");
+}
+
+std::string title_of(const std::string& file, const TextAttributes& attributes) {
+  const std::string title = attribute(attributes, "title"), config = attribute(attributes, "config");
+  if (!title.empty() || config.empty()) return title;
+  const Json settings = parse_json(config, file + " config");
+  const auto stored = settings.is_object() ? settings.find("title") : settings.end();
+  return stored != settings.end() && stored->is_string() ? stored->get<std::string>() : std::string();
+}
 
 void write_view(const CommandLine& line, const ViewRequest& request) {
   std::vector<std::string> inputs = request.results;
