@@ -75,6 +75,7 @@ inline DepthScene step(const CameraIntrinsics& camera, double z_m, double step_m
 }
 
 inline void add_noise(DepthImage& depth, double sigma_m, unsigned seed) {
+  if (sigma_m == 0) return;  // the library's distribution needs a width
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, sigma_m);
   for (double& z : depth.z_m) z += normal(random);
