@@ -17,6 +17,9 @@ FUNCTIONS = {Kind.FUNCTION_DECL, Kind.CXX_METHOD, Kind.CONSTRUCTOR, Kind.DESTRUC
 
 
 HDF5 = "-I/usr/include/hdf5/serial"  # where Debian has it
+# What the build writes, with other texts.
+BUILD_INFO = "".join(f'#define REMOTE_TOUCH_{name} ""\n'
+                     for name in ("VERSION", "GIT_COMMIT", "GIT_DIRTY", "SOURCES", "COMPILER", "FLAGS"))
 
 
 def flags(root):
@@ -105,7 +108,8 @@ class Walk:
 def parse(root, name, sources):
     """One translation unit of all sources, as the build joins them; None where they do not compile together."""
     text = "".join(f'#include "{source}"\n' for source in sources)
-    unit = clang.Index.create().parse(str(root / name), args=flags(root), unsaved_files=[(str(root / name), text)])
+    unit = clang.Index.create().parse(str(root / name), args=flags(root), unsaved_files=[
+        (str(root / name), text), (str(root / "build_info.h"), BUILD_INFO)])
     errors = [d for d in unit.diagnostics if d.severity >= clang.Diagnostic.Error]
     if errors and len(sources) == 1:
         raise MutationError(f"{sources[0]}: {errors[0].spelling} ({errors[0].location.line})")
