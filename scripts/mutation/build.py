@@ -1,4 +1,5 @@
 """Compiles the mutated sources; what a compiler refuses is left out and replaced by the next of the sample."""
+import hashlib
 import os
 import re
 import subprocess
@@ -13,6 +14,18 @@ OPTIONS = ("-GNinja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-
            "-DCMAKE_CXX_FLAGS=-w -D_GLIBCXX_ASSERTIONS")  # what reads behind the end of a container is found
 NOT_CONSTEXPR = re.compile(r"call to non-.constexpr. function '[^']*?(\w+)\(")
 AT = re.compile(r"^(?:In file included from |\s+from )?(/[^:\s]+):(\d+)[:,]", re.MULTILINE)
+
+
+def digest_of(root, programs):
+    """What a matrix belongs to: all sources and tests that git knows or would, but pages and those of scripts/mutate, and
+    which programs run."""
+    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", *FOLDERS], cwd=root,
+                            check=True, capture_output=True, text=True).stdout
+    digest = hashlib.sha256(" ".join(sorted(programs)).encode())
+    for name in sorted(filter(None, listed.split("\0"))):
+        if "mutat" not in name and not name.endswith(".md") and (root / name).is_file():
+            digest.update(name.encode() + b"\0" + (root / name).read_bytes())
+    return digest.hexdigest()[:12]
 
 
 def refused(log, tree, mutations):
@@ -43,16 +56,16 @@ def configure(tree, build):
         raise MutationError(result.stdout + result.stderr)
 
 
-def compile_all(build):
-    """The compiler's whole output, or "" when everything is built."""
-    result = subprocess.run(["ninja", "-C", build, "-k", "0"], capture_output=True, text=True,
+def compile_them(build, targets):
+    """The compiler's whole output, or "" when the targets (all, if there are none) are built."""
+    result = subprocess.run(["ninja", "-C", build, "-k", "0", *targets], capture_output=True, text=True,
                             env=os.environ | {"LC_ALL": "C", "CCACHE_BASEDIR": str(build)})
     return result.stdout + result.stderr if result.returncode else ""
 
 
-def build_mutants(root, work, order, mutations, count, say):
-    """Builds the first `count` of order (keys of {key: mutation}) that compile. Returns ([key], number of refused ones);
-    the place in the list is the number at run time."""
+def build_mutants(root, work, order, mutations, count, targets, say):
+    """Builds the first `count` of order (keys of {key: mutation}) that compile, into these targets or all. Returns
+    ({number at run time: key}, number of refused ones)."""
     tree, build = work / "tree", work / "build"
     numbers, refused_keys, wanted = {}, set(), count + count // 20
     while True:
@@ -63,7 +76,7 @@ def build_mutants(root, work, order, mutations, count, say):
         active = {numbers[key]: mutations[key] for key in chosen}
         sources.write_tree(root, tree, FOLDERS, FILES, active)
         configure(tree, build)
-        log = compile_all(build)
+        log = compile_them(build, targets)
         if not log:
             return {numbers[key]: key for key in chosen[:count]}, len(refused_keys)
         (work / "build.log").write_text(log)

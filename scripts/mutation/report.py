@@ -12,6 +12,13 @@ def wilson(successes, trials, z=1.959964):
     return (centre - half) / (1 + z * z / trials), (centre + half) / (1 + z * z / trials)
 
 
+def mcnemar(only_one, only_other):
+    """p of the exact test (McNemar 1947) that of the pairs that differ as many differ in either direction."""
+    pairs = only_one + only_other
+    tail = sum(math.comb(pairs, k) for k in range(min(only_one, only_other) + 1)) / 2**pairs
+    return min(1.0, 2 * tail)
+
+
 def fraction(successes, trials):
     low, high = wilson(successes, trials)
     return f"{successes} of {trials} = {successes / max(trials, 1):.3f} [{low:.3f}, {high:.3f}]"

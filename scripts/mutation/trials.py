@@ -12,8 +12,8 @@ import time
 
 STAGES = ("unit", "program", "bits")  # in this order; "bits": the stored results
 SLOW_FIGURE_S = 8  # figures that take this long or longer are not tried
-# A mistake may ask for all memory or write without end.
-LIMITS = ("prlimit", f"--as={8 << 30}", f"--fsize={1 << 30}", "--core=0", "--")
+# A mistake may ask for all memory, write without end, or loop when this script is killed.
+LIMITS = ("setpriv", "--pdeathsig", "KILL", "--", "prlimit", f"--as={8 << 30}", f"--fsize={1 << 30}", "--core=0", "--")
 
 
 @dataclasses.dataclass
@@ -25,12 +25,15 @@ class Test:
     reached: frozenset = frozenset()
 
 
-def unit_tests(build):
+def unit_tests(build, programs=()):
+    """Those of the programs with these names, or of all: for no names, or the target unit_tests."""
     listed = subprocess.run(["ctest", "--show-only=json-v1"], cwd=build, capture_output=True, text=True, check=True)
     for test in json.loads(listed.stdout)["tests"]:
         labels = [p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"]
         if labels == [["unit"]]:
-            program, chosen = (*test["command"], "")[:2]
+            program, chosen = (*test.get("command", [""]), "")[:2]  # what is not built has none
+            if programs and not {"unit_tests", pathlib.Path(program).name} & set(programs):
+                continue
             if not program.endswith("_tests"):
                 yield Test(test["name"], [program, chosen], "unit")
             for name in names_in(program, chosen) if program.endswith("_tests") else ():
@@ -92,7 +95,8 @@ class Machine:
 
     def __init__(self, root, build, scratch):
         self.root, self.build, self.scratch = root, build, scratch
-        scratch.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(scratch, ignore_errors=True)  # of a run that was killed
+        scratch.mkdir(parents=True)
 
     def cache(self, mutation):
         return self.scratch / f"cache-{mutation}"
