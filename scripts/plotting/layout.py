@@ -141,7 +141,7 @@ def arrange(canvas, drawn, size, columns, top_in):
     of heights_in(). (Constrained layout measures everything twice, which takes half of the time of a figure.)"""
     left, right, inner = columns
     needs = [(cell, margins(canvas, axes)) for cell, axes, _ in drawn]
-    below, above = ([max((need[side] for cell, need in needs if cell[0] == row), default=PAD_IN)
+    below, above = ([max((need[side] for cell, need in needs if cell[0] == row), default=0)
                      for row in range(size[0])] for side in (2, 3))
     around = top_in + sum(above) + sum(below) + PAD_IN
     heights, smaller = heights_in(drawn, inner, size, around)

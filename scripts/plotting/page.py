@@ -15,8 +15,8 @@ h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 3rem; border-top: 
 img { max-width: 100%; height: auto; } img.column { width: 34rem; }
 .gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(13.5rem, 1fr)); gap: 1.2rem 1rem; padding: 0; }
 .gallery li { list-style: none; font-size: .88rem; line-height: 1.4; }
-.gallery li > a:first-child { display: block; height: 9rem; margin-bottom: .3rem; border: 1px solid #ddd; background: #fff; }
-.gallery img { width: 100%; height: 100%; object-fit: contain; padding: .3rem; box-sizing: border-box; }
+.gallery li > a:first-child { display: block; height: 10rem; margin-bottom: .3rem; border: 1px solid #ddd; background: #fff; }
+.gallery img { width: 100%; height: 100%; object-fit: contain; padding: .1rem; box-sizing: border-box; }
 .gallery b { display: block; } .gallery p { margin: .15rem 0; }
 a { color: #1f4e79; }
 .table { overflow-x: auto; }
