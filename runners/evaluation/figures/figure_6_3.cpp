@@ -2,6 +2,7 @@
 // commanded angle, the spacing of the points and the contact rule.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -235,19 +236,31 @@ void add_floor_claims(Figure& figure, FigureContext& context) {
   }
 }
 
-void add_panels(Figure& figure, const BoxRun& run, int column) {
-  PanelColumn panels{figure, run.name, "time", "time (s)", column, {{0, 8}}};
-  panels.add("Contact rule " + run.rule, "displacement along y (m)",
-             {{"device_y", CurveStyle::line, "device"}, {"tool_y", CurveStyle::dashed, "tool"}},
-             {{-0.065, 0.005}});
-  panels.add("", "rotation about y (deg)",
-             {{"device_rotation", CurveStyle::line, "device"}, {"tool_rotation", CurveStyle::dashed, "tool"}},
-             {{-3, 33}});
-  panels.add("", "count",
-             {{"points", CurveStyle::steps, "points that touch"},
-              {"clusters", CurveStyle::steps, "10 mm cells that touch"},
-              {"active", CurveStyle::steps, "active constraints"}},
-             {{0, 16}});
+// Adds the motion of device and tool, which both contact rules share, and the counts of each rule.
+void add_panels(Figure& figure, std::span<const BoxRun* const> of_rules) {
+  const std::pair<double, double> shown{0, 8};
+  Panel along = plot("Displacement along y", "time (s)", "displacement (m)", {},
+                     {.at = {{0, 0}}, .x_range = shown, .y_range = {{-0.065, 0.005}}}),
+        about = plot("Rotation about y", "time (s)", "rotation (deg)", {},
+                     {.at = {{0, 1}}, .x_range = shown, .y_range = {{-3, 33}}});
+  for (const BoxRun* run : of_rules) {
+    if (run == of_rules.front()) {
+      along.curves.push_back({run->name, "time", "device_y", CurveStyle::line, "device"});
+      about.curves.push_back({run->name, "time", "device_rotation", CurveStyle::line, "device"});
+    }
+    along.curves.push_back({run->name, "time", "tool_y", CurveStyle::dashed, "tool, " + run->rule});
+    about.curves.push_back({run->name, "time", "tool_rotation", CurveStyle::dashed, "tool, " + run->rule});
+  }
+  figure.panels.push_back(along);
+  figure.panels.push_back(about);
+  for (std::size_t r = 0; r < of_rules.size(); ++r) {
+    const std::string& name = of_rules[r]->name;
+    figure.panels.push_back(plot("Contact rule " + of_rules[r]->rule, "time (s)", "count",
+                                 {{name, "time", "points", CurveStyle::steps, "points that touch"},
+                                  {name, "time", "clusters", CurveStyle::steps, "10 mm cells that touch"},
+                                  {name, "time", "active", CurveStyle::steps, "active constraints"}},
+                                 {.at = {{1, static_cast<int>(r)}}, .x_range = shown, .y_range = {{0, 16}}}));
+  }
 }
 
 void add_pictures(Figure& figure, const FigureContext& context, const BoxRun& run) {
@@ -262,8 +275,8 @@ void add_pictures(Figure& figure, const FigureContext& context, const BoxRun& ru
   beside.eye = {0.16, 0.26, 0.30}, beside.up = {0, 1, 0}, beside.target = {0, -0.004, 0};
   beside.width_m = 0.155;
   above.parts[0].colour = beside.parts[0].colour = 0x4F6F8F;
-  figure.panels.push_back(scene_panel("At 30 deg commanded, from above", 3, 0, above));
-  figure.panels.push_back(scene_panel("The same from the side", 3, 1, beside));
+  figure.panels.push_back(scene_panel("At 30 deg commanded, from above", 2, 0, above));
+  figure.panels.push_back(scene_panel("The same from the side", 2, 1, beside));
 }
 
 // Adds the counts over the spacing of the points, for each contact rule: a table, claims, and two panels. The
@@ -316,9 +329,9 @@ Figure figure_6_3(FigureContext& context) {
   Figure figure{
       "6.3", "A tool in a narrow box of points",
       "A box with a floor and without a top, 110 x 90 mm inside, its points 3 mm apart with normals into the "
-      "box. The device takes the tool in, turns it by 30 deg and back, and takes it out. Left: points as "
-      "constraints with their distance, ahead of the tool. Right: the tool's voxels as printed. The picture "
-      "is of the left run at 30 deg: the tool filled, the device transparent. The last row shows the largest "
+      "box. The device takes the tool in, turns it by 30 deg and back, and takes it out. Contact rule "
+      "look-ahead: points are constraints with their distance, ahead of the tool. Contact rule voxels: the "
+      "tool's voxels as printed. The pictures are of look-ahead at 30 deg: the tool filled, the device transparent. The last row shows the largest "
       "counts of a run over the spacing of its points; the dashed line is at the 6 contact points of 6.3.1. "
       "The number of points that touch depends on their spacing; the tool is never held by more than 6 "
       "constraints. A cell is a part of the tool's surface, 10 mm across, in which a point touches."};
@@ -326,10 +339,10 @@ Figure figure_6_3(FigureContext& context) {
   for (std::size_t r = 0; r < kRules.size(); ++r) {
     const BoxRun& run = runs[r * step];
     figure.tables.push_back(motion_table(run));
-    add_panels(figure, run, static_cast<int>(r));
     add_rule_claims(figure, run);
     add_spacing_claim(figure, std::span(runs).subspan(r * step, step));
   }
+  add_panels(figure, std::array{&runs[0], &runs[step]});
   // A block as long, wide and high as the husky was not made for this box, and stops elsewhere.
   for (const BoxRun& run : std::span(runs).subspan(of_husky))
     add_stop_claim(
@@ -342,7 +355,7 @@ Figure figure_6_3(FigureContext& context) {
   add_floor_claims(figure, context);
   figure.tables.push_back(summary_table(runs));
   add_pictures(figure, context, runs[0]);
-  add_contacts_over_spacing(figure, context.sweep(Sweep::load("fig6.3-spacings")), 4);
+  add_contacts_over_spacing(figure, context.sweep(Sweep::load("fig6.3-spacings")), 3);
   return figure;
 }
 

@@ -170,7 +170,8 @@ def curve(style):
 # steps: each value lasts until the next. bars: from 0. circle: of this radius, in units of the axes. squares: filled cells of a
 # map. intervals: bars from y to z, in the colour of the next curve; an infinite end is an arrow. band: the area between y and z.
 # color_map: cells coloured by z. image: pixels of the colour z = 0xRRGGBB. surface: heights z over (x, y), alone in its panel.
-# letters: a line at x with the name of the value of z above.
+# letters: a line at x with the name of the value of z above. Dots whose x is NaN throughout stand on the right edge; few samples
+# beyond y_range are marked at the end of the axis.
 line, dots, dashed, steps, bars, circle, squares, intervals, band, color_map, image, surface, letters = map(curve, (
     "line", "dots", "dashed", "steps", "bars", "circle", "squares", "intervals", "band", "map", "image", "surface", "letters"))
 
