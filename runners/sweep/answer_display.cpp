@@ -155,43 +155,52 @@ void add_answer_panel(Figure& figure, const Table& of_answer, std::size_t axes) 
   const std::optional<std::size_t> x = axis_of_numbers(answer);
   if (!x) return;
   const Column& axis = table.columns[*x];
-  Panel panel{in_words(table.title), in_words(axis.name), answer.value().name};
+  Panel panel{in_words(table.title), in_words(axis.name), in_words(table.title)};
   for (const AnswerCurve& curve : curves_of(answer, *x)) {
     const std::vector<std::size_t> rows = with_value(answer, curve.rows);
-    if (rows.size() < 2) continue;
+    if (rows.empty()) continue;
     const std::string name = table.name + "_" + std::to_string(panel.curves.size() / 2 + 1);
-    add_curves(figure, panel, table_of_curve(answer, axis, rows, name, curve.label), CurveStyle::band,
-               CurveStyle::line, curve.label);
+    const bool is_line = rows.size() > 1;
+    add_curves(figure, panel, table_of_curve(answer, axis, rows, name, curve.label),
+               is_line ? CurveStyle::band : CurveStyle::intervals,
+               is_line ? CurveStyle::line : CurveStyle::dots, curve.label);
   }
   if (!panel.curves.empty()) figure.panels.push_back(panel);
 }
 
 namespace {
 
-// The end of the axis that a limit is beyond, as the rows' places say.
-enum class Beyond { first, last };
+// A place of a limit that is not inside, and the end of the axis at which it has a mark. An event in all or
+// in none of the runs says on which side its limit is only if the direction is known.
+struct End {
+  const char *place, *table;
+  bool is_last = false, is_beyond = true;
+};
+constexpr End kEnds[] = {
+    {"below the first value", "_below"},           {"above the last value", "_above", true},
+    {"below the values with runs", "_below_runs"}, {"above the values with runs", "_above_runs", true},
+    {"all of the runs", "_all", false, false},     {"none of the runs", "_none", true, false}};
 
-std::vector<std::size_t> rows_beyond(const Table& table, const std::vector<std::size_t>& rows, Beyond end) {
+std::vector<std::size_t> rows_at(const Table& table, const std::vector<std::size_t>& rows, const End& end) {
   const Column& place = table.columns.back();
   const auto& numbers = std::get<std::vector<std::int32_t>>(place.values);
   std::vector<std::size_t> some;
   for (const std::size_t row : rows)
-    if (place.value_names[static_cast<std::size_t>(numbers[row])].starts_with(end == Beyond::first ? "below"
-                                                                                                   : "above"))
-      some.push_back(row);
+    if (place.value_names[static_cast<std::size_t>(numbers[row])] == end.place) some.push_back(row);
   return some;
 }
 
-// Puts limits that are not known at the end of the axis, with intervals that are open beyond it.
-void put_at_end(Table& table, const Column& along, Beyond end) {
+// Puts limits that are not known at the end of the axis; their intervals are open beyond it.
+void put_at_end(Table& table, const Column& along, const End& end) {
   const std::vector<double>& x = *numbers_in(along);
-  const bool is_last = end == Beyond::last;
-  const double at = is_last ? max_of(x) : min_of(x), infinity = std::numeric_limits<double>::infinity();
+  const double at = end.is_last ? max_of(x) : min_of(x), infinity = std::numeric_limits<double>::infinity();
   auto &values = std::get<std::vector<double>>(table.columns[1].values),
-       &inner = std::get<std::vector<double>>(table.columns[is_last ? 2 : 3].values),
-       &outer = std::get<std::vector<double>>(table.columns[is_last ? 3 : 2].values);
+       &inner = std::get<std::vector<double>>(table.columns[end.is_last ? 2 : 3].values),
+       &outer = std::get<std::vector<double>>(table.columns[end.is_last ? 3 : 2].values);
   for (std::size_t row = 0; row < values.size(); ++row) {
-    values[row] = at, outer[row] = is_last ? infinity : -infinity;
+    values[row] = at;
+    if (!end.is_beyond) continue;
+    outer[row] = end.is_last ? infinity : -infinity;
     if (std::isnan(inner[row])) inner[row] = at;
   }
 }
@@ -217,7 +226,7 @@ void add_answer_limits(Figure& figure, const Table& of_answer, std::size_t axes,
     }
     x = {"row", "1", "number of the row", places};
   }
-  Panel panel{in_words(table.title), x_label, answer.value().name};
+  Panel panel{in_words(table.title), x_label, in_words(along.name)};
   int number = 0;
   for (const AnswerCurve& curve : curves) {
     const std::string name = table.name + "_" + std::to_string(++number);
@@ -225,13 +234,11 @@ void add_answer_limits(Figure& figure, const Table& of_answer, std::size_t axes,
     if (!known.empty())
       add_curves(figure, panel, table_of_curve(answer, x, known, name, curve.label), CurveStyle::intervals,
                  known.size() > 1 && axis ? CurveStyle::line : CurveStyle::dots, curve.label);
-    for (const Beyond end : {Beyond::first, Beyond::last}) {
-      const auto rows = rows_beyond(table, curve.rows, end);
+    for (const End& end : kEnds) {
+      const auto rows = rows_at(table, curve.rows, end);
       if (rows.empty()) continue;
-      const std::string where = end == Beyond::first ? "below the first value" : "above the last value";
-      const std::string label = (curve.label.empty() ? "" : curve.label + ": ") + where;
-      Table marks =
-          table_of_curve(answer, x, rows, name + (end == Beyond::first ? "_below" : "_above"), label);
+      const std::string label = (curve.label.empty() ? "" : curve.label + ": ") + end.place;
+      Table marks = table_of_curve(answer, x, rows, name + end.table, label);
       put_at_end(marks, along, end);
       add_curves(figure, panel, std::move(marks), CurveStyle::intervals, CurveStyle::dots, label);
     }

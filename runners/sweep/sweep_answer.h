@@ -15,8 +15,7 @@ namespace remote_touch {
 // Adds a panel to the figure for a table of an answer: first `axes` columns of axes, then those of
 // add_estimates(). It has the value over the first axis of numbers, its interval as a band, and a curve for
 // each combination of the other axes. Each curve has a table of its own, with the rows that have a value.
-// Adds nothing if there is no axis of numbers with two values, if there are more than 8 curves, or if no
-// curve has two points.
+// Adds nothing if there is no axis of numbers with two values, or if there are more than 8 curves.
 void add_answer_panel(Figure& figure, const Table& table, std::size_t axes);
 
 // Adds a panel for a table of limits along an axis, with their intervals as bars; an open end is an arrow. A

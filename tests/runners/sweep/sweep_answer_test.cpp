@@ -74,7 +74,7 @@ TEST(SweepAnswers, DrawTheLimitOverTheFirstAxisOfNumbers) {
   ASSERT_EQ(answer.panels.size(), 1u);
   const Panel& panel = answer.panels.front();
   EXPECT_EQ(panel.x_label, "r_c");
-  EXPECT_EQ(panel.y_label, "value");
+  EXPECT_EQ(panel.y_label, "x");
   ASSERT_EQ(panel.curves.size(), 4u);
   EXPECT_EQ(panel.curves[0].style, CurveStyle::intervals);
   EXPECT_EQ(panel.curves[1].label, "method = old");
@@ -212,6 +212,20 @@ TEST(SweepAnswers, AdjustAllTestsTogether) {
   for (const Table& table : answer.tables) names.push_back(table.name);
   for (const char* name : {"limit_difference", "limit_ratio"})
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+}
+
+// Without a direction a method whose runs are all equal still has its marks.
+TEST(SweepAnswers, DrawMethodsThatAreNeverLost) {
+  SweepResult result = sweep();
+  for (double& value : std::get<std::vector<double>>(result.measures[0].values)) value = 0;
+  SweepQuestion question;
+  question.limit = "popped_through", question.along = "x";
+  const Figure answer = sweep_answer(result, config_over_x(""), question);
+  ASSERT_EQ(answer.panels.size(), 1u);
+  const std::vector<Curve>& curves = answer.panels.front().curves;
+  ASSERT_EQ(curves.size(), 4u);
+  EXPECT_EQ(curves[1].label, "method = old: none of the runs");
+  EXPECT_EQ(curves[3].label, "method = new: none of the runs");
 }
 
 // A limit that is never reached is a mark at the end of the axis, with a legend entry.
