@@ -239,20 +239,20 @@ std::string difference(const SweepResult& stored, std::size_t at, const SweepRes
   return "";
 }
 
-std::vector<std::uint64_t> chosen_runs(const SweepResult& part) {
+std::vector<std::uint64_t> chosen_runs(const SweepResult& part, bool every_one) {
   std::vector<std::uint64_t> chosen, all;
   for (std::size_t place = 0; place < part.held_count(); ++place)
     if (part.state[place] == RunState::done || part.state[place] == RunState::failed)
-      (is_rechecked(part.run_at(place)) ? chosen : all).push_back(part.run_at(place));
+      (every_one || is_rechecked(part.run_at(place)) ? chosen : all).push_back(part.run_at(place));
   if (chosen.empty() && !all.empty()) chosen.push_back(all.front());
   return chosen;
 }
 
 // Returns the indices of the chosen cells of the tally.
-std::vector<std::size_t> chosen_cells(const SweepTally& tally) {
+std::vector<std::size_t> chosen_cells(const SweepTally& tally, bool every_one) {
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < tally.cells.size(); ++i)
-    if (is_rechecked(tally.cells[i])) chosen.push_back(i);
+    if (every_one || is_rechecked(tally.cells[i])) chosen.push_back(i);
   if (chosen.empty() && !tally.cells.empty()) chosen.push_back(tally.cells.size() / 2);
   return chosen;
 }
@@ -287,30 +287,37 @@ std::vector<std::uint64_t> held_runs(const SweepTally& tally, std::uint64_t cell
   return runs;
 }
 
+// thing: "run" or "cell". how: what differs; empty if nothing does.
+void add_to(Recheck& check, const RecheckOptions& options, const std::string& thing, std::uint64_t number,
+            const std::string& how) {
+  if (options.each) options.each(number, how);
+  if (!how.empty()) check.different.push_back(thing + " " + std::to_string(number) + ": " + how);
+}
+
 }  // namespace
 
 Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options) {
-  const std::vector<std::uint64_t> runs = chosen_runs(part);
+  const std::vector<std::uint64_t> runs = chosen_runs(part, options.all);
   Recheck check{runs.size()};
   make_again(sweep, runs, options, [&](const SweepResult& now) {
     for (std::size_t place = 0; place < now.held_count(); ++place) {
-      const std::string how = difference(part, part.place_of(now.run_at(place)).value(), now, place);
-      if (!how.empty()) check.different.push_back("run " + std::to_string(now.run_at(place)) + ": " + how);
+      const std::size_t run = now.run_at(place);
+      add_to(check, options, "run", run, difference(part, part.place_of(run).value(), now, place));
     }
   });
   return check;
 }
 
 Recheck recheck(const SweepTally& tally, const Sweep& sweep, const RecheckOptions& options) {
-  const std::vector<std::size_t> chosen = chosen_cells(tally);
+  const std::vector<std::size_t> chosen = chosen_cells(tally, options.all);
   Recheck check{0, chosen.size(), tally.cells.size()};
   for (const std::size_t i : chosen) {
     const std::vector<std::uint64_t> runs = held_runs(tally, tally.cells[i]);
     SweepTally now(tally, tally.keeps_events);
     make_again(sweep, runs, options, [&](const SweepResult& made) { add_runs(made, now); });
     check.made += runs.size();
-    const std::string how = difference(tally.measures, tally.tallies[i], now.tallies.front());
-    if (!how.empty()) check.different.push_back("cell " + std::to_string(tally.cells[i]) + ": " + how);
+    add_to(check, options, "cell", tally.cells[i],
+           difference(tally.measures, tally.tallies[i], now.tallies.front()));
   }
   return check;
 }

@@ -200,6 +200,10 @@ struct RecheckOptions {
   const Kernels* kernels = nullptr;         // null: the machine's best
   const std::atomic<bool>* stop = nullptr;  // when set, the check ends with Interrupted
   std::function<void(std::size_t done, std::size_t total)> progress = {};
+  bool all = false;  // every run, instead of those with is_rechecked()
+  // Called with each run that was made again, of a tally with each cell, in their order. difference: empty if
+  // it is as stored.
+  std::function<void(std::uint64_t number, const std::string& difference)> each = {};
 };
 struct Recheck {
   std::size_t made = 0;                 // number of runs that were made again
@@ -210,8 +214,8 @@ struct Recheck {
 };
 
 // Makes the finished and failed runs with is_rechecked() again, or the first run if there is no such run.
-// Compares state, values and notes, bit for bit. part: a shard or a whole sweep. sweep: read from the
-// configuration of the file. Throws Interrupted, and std::bad_alloc.
+// With options.all, makes all of them. Compares state, values and notes, bit for bit. part: a shard or a
+// whole sweep. sweep: read from the configuration of the file. Throws Interrupted, and std::bad_alloc.
 Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options);
 
 // The same for a tally, which does not keep single runs. Makes all runs of the cells with is_rechecked()

@@ -36,6 +36,7 @@ struct ReplayRequest {
   int replicate = 0;
   std::string output;
   bool strict = false;
+  bool all = false;
 };
 
 struct RecheckRequest {
@@ -123,7 +124,10 @@ void print_distrust(const TextAttributes& attributes) {
     std::printf("  note: %s\n", printable(distrust).c_str());
 }
 
-int command_replay(const CommandLine& line, const ReplayRequest& request) {
+int replay_one(const CommandLine& line, const ReplayRequest& request) {
+  for (const auto& [option, value] : {std::pair("--cell", request.cell), {"--output", request.output}})
+    if (value.empty())
+      throw InputError(std::string(option) + " is required", "see remote-touch replay --help");
   const FileLock lock = lock_output(line, request.output, {request.sweep});
   const KeptSweep stored = read_kept_sweep(request.sweep, Extent::as_stored);
   const Sweep sweep = sweep_of(stored.attributes, request.sweep);
@@ -296,6 +300,114 @@ class Repro {
   const StoredResult result_;
 };
 
+// --- replay --all ---
+
+struct ReplayedRuns {
+  std::size_t made = 0, different = 0;  // runs; of a tally, `different` counts cells
+  std::size_t refused = 0, others = 0;  // files
+};
+
+void print_replayed(const std::string& what, const std::string& difference) {
+  std::printf("%s: %s%s\n", printable(what).c_str(),
+              difference.empty() ? "as stored" : "DIFFERS: ", printable(difference).c_str());
+}
+
+void replay_sweep(const CommandLine& line, const std::string& file, ReplayedRuns& replayed) {
+  Progress progress("replay " + file, line.quiet);
+  const KeptSweep stored = read_kept_sweep(file, Extent::as_stored);
+  const bool is_tally = std::holds_alternative<SweepTally>(stored.kept);
+  const auto show = [&](std::size_t done, std::size_t total) { progress.update(done, total, 0, "runs"); };
+  const auto print = [&](std::uint64_t number, const std::string& difference) {
+    progress.clear();
+    print_replayed(
+        file + " " +
+            (is_tally ? "--cell " + cell_text(stored.grid(), number) : option_of_run(stored.grid(), number)),
+        difference);
+  };
+  const Recheck check = recheck_of(stored, file, {line.kernels, line.stop, show, true, print});
+  replayed.made += check.made, replayed.different += check.different.size();
+  progress.clear();
+  if (!check.different.empty()) print_other_build(stored.attributes);
+  print_distrust(stored.attributes);
+}
+
+void replay_trace(const CommandLine& line, const std::string& file, ReplayedRuns& replayed) {
+  const ResultComparison comparison = Repro(line, file).again();
+  const bool is_same = comparison.outcome == Outcome::same;
+  ++replayed.made, replayed.different += is_same ? 0 : 1;
+  print_replayed(file, is_same ? "" : comparison.verdict);
+}
+
+// "trace", "sweep" or "tally"; empty for a file that has no runs of its own, and for the trace of a live
+// session, in which a person moved.
+std::string replayed_kind(const std::string& file) {
+  const TextAttributes attributes = Hdf5Reader(file).attributes();
+  if (attribute(attributes, "command").find(" live ") != std::string::npos) return {};
+  for (const char* kind : {"trace", "sweep", "tally"})
+    if (attribute(attributes, "schema").starts_with(std::string("remote-touch-") + kind + "/")) return kind;
+  return {};
+}
+
+void replay_file(const CommandLine& line, const std::string& file, const std::string& kind,
+                 ReplayedRuns& replayed) {
+  if (kind == "trace")
+    replay_trace(line, file, replayed);
+  else
+    replay_sweep(line, file, replayed);
+}
+
+// Replays the results in a folder. A file that cannot be replayed does not stop the others.
+void replay_folder(const CommandLine& line, const std::string& folder, ReplayedRuns& replayed) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".h5") files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  for (const std::string& file : files) try {
+      const std::string kind = replayed_kind(file);
+      if (kind.empty())
+        ++replayed.others;
+      else
+        replay_file(line, file, kind, replayed);
+    } catch (const InputError& error) {
+      ++replayed.refused;
+      std::printf("COULD NOT REPLAY %s\n", printable(error.what()).c_str());
+    }
+  if (replayed.others == files.size())
+    throw InputError(folder, "has no traces and no sweeps: expected a folder of results");
+}
+
+void print_summary(const ReplayedRuns& replayed) {
+  const auto counted = [](std::size_t count, const char* thing) {
+    return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+  };
+  std::string text = counted(replayed.made, "run") + " made again: ";
+  if (replayed.different > 0)
+    text += std::to_string(replayed.different) + " different";
+  else
+    text += replayed.made > 0 ? "all as stored" : "none is stored";
+  if (replayed.refused > 0) text += "; " + counted(replayed.refused, "file") + " could not be replayed";
+  if (replayed.others > 0) text += "; " + counted(replayed.others, "file") + " of other kinds left out";
+  std::puts(text.c_str());
+}
+
+int replay_all(const CommandLine& line, const std::string& what) {
+  ReplayedRuns replayed;
+  if (std::error_code unreachable; std::filesystem::is_directory(what, unreachable)) {
+    replay_folder(line, what, replayed);
+  } else {
+    const std::string kind = replayed_kind(what);
+    if (kind.empty())
+      throw InputError(what, "cannot be replayed: expected a trace of run or replay, a sweep or a tally");
+    replay_file(line, what, kind, replayed);
+  }
+  print_summary(replayed);
+  return replayed.refused > 0 ? kBadInput : replayed.different > 0 ? kCheckFailed : kDone;
+}
+
+int command_replay(const CommandLine& line, const ReplayRequest& request) {
+  return request.all ? replay_all(line, request.sweep) : replay_one(line, request);
+}
+
 int command_repro(const CommandLine& line, const ReproRequest& request) {
   const Repro repro(line, request.file);
   repro.print();
@@ -325,19 +437,24 @@ int command_recover(const CommandLine& line, const RecoverRequest& request) {
 }  // namespace
 
 void add_replay(Subcommands& commands) {
-  auto [again, replay] =
-      commands.add("replay", "run one cell of a sweep again and store its trace", command_replay);
-  again->add_option("sweep", replay->sweep, "the result of a sweep; `run` replays a live session")
-      ->required();
+  auto [again, replay] = commands.add(
+      "replay", "run one cell of a sweep again and store its trace; with --all, check every run of a result",
+      command_replay);
   again
-      ->add_option(
-          "--cell", replay->cell,
-          "index on each axis, from 0, for example 3,40; or a value of each, for example noise_sigma_m=0.003,rule=none")
+      ->add_option("sweep", replay->sweep,
+                   "the result of a sweep, with --all also a trace or a folder; `run` replays a live session")
       ->required();
-  again->add_option("--replicate", replay->replicate, "number of the replicate, from 0");
-  again->add_option("-o,--output", replay->output, "the HDF5 file to write")->required();
-  again->add_flag("--strict", replay->strict,
-                  "a note on the run is an error: exit code 2, and nothing is written");
+  CLI::Option* const all = again->add_flag(
+      "--all", replay->all,
+      "make every run again and compare it with the stored one, bit for bit: of a sweep, of a trace, or of all "
+      "results in a folder; a line for each run, of a tally for each cell");
+  all->excludes(again->add_option("--cell", replay->cell,
+                                  "index on each axis, from 0, for example 3,40; or a value of each, for "
+                                  "example noise_sigma_m=0.003,rule=none"));
+  all->excludes(again->add_option("--replicate", replay->replicate, "number of the replicate, from 0"));
+  all->excludes(again->add_option("-o,--output", replay->output, "the HDF5 file to write"));
+  all->excludes(again->add_flag("--strict", replay->strict,
+                                "a note on the run is an error: exit code 2, and nothing is written"));
 }
 
 void add_recheck(Subcommands& commands) {

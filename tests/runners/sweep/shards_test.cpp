@@ -162,6 +162,21 @@ TEST_F(Rechecks, TakeOnlyTheRunsOfAPart) {
   EXPECT_TRUE(recheck(part, sweep_, {}).different.empty());
 }
 
+TEST_F(Rechecks, MakeEveryRunIfAsked) {
+  result_.notes[50] ^= 1;
+  std::vector<std::uint64_t> runs, wrong;
+  RecheckOptions options;
+  options.all = true;
+  options.each = [&](std::uint64_t run, const std::string& difference) {
+    runs.push_back(run);
+    if (!difference.empty()) wrong.push_back(run);
+  };
+  EXPECT_EQ(recheck(result_, sweep_, options).made, 120u);
+  ASSERT_EQ(runs.size(), 120u);
+  EXPECT_TRUE(std::is_sorted(runs.begin(), runs.end()));
+  EXPECT_EQ(wrong, std::vector<std::uint64_t>{50});
+}
+
 TEST_F(Rechecks, EndWhenTheyAreStopped) {
   std::atomic<bool> stop{true};
   EXPECT_THROW(recheck(result_, sweep_, {nullptr, &stop}), Interrupted);
@@ -175,6 +190,9 @@ TEST_F(Rechecks, CompareAWholeCellOfATally) {
   EXPECT_TRUE(recheck(tally, sweep, {}).different.empty());
   EXPECT_EQ(recheck(tally, sweep, {}).cells, 1u);
   EXPECT_EQ(recheck(tally, sweep, {}).cells_in, 12u);
+  RecheckOptions every_cell;
+  every_cell.all = true;
+  EXPECT_EQ(recheck(tally, sweep, every_cell).cells, 12u);
   tally.tallies[6].measures[0].add(0.001);
   ASSERT_EQ(recheck(tally, sweep, {}).different.size(), 1u);
   EXPECT_HAS(recheck(tally, sweep, {}).different[0], "cell 6: mean of max_penetration = ");
