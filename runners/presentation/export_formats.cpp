@@ -147,6 +147,9 @@ void export_result(const ExportFormat& format, const ExportJob& job) {
   if (format.traces_only && kind != "trace")
     throw InputError(job.result.file(),
                      "is a " + kind + ": expected a trace for " + format.ending + ", or .csv or .npz");
+  if (job.every > 1 && kind != "trace")
+    throw InputError("--every " + std::to_string(job.every),
+                     "only for a trace, but " + job.result.file() + " is a " + kind + ": expected a trace");
   format.write(job);
   job.go_on();
 }

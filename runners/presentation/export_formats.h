@@ -36,7 +36,11 @@ struct ExportJob {
   std::function<void(const std::filesystem::path& file, const std::string& opening)> require_allowed;
   const Kernels* kernels = nullptr;         // pre: set
   const std::atomic<bool>* stop = nullptr;  // when set, ends with Interrupted
+  int every = 1;                            // one in so many ticks of a trace is kept, and the last one
 
+  bool keeps(std::size_t tick, std::size_t ticks) const {
+    return tick % static_cast<std::size_t>(every) == 0 || tick + 1 == ticks;
+  }
   void begin(const std::filesystem::path& file, const std::string& opening) const {
     if (require_allowed) require_allowed(file, opening);
     files.begin(file);
@@ -97,7 +101,8 @@ std::string known_formats();
 const ExportFormat& export_format(const std::filesystem::path& output);
 
 // Writes all files of the export; they appear when job.files is finished. Throws InputError for a result of a
-// kind that the format does not accept, for one that is damaged, and as job.files does. Throws Interrupted.
+// kind that the format or job.every does not accept, for one that is damaged, and as job.files does. Throws
+// Interrupted.
 void export_result(const ExportFormat& format, const ExportJob& job);
 
 // Messages of ROS 2: their definitions, and their bytes as DDS sends them (CDR, little-endian). There are
@@ -252,6 +257,8 @@ std::string exported_kind(const Hdf5Reader& result);
 // A figure has its own tables.
 // The columns of each table have the same length. Throws InputError for a file that is damaged.
 std::vector<Table> result_tables(const Hdf5Reader& result);
+// The same with the ticks that the job keeps. If these are not all, the first column is their number, `tick`.
+std::vector<Table> result_tables(const ExportJob& job);
 
 // Returns the root attributes of the result, with the names of axes in its tables.
 TextAttributes exported_attributes(const Hdf5Reader& result, const std::vector<Table>& tables);

@@ -155,8 +155,9 @@ std::string cloud_message(const ExportedFrame& frame) {
 
 class RunMessages {
  public:
-  RunMessages(const ExportedRun& run, McapWriter& mcap)
-      : run_(run),
+  RunMessages(const ExportJob& job, const ExportedRun& run, McapWriter& mcap)
+      : job_(job),
+        run_(run),
         mcap_(mcap),
         cloud_(mcap.add_topic("/cloud", kPointCloud)),
         hip_(mcap.add_topic("/hip", kPose)),
@@ -172,6 +173,7 @@ class RunMessages {
   // Adds the messages of the remaining ticks before time_s, in the order of time.
   void add_ticks_before(double time_s) {
     for (; tick_ < run_.ticks() && run_.time_s[tick_] < time_s; ++tick_) {
+      if (!job_.keeps(tick_, run_.ticks())) continue;
       const std::uint64_t now = nanoseconds(run_.time_s[tick_]);
       const auto add = [&](std::uint16_t channel, const std::string& data) {
         mcap_.message(channel, now, now, data);
@@ -184,6 +186,7 @@ class RunMessages {
   }
 
  private:
+  const ExportJob& job_;
   const ExportedRun& run_;
   McapWriter& mcap_;
   const std::uint16_t cloud_, hip_, proxy_, force_;
@@ -346,8 +349,11 @@ void write_mcap(const ExportJob& job) {
   const ExportedRun run = exported_run(job);
   job.begin(job.output, McapWriter::opening());
   McapWriter mcap([&](const std::string& bytes) { job.files.append(bytes); });
-  RunMessages messages(run, mcap);
-  mcap.add_metadata("remote-touch", job.result.attributes());
+  RunMessages messages(job, run, mcap);
+  TextAttributes attributes = job.result.attributes();
+  if (job.every > 1)
+    attributes.emplace_back("ticks", "one in " + std::to_string(job.every) + " is kept, and the last one");
+  mcap.add_metadata("remote-touch", attributes);
   for_each_frame(job, run, [&](const ExportedFrame& frame) { messages.add(frame); });
   messages.add_ticks_before(std::numeric_limits<double>::infinity());
   mcap.finish();

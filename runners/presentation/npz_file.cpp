@@ -161,7 +161,7 @@ void ZipArchive::finish() {
 }
 
 void write_npz(const ExportJob& job) try {
-  const std::vector<Table> tables = result_tables(job.result);
+  const std::vector<Table> tables = result_tables(job);
   const std::string format = npy_text("remote-touch export 1");
   job.begin(job.output, ZipArchive::opening(kFormat, format));
   ZipArchive archive([&](const std::string& bytes) { job.files.append(bytes); });

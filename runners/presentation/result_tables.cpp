@@ -104,6 +104,28 @@ void add_number(std::string& line, Number number) {
   line.append(text.begin(), end);
 }
 
+Table thinned(Table table, const ExportJob& job) {
+  const std::size_t rows = table.columns.front().length();
+  std::vector<std::int32_t> ticks;
+  for (std::size_t i = 0; i < rows; ++i)
+    if (job.keeps(i, rows)) ticks.push_back(static_cast<std::int32_t>(i));
+  for (Column& column : table.columns)
+    std::visit(
+        [&, width = column.width]<class Value>(std::vector<Value>& values) {
+          std::vector<Value> kept;
+          for (const std::int32_t tick : ticks) {
+            const auto row = values.begin() + static_cast<std::ptrdiff_t>(tick) * width;
+            kept.insert(kept.end(), row, row + width);
+          }
+          values = std::move(kept);
+        },
+        column.values);
+  const std::string meaning =
+      "number of the tick, from 0; one in " + std::to_string(job.every) + " is kept, and the last one";
+  table.columns.insert(table.columns.begin(), {"tick", "1", meaning, std::move(ticks), 1, {}});
+  return table;
+}
+
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string inside = text;
@@ -163,6 +185,13 @@ std::vector<Table> result_tables(const Hdf5Reader& result) {
   return tables;
 }
 
+std::vector<Table> result_tables(const ExportJob& job) {
+  std::vector<Table> tables = result_tables(job.result);
+  if (job.every > 1)
+    for (Table& table : tables) table = thinned(std::move(table), job);
+  return tables;
+}
+
 TextAttributes exported_attributes(const Hdf5Reader& result, const std::vector<Table>& tables) {
   TextAttributes all = result.attributes();
   for (auto& [name, value] : all) {
@@ -206,7 +235,7 @@ std::string csv_rows(const Table& table, std::size_t first, std::size_t end) {
 }
 
 void write_csv(const ExportJob& job) {
-  write_csv(result_tables(job.result), job);
+  write_csv(result_tables(job), job);
 }
 
 void write_csv(const std::vector<Table>& tables, const ExportJob& job) {

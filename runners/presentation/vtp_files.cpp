@@ -59,12 +59,15 @@ std::string counts_of(const VtkPolyData& data) {
 
 VtkPolyData paths_of(const ExportJob& job, const ExportedRun& run) {
   VtkPolyData data;
-  data.points = run.hip_W;
-  data.points.insert(data.points.end(), run.proxy_W.begin(), run.proxy_W.end());
-  data.lines.resize(2);
-  for (std::size_t i = 0; i < data.points.size(); ++i)
-    data.lines[i / run.ticks()].push_back(static_cast<std::int64_t>(i));
-  const std::vector<Table> tables = result_tables(job.result);
+  for (const std::vector<Vec3>* const path : {&run.hip_W, &run.proxy_W}) {
+    std::vector<std::int64_t>& line = data.lines.emplace_back();
+    for (std::size_t i = 0; i < run.ticks(); ++i) {
+      if (!job.keeps(i, run.ticks())) continue;
+      line.push_back(static_cast<std::int64_t>(data.points.size()));
+      data.points.push_back((*path)[i]);
+    }
+  }
+  const std::vector<Table> tables = result_tables(job);
   for (const Column& column : tables.front().columns)
     std::visit(
         [&]<class Value>(const std::vector<Value>& values) {

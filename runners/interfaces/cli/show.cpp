@@ -51,6 +51,7 @@ struct CacheRequest {
 struct ExportRequest {
   std::string file;
   std::string output;  // its ending is the format
+  int every = 1;
 };
 
 bool is_sweep_file(const std::string& file) {
@@ -86,6 +87,7 @@ int command_view(const CommandLine& line, const ViewRequest& request) {
 }
 
 int command_export(const CommandLine& line, const ExportRequest& request) {
+  require_every(request.every);
   const ExportFormat& format = export_format(request.output);
   require_different_file(request.output, request.file);
   require_writable(request.output);
@@ -95,11 +97,13 @@ int command_export(const CommandLine& line, const ExportRequest& request) {
   const auto require_allowed = [&](const std::filesystem::path& file, const std::string& opening) {
     require_export(line, file.string(), {request.file}, opening);
   };
-  export_result(format, {result, request.output, files, require_allowed, line.kernels, line.stop});
+  export_result(format,
+                {result, request.output, files, require_allowed, line.kernels, line.stop, request.every});
   const std::size_t count = files.count();
   files.finish();
-  std::printf("%s: %zu file%s, %.1f MB\n", printable(request.output).c_str(), count, count == 1 ? "" : "s",
-              1e-6 * static_cast<double>(files.size()));
+  const std::string kept = request.every > 1 ? formatted(", one in %d ticks", request.every) : "";
+  std::printf("%s: %zu file%s, %.1f MB%s\n", printable(request.output).c_str(), count, count == 1 ? "" : "s",
+              1e-6 * static_cast<double>(files.size()), kept.c_str());
   return kDone;
 }
 
@@ -257,6 +261,8 @@ void add_export(Subcommands& commands) {
       ->add_option("output", exported->output,
                    "the file to write; its ending is the format: " + known_formats())
       ->required();
+  exporting->add_option("--every", exported->every,
+                        "keep only every n-th tick of a trace, and the last one; numbers stay as they are");
 }
 
 void add_cite(Subcommands& commands) {

@@ -33,6 +33,27 @@ TEST(ResultTables, ATraceHasOneTableOfItsColumnsAndTheDurations) {
   EXPECT_EQ(tables[0].columns.back().name, "step_duration");
 }
 
+TEST(ResultTables, OneInSoManyTicksIsKeptAndTheLast) {
+  const TestFolder folder("result_tables");
+  const Trace trace = awkward_trace(6);
+  write_trace(folder / "a.h5", trace, kProvenance, {1, 2, 3, 4, 5, 6});
+  const Hdf5Reader result(folder / "a.h5");
+  NewFiles files;
+  const std::vector<Table> tables = result_tables({result, "x.csv", files, {}, nullptr, nullptr, 2});
+  ASSERT_EQ(tables.size(), 1u);
+  const std::vector<Column>& columns = tables[0].columns;
+  EXPECT_EQ(columns.front().name, "tick");
+  EXPECT_EQ(std::get<std::vector<std::int32_t>>(columns.front().values),
+            (std::vector<std::int32_t>{0, 2, 4, 5}));
+  EXPECT_EQ(std::get<std::vector<double>>(columns.back().values), (std::vector<double>{1, 3, 5, 6}));
+  const Column whole = trace.columns()[1];  // a vector
+  ASSERT_EQ(columns[2].name, whole.name);
+  const auto &all = std::get<std::vector<double>>(whole.values),
+             &some = std::get<std::vector<double>>(columns[2].values);
+  ASSERT_EQ(some.size(), 12u);
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(some[10]), std::bit_cast<std::uint64_t>(all[16]));
+}
+
 SweepResult two_by_two() {
   SweepResult sweep;
   sweep.axes = {{"rule", "1", "", std::vector<std::int32_t>{0, 1}, 1, {"none", "all"}},
