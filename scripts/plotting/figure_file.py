@@ -99,7 +99,7 @@ class Figure:
         number = f"Equation {name[2:]}" if name.startswith("eq") else f"Figure {name}"
         title = self.attributes.get("title", "")
         if name == "analysis" and title:  # of a sweep, and no figure with a number
-            return title
+            return title[:1].upper() + title[1:]
         return f"{number}: {title}" if title else number
 
 

@@ -122,8 +122,8 @@ def parts_of(label):
 
 
 def base(label):
-    """What a curve is about: `look-ahead` for `look-ahead, derived` and for `measured, look-ahead`."""
-    return (parts_of(label) or [label])[0]
+    """What a curve is about: `look-ahead` for `look-ahead, derived`, `measured, look-ahead` and `method = look-ahead: no run`."""
+    return re.sub(r"^(renderer|method) = ", "", (parts_of(label) or [label])[0]).split(": ")[0]
 
 
 def variant(label):

@@ -1,7 +1,7 @@
 """Shows the lengths of a figure in mm."""
 import dataclasses
 
-from .typeset import SHOWN_UNITS, in_mm, in_shown_unit
+from .typeset import SHOWN_UNITS, in_mm, in_shown_unit, without_json
 
 
 def shown_column(column):
@@ -15,7 +15,7 @@ def shown_column(column):
 def shown_curve(curve):
     columns = {name: shown_column(getattr(curve, name)) for name in ("x", "y", "z")}
     factor = SHOWN_UNITS.get(curve.x.units, (1, ""))[0]
-    return dataclasses.replace(curve, **columns, radius=factor * curve.radius, label=in_mm(curve.label))
+    return dataclasses.replace(curve, **columns, radius=factor * curve.radius, label=in_mm(without_json(curve.label)))
 
 
 def shown_panel(panel):

@@ -238,7 +238,8 @@ def test_a_file_is_a_program(tmp_path):
     call = lambda *words: subprocess.run([sys.executable, "-B", "mine.py", *words], cwd=tmp_path, capture_output=True, text=True, check=False)
     held = call("-o", "out", "--set", "4", "--format", "pdf")
     assert held.returncode == 0, held.stderr
-    assert {file.name for file in (tmp_path / "out").iterdir()} == {"figmine.h5", "figmine.png", "figmine.pdf", "claims.json", "index.html"}
+    assert {file.name for file in (tmp_path / "out").iterdir()} == {"figmine.h5", "figmine.png", "figmine.pdf", "figmine.small.png",
+                                                                    "claims.json", "index.html"}
     assert "pass    it is small: largest: 3 1 (at most 4)" in held.stdout
     failed = call("-o", "out", "--no-pictures")
     assert failed.returncode == 1 and "FAIL    it is small" in failed.stdout
