@@ -36,7 +36,7 @@ def set_text(size_pt, font=None):
     RC["font.sans-serif"] = [*([font] if font else []), "DejaVu Sans"]
 
 
-TABLE = json.loads((pathlib.Path(__file__).parents[2] / "runners/presentation/page/src/colours.json").read_text())
+TABLE = json.loads(pathlib.Path(__file__).with_name("colours.json").read_text())  # a link leads there from the viewer
 COLOURS = {name: pair["light"] for name, pair in TABLE["colours"].items() if "light" in pair}
 ON_DARK = {pair["light"]: pair["dark"] for pair in TABLE["colours"].values() if len(pair) == 2}
 SERIES = ("measured", "rose", "olive", "lavender", "points", "fixture")  # for curves without a known meaning

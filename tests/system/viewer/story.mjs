@@ -120,7 +120,7 @@ test("two runs have their story in one sentence", async () => {
   });
 });
 
-test("the shown time is not cut off at any width", async () => {
+test("the shown time is not cut off, and controls are large enough, at any width", async () => {
   for (const width of [1440, 1024, 390])
     await withPage("jump.html", { viewport: { width, height: 800 } }, async (page) => {
       const [inside, right] = await page.evaluate(() => {
@@ -128,6 +128,8 @@ test("the shown time is not cut off at any width", async () => {
         return [range.scrollWidth <= range.clientWidth + 1, side.right - range.getBoundingClientRect().right];
       });
       assert.ok(inside && right >= 0, `${width} pixels: ${inside}, ${right} pixels left`);
+      const sizes = await page.locator(":is(button, input, select):not(.mark):visible").evaluateAll((all) => all.map((one) => Math.min(one.offsetWidth, one.offsetHeight)));
+      assert.ok(Math.min(...sizes) >= 24, `${width} pixels: ${sizes}`);
     });
 });
 
