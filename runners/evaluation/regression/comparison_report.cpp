@@ -76,7 +76,7 @@ std::string line_of(const ColumnComparison& column, int width) {
   std::string line = formatted("  %-*s %-5s %7zu %10.4g %10.4g %7.3g%%  %s", width, column.name.c_str(),
                                column.units.c_str(), column.rows, column.max, column.rms, percent,
                                tolerance_text(column.tolerance).c_str());
-  if (column.not_numbers > 0) line += formatted("; %zu rows: NaN against a number", column.not_numbers);
+  if (column.not_numbers > 0) line += formatted("; %zu rows without a finite difference", column.not_numbers);
   if (!column.problem.empty()) line += "; " + column.problem;
   return line + (column.is_same() ? "\n" : "  DIFFERS\n");
 }
@@ -188,8 +188,8 @@ std::string row_text(const Column& column, std::size_t row) {
 
 std::string headline_of(const Divergence& found) {
   const std::string time = std::isnan(found.time_s) ? "" : formatted(" (%.6g s)", found.time_s);
-  const std::string by = std::isnan(found.deviation) ? ", not finite in one of the two"
-                                                     : formatted(", by %.4g", found.deviation);
+  const std::string by =
+      std::isnan(found.deviation) ? ", without a finite difference" : formatted(", by %.4g", found.deviation);
   return formatted("first divergent tick %zu%s: ", found.tick, time.c_str()) + found.quantity + by + "\n";
 }
 
@@ -491,7 +491,7 @@ void add_sweep(const ResultComparison& comparison, DraftReport& report) {
 // Returns one act of the story: "the candidate first touches at 0.434 s, the baseline does not". Empty if
 // the two runs do not differ in it, or if it is not known whether one does it.
 std::string act_of(const ValueComparison& time_s, const std::string& what, bool is_known) {
-  const auto at = [](double time) { return formatted(" at %.3f s", time); };
+  const auto at = [](double time) { return formatted(" at %.6g s", time); };
   const bool has_first = std::isfinite(time_s.baseline), has_second = std::isfinite(time_s.candidate);
   if (has_first && has_second && time_s.baseline != time_s.candidate)
     return "the baseline " + what + at(time_s.baseline) + ", the candidate" + at(time_s.candidate);
@@ -511,15 +511,21 @@ std::string story_of(const ResultComparison& comparison) {
   const bool is_known = std::none_of(measures.begin(), measures.end(), is_unknown);
   for (const bool passes : {true, false})
     for (const ValueComparison& measure : measures) {
+      if (measure.judgement == Judgement::equal) continue;
       if (measure.name != (passes ? "first_pop_through_time" : "first_contact_time")) continue;
-      const std::string act = passes ? act_of(measure, "passes through the true surface", is_known)
+      const std::string act = passes ? act_of(measure, "passes through the surface", is_known)
                                      : act_of(measure, "first touches", true);
       if (!act.empty()) return act + "\n";
     }
+  // Proxies of one tick are compared, which is of interest only if its time is the same in both runs.
+  const ColumnComparison *time = nullptr, *proxy = nullptr;
   for (const ColumnComparison& column : comparison.columns->columns)
-    if (column.name == "proxy_position" && column.max > 0)
-      return formatted("the proxies are at most %.4g mm apart\n", 1e3 * column.max);
-  return {};
+    if (column.name == "time")
+      time = &column;
+    else if (column.name == "proxy_position" && column.problem.empty() && column.not_numbers == 0)
+      proxy = &column;
+  if (!time || !time->is_same() || !proxy || proxy->is_same()) return {};
+  return formatted("the proxies are at most %.4g mm apart\n", 1e3 * proxy->max);
 }
 
 // The verdict, the first difference, and what happens in only one of two runs.

@@ -329,7 +329,7 @@ std::string tick_difference(const ColumnSource& baseline, const ColumnSource& ca
   std::size_t before = 0, now = 0;
   const auto a = tick_s(baseline, before), b = tick_s(candidate, now);
   constexpr double kRounding = 1e-9;  // relative; a time is a tick's number over the rate, exact to 1e-16
-  if (!a || !b || before != now || std::abs(*a - *b) <= kRounding * std::abs(*a)) return {};
+  if (!a || !b || before != now || !(std::abs(*a - *b) > kRounding * std::abs(*a))) return {};  // NaN, too
   return formatted("the baseline has a tick every %.6g ms, the candidate every %.6g ms", 1e3 * *a, 1e3 * *b);
 }
 

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
@@ -139,11 +140,12 @@ void print_datasets(const Hdf5Content& content) {
 }
 
 // Indents the lines of a text, such as the hashes of several inputs, to the column of values.
-void print_attribute(const std::string& name, std::string value) {
-  constexpr const char* kNextLine = "\n               ";
-  for (std::size_t at = value.find('\n'); at != std::string::npos; at = value.find('\n', at + 1))
-    value.replace(at, 1, kNextLine);
-  std::printf("  %-12s %s\n", name.c_str(), value.c_str());
+void print_attribute(const std::string& name, const std::string& value) {
+  std::istringstream lines(value);
+  std::string line;
+  std::getline(lines, line);
+  std::printf("  %-12s %s\n", printable(name).c_str(), printable(line).c_str());
+  while (std::getline(lines, line)) std::printf("%15s%s\n", "", printable(line).c_str());
 }
 
 // What only programs read, what other lines state, and what is long: only --all prints it.
@@ -161,7 +163,12 @@ TextAttributes summary_of(const std::string& file, const TextAttributes& attribu
   for (const char* const name : {"compiler", "isa"})
     if (const std::string value = attribute(attributes, name); !maker.empty() && !value.empty())
       maker += ", " + value;
-  return {{"title", title_of(file, attributes)},
+  std::string title;
+  try {
+    title = title_of(file, attributes);
+  } catch (const InputError&) {  // the configuration cannot be read, as --all says
+  }
+  return {{"title", title},
           {"command", attribute(attributes, "command")},
           {"made by", maker},
           {"digest", attribute(attributes, "digest")}};
@@ -176,7 +183,9 @@ void print_main_attributes(const std::string& file, const TextAttributes& attrib
       ++more;
     else if (std::find(kInSummary.begin(), kInSummary.end(), name) == kInSummary.end())
       print_attribute(name, value);
-  if (more > 0) std::printf("  (%zu more with --all, among them the configuration)\n", more);
+  const bool has_config = !attribute(attributes, "config").empty();
+  if (more > 0)
+    std::printf("  (%zu more with --all%s)\n", more, has_config ? ", among them the configuration" : "");
 }
 
 void print_attributes(const std::string& file, const TextAttributes& attributes, bool all) {

@@ -5,6 +5,8 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/hdf5_reader.h"
@@ -303,13 +305,14 @@ class Repro {
 // --- replay --all ---
 
 struct ReplayedRuns {
-  std::size_t made = 0, different = 0;  // runs; of a tally, `different` counts cells
-  std::size_t refused = 0, others = 0;  // files
+  std::size_t made = 0, different = 0, different_cells = 0;  // runs; cells of tallies
+  std::size_t refused = 0, others = 0;                       // files
 };
 
 void print_replayed(const std::string& what, const std::string& difference) {
   std::printf("%s: %s%s\n", printable(what).c_str(),
               difference.empty() ? "as stored" : "DIFFERS: ", printable(difference).c_str());
+  std::fflush(stdout);  // the next run may take minutes
 }
 
 void replay_sweep(const CommandLine& line, const std::string& file, ReplayedRuns& replayed) {
@@ -325,7 +328,8 @@ void replay_sweep(const CommandLine& line, const std::string& file, ReplayedRuns
         difference);
   };
   const Recheck check = recheck_of(stored, file, {line.kernels, line.stop, show, true, print});
-  replayed.made += check.made, replayed.different += check.different.size();
+  replayed.made += check.made;
+  (is_tally ? replayed.different_cells : replayed.different) += check.different.size();
   progress.clear();
   if (!check.different.empty()) print_other_build(stored.attributes);
   print_distrust(stored.attributes);
@@ -342,7 +346,8 @@ void replay_trace(const CommandLine& line, const std::string& file, ReplayedRuns
 // session, in which a person moved.
 std::string replayed_kind(const std::string& file) {
   const TextAttributes attributes = Hdf5Reader(file).attributes();
-  if (attribute(attributes, "command").find(" live ") != std::string::npos) return {};
+  if (!recipe_of(attributes) && attribute(attributes, "command").find(" live ") != std::string::npos)
+    return {};
   for (const char* kind : {"trace", "sweep", "tally"})
     if (attribute(attributes, "schema").starts_with(std::string("remote-touch-") + kind + "/")) return kind;
   return {};
@@ -356,11 +361,24 @@ void replay_file(const CommandLine& line, const std::string& file, const std::st
     replay_sweep(line, file, replayed);
 }
 
+// A file that is named as a result, also a damaged one, or that begins as one of HDF5 does.
+bool may_be_result(const std::filesystem::directory_entry& entry) {
+  if (std::error_code unreachable; !entry.is_regular_file(unreachable))
+    return entry.path().extension() == ".h5";
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  std::string begin(kSignature.size(), ' ');
+  std::ifstream(entry.path(), std::ios::binary)
+      .read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kSignature || entry.path().extension() == ".h5";
+}
+
 // Replays the results in a folder. A file that cannot be replayed does not stop the others.
 void replay_folder(const CommandLine& line, const std::string& folder, ReplayedRuns& replayed) {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".h5") files.push_back(entry.path().string());
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed))
+    if (may_be_result(entry)) files.push_back(entry.path().string());
+  if (failed) throw InputError(folder, "cannot be read (" + failed.message() + ")");
   std::sort(files.begin(), files.end());
   for (const std::string& file : files) try {
       const std::string kind = replayed_kind(file);
@@ -380,11 +398,11 @@ void print_summary(const ReplayedRuns& replayed) {
   const auto counted = [](std::size_t count, const char* thing) {
     return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
   };
-  std::string text = counted(replayed.made, "run") + " made again: ";
-  if (replayed.different > 0)
-    text += std::to_string(replayed.different) + " different";
-  else
-    text += replayed.made > 0 ? "all as stored" : "none is stored";
+  std::string text = counted(replayed.made, "run") + " made again";
+  if (replayed.different > 0) text += ": " + std::to_string(replayed.different) + " different";
+  if (replayed.different_cells > 0)
+    text += ": " + counted(replayed.different_cells, "cell") + " of tallies different";
+  if (replayed.made > 0 && replayed.different + replayed.different_cells == 0) text += ": all as stored";
   if (replayed.refused > 0) text += "; " + counted(replayed.refused, "file") + " could not be replayed";
   if (replayed.others > 0) text += "; " + counted(replayed.others, "file") + " of other kinds left out";
   std::puts(text.c_str());
@@ -401,7 +419,8 @@ int replay_all(const CommandLine& line, const std::string& what) {
     replay_file(line, what, kind, replayed);
   }
   print_summary(replayed);
-  return replayed.refused > 0 ? kBadInput : replayed.different > 0 ? kCheckFailed : kDone;
+  if (replayed.different + replayed.different_cells > 0) return kCheckFailed;
+  return replayed.refused > 0 ? kBadInput : kDone;
 }
 
 int command_replay(const CommandLine& line, const ReplayRequest& request) {
