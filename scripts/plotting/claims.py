@@ -13,7 +13,7 @@ DISSERTATION = "the dissertation"
 COLUMNS = {"claim": "Claim", "paper": "Dissertation", "measured": "Measured", "criterion": "Criterion", "unit": "Unit"}
 NOTHING = {"paper": ("-",), "unit": ("1", None)}  # the cell stays empty
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
-OF_CRITERIA = ("at", "most", "least", "from", "to", "up")  # words beside numbers in the unit of the claim
+BESIDE = ("at", "most", "least", "from", "to", "up", "expected", "here:", ">=", "<=", "=", "r_c", "-", "")  # numbers of a claim
 SHORT = 24  # a cell of so few characters stays on one line
 
 
@@ -66,18 +66,19 @@ def is_set_up(claim):
 
 
 def in_shown_unit(claim):
-    """The claim as the axes of figures have it: with a length in mm, if its criterion is one of numbers only."""
-    stored, criterion, measured = claim.get("unit"), str(claim.get("criterion", "")), claim.get("measured")
+    """The claim as the axes of figures have it: with lengths in mm, if it is one of numbers only."""
+    stored, measured = claim.get("unit"), claim.get("measured")
     if not isinstance(stored, str):
         return claim
     if stored not in SHOWN_UNITS:
         return claim | {"unit": unit_words(stored)}
-    is_plain = all(word in OF_CRITERIA or NUMBER.fullmatch(word) for word in criterion.split())
-    if not (is_plain and isinstance(measured, (int, float))):
+    said = {name: str(claim[name]) for name in ("criterion", "paper") if name in claim}
+    is_plain = all(word in BESIDE or NUMBER.fullmatch(word) for words in said.values() for word in words.split())
+    if not is_plain or isinstance(measured, bool) or not isinstance(measured, (int, float)):
         return claim
     factor, unit = SHOWN_UNITS[stored]
-    scaled = NUMBER.sub(lambda each: f"{factor * float(each[0]):.6g}", criterion)
-    return claim | {"measured": factor * measured, "criterion": scaled, "unit": unit}
+    scaled = {name: NUMBER.sub(lambda each: f"{factor * float(each[0]):.6g}", words) for name, words in said.items()}
+    return claim | scaled | {"measured": factor * measured, "unit": unit}
 
 
 def claim_row(anchor, claim):

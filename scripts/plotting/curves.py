@@ -73,9 +73,10 @@ def draw_line(axes, curve, panel, look, **options):
 
 def clipped(curve, panel):
     """Which samples that have a marker are below the panel, and which are above it."""
-    low, high = panel.y_range
+    (left, right), (first, last), y = sorted(panel.x_range), panel.y_range, curve.y.values
     marked = is_finite(curve) & (is_sampled(curve) or curve.style == "dots" and np.count_nonzero(is_finite(curve)) <= 100)
-    return marked & (curve.y.values < low), marked & (curve.y.values > high)
+    marked &= ~((curve.x.values < left) | (curve.x.values > right))
+    return (marked & (y < first), marked & (y > last)) if not first > last else (marked & (y > first), marked & (y < last))
 
 
 def mark_clipped(axes, curve, panel, look):
@@ -146,7 +147,9 @@ def draw_dots(axes, curve, panel, look):
     from the second series on are therefore open, and larger than those of the first. Dots of which no x is known stand on
     the right edge of the panel."""
     if curve.x.values.size and np.isnan(curve.x.values).all():
-        axes.plot(np.ones(curve.y.values.size), curve.y.values, linestyle="none", marker=MARKERS[look.marker], color=look.colour,
+        low, high = sorted(panel.y_range)
+        seen = curve.y.values[~((curve.y.values < low) | (curve.y.values > high))]
+        axes.plot(np.ones(seen.size), seen, linestyle="none", marker=MARKERS[look.marker], color=look.colour,
                   markersize=DOT_PT, clip_on=False, label=typeset(curve.label), transform=axes.get_yaxis_transform())
         return
     count = np.count_nonzero(in_sight(curve, panel))

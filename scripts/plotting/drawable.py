@@ -5,7 +5,7 @@ from .figure_file import SCHEMA, Figure, open_file, read_figure, text
 from .plot_error import PlotError
 from .results import trace_panels
 from .sweeps import left_out, sweep_panels
-from .typeset import without_json
+from .typeset import capitalised, without_json
 
 TRACE, SWEEP = "remote-touch-trace/3", "remote-touch-sweep/3"
 
@@ -16,7 +16,8 @@ def title_of(file, path):
         title = json.loads(text(file.attrs, "config")).get("title")
     except (ValueError, AttributeError, RecursionError):
         title = None
-    return without_json(title[:1].upper() + title[1:]) if title and isinstance(title, str) else text(file.attrs, "command") or path.name
+    has_title = isinstance(title, str) and title.strip()
+    return without_json(capitalised(title)) if has_title else text(file.attrs, "command") or path.name
 
 
 def read_drawable(path, wanted=()):

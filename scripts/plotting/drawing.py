@@ -9,7 +9,7 @@ from .cells import asks_for_log, distinct
 from .curves import DRAW, has_cells, is_sampled, reach, room_aside_in
 from .style import LINES, is_formula, looks_in_panel
 from .surface import draw_surface, is_surface
-from .typeset import typeset, with_unit
+from .typeset import capitalised, typeset, with_unit
 from .wrapping import TITLE, folded, text_width_in, wrapped
 
 LONGEST_NAME_IN, LONGEST_BAR_LABEL_IN = 1.4, 1.8
@@ -94,6 +94,12 @@ def power_of_ten(value, _=None):
     return f"$10^{{{round(math.log10(value))}}}$"
 
 
+def short_number(places):
+    """Returns a function that writes a number: with three digits if they tell the places apart, but a count whole."""
+    digits = 3 if len({f"{place:.3g}" for place in places}) == len(places) else 6
+    return lambda value, _: plain(value if value == round(value) else float(f"{value:.{digits}g}"))
+
+
 def set_log_ticks(axis, values=None):
     """Three labels or more, at values or at as few parts of a decade as suffice, and minor ticks between them. Labels are
     powers of ten if one of them has to be."""
@@ -103,8 +109,9 @@ def set_log_ticks(axis, values=None):
     step = math.ceil(len(places) / MOST_DECADES) if parts == (1,) else 1
     places = [place for place in places if step == 1 or round(math.log10(place)) % step == 0]
     is_power = parts == (1,) and (min(places) < 1e-3 or max(places) > 1e4)
-    axis.set_major_locator(matplotlib.ticker.FixedLocator(places if values is None or len(values) < 3 else values))
-    axis.set_major_formatter(power_of_ten if is_power else lambda value, _: plain(float(f"{value:.3g}")))
+    places = places if values is None or len(values) < 3 else values
+    axis.set_major_locator(matplotlib.ticker.FixedLocator(places))
+    axis.set_major_formatter(power_of_ten if is_power else short_number(places))
     axis.set_minor_locator(matplotlib.ticker.FixedLocator(log_places(low, high, range(1, 10) if step == 1 else (1,))))
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
@@ -132,7 +139,7 @@ def set_end_ticks(axis, limits):
     (low, high), ticks = limits, axis.get_major_locator().tick_values(*limits)
     span = high - low
     kept = [low, *(tick for tick in ticks if low + 0.09 * span < tick < high - 0.09 * span), high]
-    digits = 1 - math.floor(math.log10(span))
+    digits = 2 - math.floor(math.log10(span))
     axis.set_ticks(kept, [plain(round(tick, digits) + 0.0) for tick in kept])
 
 
@@ -160,12 +167,6 @@ def set_ticks(axis, limits, columns, few=(), length_in=3.0):
     else:
         formatter = matplotlib.ticker.FuncFormatter(plain)
     axis.set_major_formatter(formatter)
-
-
-def capitalised(title):
-    """But no symbol or name of a column: `x of the HIP`, `r_c`, `proxy_position`."""
-    symbol = not title[1:2].isalpha() or "_" in title.partition(" ")[0]
-    return title if symbol else title[:1].upper() + title[1:]
 
 
 def title_words(title, letter):

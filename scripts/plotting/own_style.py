@@ -12,11 +12,8 @@ HELP = ('file of JSON with any of "text_pt" (6 to 14), "column_in" (2 to 8) and 
 
 
 def is_installed(font):
-    from matplotlib.font_manager import findfont
-    try:
-        return bool(findfont(font, fallback_to_default=False))
-    except ValueError:
-        return False
+    from matplotlib.font_manager import fontManager
+    return font.lower() in {each.name.lower() for each in fontManager.ttflist}
 
 
 def fault(key, value):

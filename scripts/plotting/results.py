@@ -51,8 +51,8 @@ def trace_panels(file):
         panels.append(panel(f"Position, {axis}", "time (s)", with_unit(axis, curves[0].y.units), curves))
     if "slave" not in along:
         return [*panels, panel("Force", "time (s)", "force (N)", [curve(of[:, k], f"force, {axis}") for k, axis in enumerate("xyz")])]
-    moved = [np.nanmax([np.ptp(each.y.values) for each in one.curves]) for one in panels]
-    panels = [one for one, path in zip(panels, moved) if path > 0.1 * max(moved)]  # a slave moves along few axes
+    moved = [max((np.ptp(each.y.values) for each in one.curves if np.isfinite(each.y.values).any()), default=0) for one in panels]
+    panels = [one for one, path in zip(panels, moved) if path >= 0.1 * max(moved)]  # a slave moves along few axes
     if "/trace/slave_clearance" in file:
         clearance = curve(None, "", dataset(file, "/trace/slave_clearance"))
         panels.append(panel("Clearance of the slave, negative in contact", "time (s)", "clearance (mm)", [clearance]))

@@ -161,6 +161,8 @@ def chosen_cells(axes, wanted):
         i = next((i for i, axis in enumerate(axes) if axis.name == name), None)
         if i is None:
             raise PlotError(f"--slice {name}={value}: no such axis: expected one of {', '.join(a.name for a in axes)}")
+        if not isinstance(index[i], slice):
+            raise PlotError(f"--slice {name}={value}: the axis has a value already: expected one for each axis")
         index[i] = chosen_value(axes[i], value)
     return tuple(index)
 
@@ -169,13 +171,13 @@ def chosen_value(axis, value):
     """Index of the value that equals these words exactly, else of the only one that equals them at six digits."""
     known = axis.words()
     is_number = not axis.at.names
-    found = [k for k, words in enumerate(known) if words == value or is_number and equals(value, axis.at.values[k])]
+    found = [k for k, words in enumerate(known) if words == without_json(value) or is_number and equals(value, axis.at.values[k])]
     if not found and is_number:
         found = [k for k, each in enumerate(axis.at.values) if equals(value, float(f"{each:.6g}"), 1e-6)]
     if len(found) == 1:
         return found[0]
     what = "fits several values" if found else "no such value"
-    expected = ", ".join(known[k] for k in found or range(len(known)))
+    expected = ("; " if any(", " in words for words in known) else ", ").join(known[k] for k in found or range(len(known)))
     unit = f" {axis.at.units}" if axis.at.units not in ("", "1") else ""
     raise PlotError(f"--slice {axis.name}={value}: {what}: expected one of {expected}{unit}")
 

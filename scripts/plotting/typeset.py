@@ -21,7 +21,7 @@ MM = {"m": 1000, "cm": 10, "micrometres": 0.001, "um": 0.001}  # in each unit
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f\ud800-\udfff\ufffe\uffff]")  # neither XML nor a font has these
 
 
-UNIT_OF_NAME = re.compile(r"_(m|s|hz|deg|kg|N|Ns|J|m2)((?:_per_\w+)?)$", re.I)  # names of parameters end with it
+UNIT_OF_NAME = re.compile(r"_(kg_m2|Nm|Ns|m|s|hz|deg|kg|N|J)((?:_per_\w+)?)$", re.I)  # names of parameters end with it
 
 
 def said(value):
@@ -36,9 +36,15 @@ def said(value):
 
 
 def said_of(name, value):
-    unit = UNIT_OF_NAME.search(name)
-    words = f"{UNIT_OF_NAME.sub('', name).replace('_', ' ')} {said(value)}"
-    return in_mm(f"{words} {unit[1].replace('hz', 'Hz')}{unit[2].replace('_per_', '/')}") if unit else words
+    """One setting: `range 100, 200 mm` for "range_m": [0.1, 0.2]."""
+    unit, words = UNIT_OF_NAME.search(name), UNIT_OF_NAME.sub("", name).replace("_", " ")
+    each = value if isinstance(value, list) else [value]
+    if not unit or not each or any(isinstance(one, (bool, dict, list)) for one in each):
+        return f"{words} {said(value)}"
+    of_all = re.sub(r"(?<=[a-z])2$", "^2", re.sub("hz", "Hz", unit[1].replace("_", " "), flags=re.I) + unit[2].replace("_per_", "/"))
+    lengths = [in_mm(f"{said(one)} {of_all}") for one in each]
+    last = lengths[-1].removeprefix(said(each[-1]) + " ") if of_all != "m" else lengths[-1].rpartition(" ")[2]
+    return f"{words} {', '.join([*(one.removesuffix(f' {last}') for one in lengths[:-1]), lengths[-1]])}"
 
 
 def without_json(words):
@@ -103,6 +109,12 @@ def in_mm(words):
             return match[0]
         return NUMBER.sub(lambda number: f"{MM[match[2]] * float(number[0]):g}", match[1]) + " mm"
     return LENGTH.sub(shown, words)
+
+
+def capitalised(title):
+    """But no symbol or name of a column: `x of the HIP`, `r_c`, `proxy_position`."""
+    symbol = not title[:1].isascii() or not title[1:2].isalpha() or "_" in title.partition(" ")[0]
+    return title if symbol else title[:1].upper() + title[1:]
 
 
 def unit_words(unit):

@@ -163,12 +163,7 @@ TextAttributes summary_of(const std::string& file, const TextAttributes& attribu
   for (const char* const name : {"compiler", "isa"})
     if (const std::string value = attribute(attributes, name); !maker.empty() && !value.empty())
       maker += ", " + value;
-  std::string title;
-  try {
-    title = title_of(file, attributes);
-  } catch (const InputError&) {  // the configuration cannot be read, as --all says
-  }
-  return {{"title", title},
+  return {{"title", title_of(file, attributes)},
           {"command", attribute(attributes, "command")},
           {"made by", maker},
           {"digest", attribute(attributes, "digest")}};

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "analysis/storage/atomic_file.h"
+#include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/result_file.h"
 #include "analysis/storage/trace_comparison.h"
@@ -361,15 +362,13 @@ void replay_file(const CommandLine& line, const std::string& file, const std::st
     replay_sweep(line, file, replayed);
 }
 
-// A file that is named as a result, also a damaged one, or that begins as one of HDF5 does.
+// A file that begins as results do, or has the name of one, also if it is damaged.
 bool may_be_result(const std::filesystem::directory_entry& entry) {
-  if (std::error_code unreachable; !entry.is_regular_file(unreachable))
-    return entry.path().extension() == ".h5";
-  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  std::string begin(kSignature.size(), ' ');
-  std::ifstream(entry.path(), std::ios::binary)
-      .read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  return begin == kSignature || entry.path().extension() == ".h5";
+  std::string opening(kResultOpening.size(), ' ');
+  if (std::error_code unreachable; entry.is_regular_file(unreachable))
+    std::ifstream(entry.path(), std::ios::binary)
+        .read(opening.data(), static_cast<std::streamsize>(opening.size()));
+  return opening == kResultOpening || entry.path().extension() == ".h5";
 }
 
 // Replays the results in a folder. A file that cannot be replayed does not stop the others.
