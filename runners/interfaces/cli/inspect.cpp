@@ -178,9 +178,9 @@ void print_main_attributes(const std::string& file, const TextAttributes& attrib
       ++more;
     else if (std::find(kInSummary.begin(), kInSummary.end(), name) == kInSummary.end())
       print_attribute(name, value);
-  const bool has_config = !attribute(attributes, "config").empty();
   if (more > 0)
-    std::printf("  (%zu more with --all%s)\n", more, has_config ? ", among them the configuration" : "");
+    std::printf("  (%zu more with --all%s)\n", more,
+                attribute(attributes, "config").empty() ? "" : ", among them the configuration");
 }
 
 void print_attributes(const std::string& file, const TextAttributes& attributes, bool all) {

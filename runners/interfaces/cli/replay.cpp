@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <string_view>
 
 #include "analysis/storage/atomic_file.h"
 #include "analysis/storage/digest.h"
@@ -356,10 +355,7 @@ std::string replayed_kind(const std::string& file) {
 
 void replay_file(const CommandLine& line, const std::string& file, const std::string& kind,
                  ReplayedRuns& replayed) {
-  if (kind == "trace")
-    replay_trace(line, file, replayed);
-  else
-    replay_sweep(line, file, replayed);
+  (kind == "trace" ? replay_trace : replay_sweep)(line, file, replayed);
 }
 
 // A file that begins as results do, or has the name of one, also if it is damaged.
@@ -399,8 +395,7 @@ void print_summary(const ReplayedRuns& replayed) {
   };
   std::string text = counted(replayed.made, "run") + " made again";
   if (replayed.different > 0) text += ": " + std::to_string(replayed.different) + " different";
-  if (replayed.different_cells > 0)
-    text += ": " + counted(replayed.different_cells, "cell") + " of tallies different";
+  if (replayed.different_cells > 0) text += ": " + counted(replayed.different_cells, "cell") + " different";
   if (replayed.made > 0 && replayed.different + replayed.different_cells == 0) text += ": all as stored";
   if (replayed.refused > 0) text += "; " + counted(replayed.refused, "file") + " could not be replayed";
   if (replayed.others > 0) text += "; " + counted(replayed.others, "file") + " of other kinds left out";
