@@ -169,7 +169,7 @@ def test_compare_is_the_command(command_line, tmp_path):
     assert not same.judgements
     assert rt.compare(first, a).same
     wide = rt.compare(a, b, tolerance={"*": 1e9})
-    assert wide.same == command_line("compare", a, b, "--tolerance", "*=1e9").rstrip().splitlines()[-1].startswith("same")
+    assert wide.same == command_line("compare", a, b, "--tolerance", "*=1e9").startswith("same")
     assert wide.same and rt.compare(first, second, tolerance={"*": (1e9, 0)}).same
 
 
