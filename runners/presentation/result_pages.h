@@ -33,6 +33,9 @@ namespace remote_touch {
 
 // The frames of a run, made again from its configuration, as a page shows them.
 
+// Returns whether the trace is of a live run, in which a person moved, and not made again from its recording.
+bool is_of_live_run(const TextAttributes& trace);
+
 // Returns the experiment of a stored trace. Throws InputError, about the name, in three cases: the trace is
 // of a live run, whose frames came from a sensor at times that only its recording contains; the configuration
 // cannot be run; or a recording is not the one that was read.

@@ -157,8 +157,12 @@ ShownFrame shown_frame(const Frame& frame, const PointCloud& cloud, const RunPat
 
 }  // namespace
 
+bool is_of_live_run(const TextAttributes& trace) {
+  return !recipe_of(trace) && attribute(trace, "command").find(" live ") != std::string::npos;
+}
+
 Experiment experiment_of_run(const TextAttributes& trace, const std::string& name) {
-  if (!recipe_of(trace) && attribute(trace, "command").find(" live ") != std::string::npos)
+  if (is_of_live_run(trace))
     throw InputError(
         name,
         "is of a live run, without its frames: expected the trace that `remote-touch run` makes from its recording");

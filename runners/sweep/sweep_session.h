@@ -214,7 +214,7 @@ struct Recheck {
 };
 
 // Makes the finished and failed runs with is_rechecked() again, or the first run if there is no such run.
-// With options.all, makes all of them. Compares state, values and notes, bit for bit. part: a shard or a
+// Makes all of them with options.all. Compares state, values and notes, bit for bit. part: a shard or a
 // whole sweep. sweep: read from the configuration of the file. Throws Interrupted, and std::bad_alloc.
 Recheck recheck(const SweepResult& part, const Sweep& sweep, const RecheckOptions& options);
 

@@ -17,7 +17,7 @@ FUNCTIONS = {Kind.FUNCTION_DECL, Kind.CXX_METHOD, Kind.CONSTRUCTOR, Kind.DESTRUC
 
 
 HDF5 = "-I/usr/include/hdf5/serial"  # where Debian has it
-# What the build writes, with other texts.
+# The header that the build writes, with other texts.
 BUILD_INFO = "".join(f'#define REMOTE_TOUCH_{name} ""\n'
                      for name in ("VERSION", "GIT_COMMIT", "GIT_DIRTY", "SOURCES", "COMPILER", "FLAGS"))
 

@@ -43,8 +43,8 @@ def said_of(name, value):
         return f"{words} {said(value)}"
     of_all = re.sub(r"(?<=[a-z])2$", "^2", re.sub("hz", "Hz", unit[1].replace("_", " "), flags=re.I) + unit[2].replace("_per_", "/"))
     lengths = [in_mm(f"{said(one)} {of_all}") for one in each]
-    last = lengths[-1].removeprefix(said(each[-1]) + " ") if of_all != "m" else lengths[-1].rpartition(" ")[2]
-    return f"{words} {', '.join([*(one.removesuffix(f' {last}') for one in lengths[:-1]), lengths[-1]])}"
+    unit_of_last = " " + lengths[-1].partition(" ")[2]
+    return f"{words} {', '.join([*(one.removesuffix(unit_of_last) for one in lengths[:-1]), lengths[-1]])}"
 
 
 def without_json(words):

@@ -331,8 +331,8 @@ Figure figure_6_3(FigureContext& context) {
       "A box with a floor and without a top, 110 x 90 mm inside, its points 3 mm apart with normals into the "
       "box. The device takes the tool in, turns it by 30 deg and back, and takes it out. Contact rule "
       "look-ahead: points are constraints with their distance, ahead of the tool. Contact rule voxels: the "
-      "tool's voxels as printed. The pictures are of look-ahead at 30 deg: the tool filled, the device transparent. The last row shows the largest "
-      "counts of a run over the spacing of its points; the dashed line is at the 6 contact points of 6.3.1. "
+      "tool's voxels as printed. The pictures are of look-ahead at 30 deg: the tool filled, the device "
+      "transparent. The last row shows the largest counts of a run over the spacing of its points; the dashed line is at the 6 contact points of 6.3.1. "
       "The number of points that touch depends on their spacing; the tool is never held by more than 6 "
       "constraints. A cell is a part of the tool's surface, 10 mm across, in which a point touches."};
   const std::size_t step = kSpacings_mm.size(), of_husky = step * kRules.size();

@@ -148,12 +148,12 @@ void print_attribute(const std::string& name, const std::string& value) {
   while (std::getline(lines, line)) std::printf("%15s%s\n", "", printable(line).c_str());
 }
 
-// What only programs read, what other lines state, and what is long: only --all prints it.
+// Attributes that only --all prints: programs read them, other lines state them, or they are long.
 constexpr std::array kSeldomRead{"axes",          "columns",    "compiler",  "config",     "default",
                                  "flags",         "git_commit", "git_dirty", "isa",        "live_parameters",
                                  "measures",      "note_kinds", "recipe",    "replicates", "schema",
                                  "source_digest", "version",    "view"};
-// What the summary has, in its order: the title, the command, the maker and the digest.
+// The attributes of the summary, in its order.
 constexpr std::array kInSummary{"title", "command", "made by", "digest"};
 
 // Returns the attributes of the summary; an attribute is empty if the file does not have it.

@@ -24,6 +24,7 @@
 #include "runners/interfaces/cli/figure.h"
 #include "runners/interfaces/cli/outputs.h"
 #include "runners/interfaces/cli/program.h"
+#include "runners/presentation/result_pages.h"
 #include "runners/sweep/stored_sweep.h"
 #include "runners/sweep/sweep_answer.h"
 #include "runners/sweep/sweep_run.h"
@@ -342,12 +343,10 @@ void replay_trace(const CommandLine& line, const std::string& file, ReplayedRuns
   print_replayed(file, is_same ? "" : comparison.verdict);
 }
 
-// "trace", "sweep" or "tally"; empty for a file that has no runs of its own, and for the trace of a live
-// session, in which a person moved.
+// "trace", "sweep" or "tally"; empty for a file that has no runs that can be made again.
 std::string replayed_kind(const std::string& file) {
   const TextAttributes attributes = Hdf5Reader(file).attributes();
-  if (!recipe_of(attributes) && attribute(attributes, "command").find(" live ") != std::string::npos)
-    return {};
+  if (is_of_live_run(attributes)) return {};
   for (const char* kind : {"trace", "sweep", "tally"})
     if (attribute(attributes, "schema").starts_with(std::string("remote-touch-") + kind + "/")) return kind;
   return {};

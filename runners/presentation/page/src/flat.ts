@@ -1,4 +1,4 @@
-// Where there is no WebGL 2: the scene from the side, x to the right and y up.
+// Draws the scene without WebGL 2: from the side, x to the right and y up.
 import { colours } from "./colours";
 import { round125, type Run, type Vector } from "./data";
 import { longestArrow } from "./hand";
