@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "analysis/report/report.h"
 #include "analysis/sweeps/sweep_result.h"
 #include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
@@ -250,11 +251,6 @@ namespace {
 
 constexpr std::size_t kMostRows = 60;
 
-std::string number_text(double value) {
-  if (std::isnan(value)) return "-";
-  return formatted("%.5g", value);
-}
-
 // True for the columns before the answer itself: the axes, whose values must not look alike.
 bool is_axis(const Table& table, const Column& column) {
   const auto named = [&](const char* name) {
@@ -265,50 +261,41 @@ bool is_axis(const Table& table, const Column& column) {
   return &column < &*(renamed == table.columns.end() ? named("value") : renamed);
 }
 
-// Returns the texts of a column: its name, its unit and the values.
-std::vector<std::string> texts_of(const Table& table, const Column& column, std::size_t rows) {
-  std::vector<std::string> texts = {column.name, column.units == "1" ? "" : column.units};
-  const auto* const numbers = std::get_if<std::vector<double>>(&column.values);
-  const bool is_answer = numbers && !is_axis(table, column);
-  if (const auto* const words = std::get_if<std::vector<std::string>>(&column.values)) {
-    for (std::size_t row = 0; row < rows; ++row)
-      texts.push_back((*words)[row].empty() ? "-" : printable((*words)[row]));
-    return texts;
-  }
-  for (std::size_t row = 0; row < rows; ++row)
-    texts.push_back(is_answer ? number_text((*numbers)[row]) : printable(axis_text(column, row)));
-  return texts;
+void add_cell(ReportRow& shown, const Table& table, const Column& column, std::size_t row) {
+  const std::string heading = column.name + "\n" + (column.units == "1" ? "" : column.units);
+  const auto* const numbers = numbers_in(column);
+  if (const auto* const words = std::get_if<std::vector<std::string>>(&column.values))
+    shown.show(heading, (*words)[row].empty() ? "-" : (*words)[row]);
+  else if (!numbers || is_axis(table, column))
+    shown.show(heading, axis_text(column, row),
+               column.value_names.empty() ? ReportValue(number_in(column, row)) : ReportValue());
+  else
+    shown.show(heading, std::isnan((*numbers)[row]) ? "-" : formatted("%.5g", (*numbers)[row]),
+               (*numbers)[row]);
 }
 
-std::string table_text(const Table& table) {
+void add_table(const Table& table, Report& report) {
   const std::size_t all = table.columns.front().length(), rows = std::min(all, kMostRows);
-  std::vector<std::string> lines(rows + 2, "  ");
-  for (const Column& column : table.columns) {
-    const std::vector<std::string> texts = texts_of(table, column, rows);
-    std::size_t width = 0;
-    for (const std::string& text : texts) width = std::max(width, text.size());
-    for (std::size_t i = 0; i < texts.size(); ++i)
-      lines[i].append(texts[i]).append(width + 2 - texts[i].size(), ' ');
-  }
-  std::string text = table.title + "\n";
-  for (std::string& line : lines) {
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  if (all > rows) text += "  and " + std::to_string(all - rows) + " more rows: -o FILE.csv writes all\n";
-  return text;
+  ReportTable shown;
+  shown.rows.resize(rows);
+  for (std::size_t row = 0; row < rows; ++row)
+    for (const Column& column : table.columns) add_cell(shown.rows[row], table, column, row);
+  report.line(table.title);
+  report.add(shown);
+  if (all > rows) report.line("  and " + std::to_string(all - rows) + " more rows: -o FILE.csv writes all");
 }
 
 }  // namespace
 
 std::string answer_text(const Figure& answer, std::size_t done, std::size_t asked) {
-  std::string text = answer.caption.empty() ? "" : answer.caption + "\n";
+  Report report;
+  if (!answer.caption.empty()) report.line(answer.caption);
   for (const Table& table : answer.tables)
-    if (!is_of_curve(answer, table)) text += table_text(table);
+    if (!is_of_curve(answer, table)) add_table(table, report);
   if (done < asked)
-    text += "  note: " + std::to_string(asked - done) + " of " + std::to_string(asked) +
-            " runs are not finished and are left out\n";
-  return text;
+    report.line("  note: " + std::to_string(asked - done) + " of " + std::to_string(asked) +
+                " runs are not finished and are left out");
+  return report.text();
 }
 
 }  // namespace remote_touch

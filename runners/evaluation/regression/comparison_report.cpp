@@ -5,12 +5,11 @@
 #include <charconv>
 #include <cinttypes>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "analysis/report/report.h"
 #include "analysis/trace/columns.h"
 #include "core/parameters/parameter.h"
 #include "runners/experiment/catalog/catalog.h"
-#include "scenarios/files/input_files.h"
 
 namespace remote_touch {
 
@@ -26,20 +25,8 @@ using CaseState = ReportCase::State;
 
 constexpr const char* kNoValueText = "no value";
 
-// A report whose JSON is not yet text. The text is that of the details, below the verdict.
-struct DraftReport {
-  std::string text;
-  Json json;
-  std::vector<ReportCase> cases = {};
-};
-
-template <class Number>
-Json optional_json(const std::optional<Number>& value) {
-  return value ? Json(*value) : Json();
-}
-
-Json interval(const Estimate& of) {
-  return {of.low, of.high};
+ReportValue interval(const Estimate& of) {
+  return list_of(std::vector{of.low, of.high});
 }
 
 // "exact", or "1e-09 + 1e-06 relative".
@@ -54,14 +41,6 @@ std::string value_text(double value) {
   return std::isnan(value) ? kNoValueText : shortest_text(value);
 }
 
-// Returns the width of a column of a table that has these names.
-template <class Named>
-int width_of(const std::vector<Named>& all, const std::string& heading) {
-  std::size_t width = heading.size();
-  for (const Named& each : all) width = std::max(width, each.name.size());
-  return static_cast<int>(width);
-}
-
 // "2 of 867 rows outside, the largest deviation 0.25"; empty for none.
 std::string outside_text(std::size_t outside, std::size_t of, const char* things, double max) {
   if (outside == 0) return {};
@@ -70,17 +49,6 @@ std::string outside_text(std::size_t outside, std::size_t of, const char* things
 
 // --- columns ---
 
-std::string line_of(const ColumnComparison& column, int width) {
-  const double percent =
-      column.rows == 0 ? 0 : 100.0 * static_cast<double>(column.outside) / static_cast<double>(column.rows);
-  std::string line = formatted("  %-*s %-5s %7zu %10.4g %10.4g %7.3g%%  %s", width, column.name.c_str(),
-                               column.units.c_str(), column.rows, column.max, column.rms, percent,
-                               tolerance_text(column.tolerance).c_str());
-  if (column.not_numbers > 0) line += formatted("; %zu rows without a finite difference", column.not_numbers);
-  if (!column.problem.empty()) line += "; " + column.problem;
-  return line + (column.is_same() ? "\n" : "  DIFFERS\n");
-}
-
 ReportCase case_of(const ColumnComparison& column) {
   std::string why = column.problem;
   if (!why.empty() && column.outside > 0) why += "; ";
@@ -88,84 +56,65 @@ ReportCase case_of(const ColumnComparison& column) {
   return {column.name, column.is_same() ? CaseState::passed : CaseState::skipped, why};
 }
 
-Json column_json(const ColumnComparison& column) {
-  return {{"name", column.name},
-          {"units", column.units},
-          {"same", column.is_same()},
-          {"problem", column.problem},
-          {"absolute_tolerance", column.tolerance.absolute},
-          {"relative_tolerance", column.tolerance.relative},
-          {"rows", column.rows},
-          {"outside", column.outside},
-          {"not_numbers", column.not_numbers},
-          {"max", column.max},
-          {"rms", column.rms},
-          {"first_difference", optional_json(column.first_difference)},
-          {"first_outside", optional_json(column.first_outside)}};
+// "1e-09; 3 rows without a finite difference  DIFFERS"
+std::string rule_text(const ColumnComparison& column) {
+  std::string text = tolerance_text(column.tolerance);
+  if (column.not_numbers > 0) text += formatted("; %zu rows without a finite difference", column.not_numbers);
+  if (!column.problem.empty()) text += "; " + column.problem;
+  return text + (column.is_same() ? "" : "  DIFFERS");
 }
 
-// Returns the columns as lists of their rows. The name of an enumeration replaces each number that has one.
-Json rows_json(const std::vector<Column>& columns) {
-  Json all = Json::object();
-  for (const Column& column : columns) {
-    Json values = Json::array();
-    if (const auto* integers = std::get_if<std::vector<std::int32_t>>(&column.values);
-        integers && !column.value_names.empty()) {
-      for (const std::int32_t value : *integers) {
-        const auto place = static_cast<std::size_t>(value);
-        values.push_back(place < column.value_names.size() ? Json(column.value_names[place]) : Json(value));
-      }
-    } else {
-      std::visit([&](const auto& v) { values = v; }, column.values);
-    }
-    all[column.name] = values;
+ReportRow row_of(const ColumnComparison& column) {
+  const double percent =
+      column.rows == 0 ? 0 : 100.0 * static_cast<double>(column.outside) / static_cast<double>(column.rows);
+  ReportRow row{.is_shown = !column.is_same() || column.first_difference, .result = case_of(column)};
+  row.add("name", "column", column.name).add("units", "units", column.units);
+  row.tell("same", column.is_same()).tell("problem", column.problem);
+  row.tell("absolute_tolerance", column.tolerance.absolute);
+  row.tell("relative_tolerance", column.tolerance.relative);
+  row.add("rows", "rows", column.rows);
+  row.tell("outside", column.outside).tell("not_numbers", column.not_numbers);
+  row.add("max", "max", column.max, formatted("%.4g", column.max));
+  row.add("rms", "rms", column.rms, formatted("%.4g", column.rms));
+  row.show("outside", formatted("%.3g%%", percent), percent).show("tolerance", rule_text(column));
+  row.tell("first_difference", column.first_difference).tell("first_outside", column.first_outside);
+  return row;
+}
+
+// Returns the values of a column. The name of an enumeration replaces each number that has one.
+ReportValue values_of(const Column& column) {
+  const auto* const integers = std::get_if<std::vector<std::int32_t>>(&column.values);
+  if (!integers || column.value_names.empty())
+    return std::visit([](const auto& values) { return list_of(values); }, column.values);
+  std::vector<ReportValue> values;
+  for (const std::int32_t value : *integers) {
+    const auto place = static_cast<std::size_t>(value);
+    values.push_back(place < column.value_names.size() ? ReportValue(column.value_names[place])
+                                                       : ReportValue(value));
   }
-  return all;
+  return values;
 }
 
-Json divergence_json(const Divergence& found) {
-  return {{"tick", found.tick},
-          {"time_s", found.time_s},
-          {"quantity", found.quantity},
-          {"deviation", found.deviation},
-          {"first_difference", found.first_difference},
-          {"cause", name_of(found.cause)},
-          {"explanation", found.explanation},
-          {"situation", name_of(found.situation)},
-          {"observation", found.observation},
-          {"frame", found.frame},
-          {"rows_from_tick", found.first_row},
-          {"baseline", rows_json(found.baseline)},
-          {"candidate", rows_json(found.candidate)}};
+Report rows_of(const std::vector<Column>& columns) {
+  Report rows;
+  for (const Column& column : columns) rows.tell(column.name, values_of(column));
+  return rows;
 }
 
-// Returns the columns with any difference as a table, and the names of the others.
-std::string columns_text(const std::vector<ColumnComparison>& columns) {
-  const int width = width_of(columns, "column");
-  std::string rows;
+void add_columns(const TraceComparison& comparison, Report& report) {
+  ReportTable table{"columns"};
   std::vector<std::string> equal;
-  for (const ColumnComparison& column : columns)
-    if (column.is_same() && !column.first_difference)
-      equal.push_back(column.name);
-    else
-      rows += line_of(column, width);
-  if (!rows.empty())
-    rows.insert(0, formatted("  %-*s %-5s %7s %10s %10s %8s  %s\n", width, "column", "units", "rows", "max",
-                             "rms", "outside", "tolerance"));
-  if (equal.empty()) return rows;
-  return rows + formatted("  %zu of %zu columns are equal: ", equal.size(), columns.size()) +
-         joined(equal, ", ") + "\n";
-}
-
-void add_columns(const TraceComparison& comparison, DraftReport& report) {
-  report.text += columns_text(comparison.columns);
   for (const ColumnComparison& column : comparison.columns) {
-    report.json["columns"].push_back(column_json(column));
-    report.cases.push_back(case_of(column));
+    table.rows.push_back(row_of(column));
+    if (!table.rows.back().is_shown) equal.push_back(column.name);
   }
+  report.add(table);
+  if (!equal.empty())
+    report.line(formatted("  %zu of %zu columns are equal: ", equal.size(), comparison.columns.size()) +
+                joined(equal, ", "));
   for (const std::string& name : comparison.added)
-    report.text += formatted("  %-28s only in the candidate: not compared\n", name.c_str());
-  report.json["columns_only_in_candidate"] = comparison.added;
+    report.line("  " + name + "  only in the candidate: not compared");
+  report.tell("columns_only_in_candidate", list_of(comparison.added));
 }
 
 // Returns one row of a column, with enough digits to show the last bit.
@@ -190,35 +139,49 @@ std::string headline_of(const Divergence& found) {
   const std::string time = std::isnan(found.time_s) ? "" : formatted(" (%.6g s)", found.time_s);
   const std::string by =
       std::isnan(found.deviation) ? ", without a finite difference" : formatted(", by %.4g", found.deviation);
-  return formatted("first divergent tick %zu%s: ", found.tick, time.c_str()) + found.quantity + by + "\n";
+  return formatted("first divergent tick %zu%s: ", found.tick, time.c_str()) + found.quantity + by;
 }
 
-std::string divergence_text(const Divergence& found) {
-  std::string all = "  at the first divergent tick:\n";
-  if (found.first_difference != found.tick)
-    all = "  the runs first differ at tick " + std::to_string(found.first_difference) +
-          ", within the tolerances; the lines below describe that tick\n";
-  all += std::string("  cause   ") + name_of(found.cause) + ": " + found.explanation + "\n";
-  if (found.cause != found.situation)
-    all += std::string("  there   ") + name_of(found.situation) + ": " + found.observation + "\n";
-  all += "  frames  " + found.frame + "\n";
+// Returns the columns at the tick of the first difference, and at the tick before if they were not at rest.
+ReportTable values_around(const Divergence& found) {
+  ReportTable table{.has_headings = false};
   const std::size_t here = found.first_difference - found.first_row;
   for (std::size_t i = 0; i < found.baseline.size(); ++i) {
     const Column &ours = found.baseline[i], &theirs = found.candidate[i];
     const std::string before = row_text(ours, 0), was = row_text(ours, here), is = row_text(theirs, here);
     std::string label = ours.name + (ours.units == "1" ? "" : " / " + ours.units);
     const auto add = [&](const std::string& what, const std::string& row) {
-      all += formatted("  %-26s %s %s\n", label.c_str(), what.c_str(), row.c_str());
+      table.rows.emplace_back().show("column", label).show("at", what).show("value", row);
       label.clear();
     };
-    // A value at rest is printed once.
-    if (here > 0 && (before != was || was != is)) add(formatted("tick %-9zu", found.first_row), before);
+    if (here > 0 && (before != was || was != is)) add("tick " + std::to_string(found.first_row), before);
     if (was == is)
-      add(formatted("tick %-9zu", found.first_difference), was);
+      add("tick " + std::to_string(found.first_difference), was);
     else
-      add("  baseline    ", was), add("  candidate   ", is);
+      add("  baseline", was), add("  candidate", is);
   }
-  return all;
+  return table;
+}
+
+Report report_of(const Divergence& found) {
+  Report report;
+  report.line(found.first_difference == found.tick
+                  ? "  at the first divergent tick:"
+                  : "  the runs first differ at tick " + std::to_string(found.first_difference) +
+                        ", within the tolerances; the lines below describe that tick");
+  report.line(std::string("  cause   ") + name_of(found.cause) + ": " + found.explanation);
+  if (found.cause != found.situation)
+    report.line(std::string("  there   ") + name_of(found.situation) + ": " + found.observation);
+  report.line("  frames  " + found.frame);
+  report.add(values_around(found));
+  report.tell("tick", found.tick), report.tell("time_s", found.time_s);
+  report.tell("quantity", found.quantity), report.tell("deviation", found.deviation);
+  report.tell("first_difference", found.first_difference);
+  report.tell("cause", name_of(found.cause)), report.tell("explanation", found.explanation);
+  report.tell("situation", name_of(found.situation)), report.tell("observation", found.observation);
+  report.tell("frame", found.frame), report.tell("rows_from_tick", found.first_row);
+  report.add("baseline", rows_of(found.baseline)), report.add("candidate", rows_of(found.candidate));
+  return report;
 }
 
 // --- measures ---
@@ -242,81 +205,50 @@ ReportCase case_of(const Measure& measure, Judgement judgement, Outcome whole, c
           numbers + ": " + name_of(judgement) + " (" + text_of(measure.better) + ")"};
 }
 
-Json measure_json(const ValueComparison& measure) {
-  return {{"name", measure.name},
-          {"units", measure.units},
-          {"direction", text_of(measure.better)},
-          {"absolute_tolerance", measure.tolerance.absolute},
-          {"relative_tolerance", measure.tolerance.relative},
-          {"baseline", measure.baseline},
-          {"candidate", measure.candidate},
-          {"judgement", name_of(measure.judgement)}};
-}
-
-Json measure_json(const MeasureComparison& measure, Judgement judgement) {
-  return {{"name", measure.name},
-          {"units", measure.units},
-          {"direction", text_of(measure.better)},
-          {"event", measure.event},
-          {"runs", measure.compared},
-          {"outside", measure.outside},
-          {"got_better", measure.got_better},
-          {"got_worse", measure.got_worse},
-          {"max", measure.max_deviation},
-          {"rms", measure.rms_deviation},
-          {"judgement", name_of(judgement)}};
-}
-
-// "max_force  N  40.57389  no value  -  changed"
-std::string line_of(const ValueComparison& measure, int width) {
-  const auto text = [](const char* format, double value, const char* none) {
-    return std::isnan(value) ? none : formatted(format, value);
-  };
+// "changed", "WORSE (smaller is better)"
+std::string verdict_text(const ValueComparison& measure) {
   std::string verdict = word_for(measure.judgement);
   if (measure.judgement == Judgement::better || measure.judgement == Judgement::worse)
     verdict += std::string(" (") + text_of(measure.better) + ")";
-  return formatted("  %-*s %-5s %12s %12s %10s  ", width, measure.name.c_str(), measure.units.c_str(),
-                   text("%.7g", measure.baseline, kNoValueText).c_str(),
-                   text("%.7g", measure.candidate, kNoValueText).c_str(),
-                   text("%+.3g", measure.candidate - measure.baseline, "-").c_str()) +
-         verdict + "\n";
+  return verdict;
 }
 
-// Returns the measures that are not equal as a table, and the number of the others.
-std::string measures_text(const std::vector<ValueComparison>& measures) {
-  const int width = width_of(measures, "measure");
-  std::string rows;
-  std::size_t equal = 0;
-  for (const ValueComparison& measure : measures)
-    if (measure.judgement == Judgement::equal)
-      ++equal;
-    else
-      rows += line_of(measure, width);
-  if (!rows.empty())
-    rows.insert(0, formatted("  %-*s %-5s %12s %12s %10s  %s\n", width, "measure", "units", "baseline",
-                             "candidate", "difference", "verdict"));
-  return rows + formatted("  %zu of %zu measures are equal\n", equal, measures.size());
+ReportRow row_of(const ValueComparison& measure, Outcome whole) {
+  const auto text = [](const char* format, double value, const char* none) {
+    return std::isnan(value) ? none : formatted(format, value);
+  };
+  const double difference = measure.candidate - measure.baseline;
+  ReportRow row{
+      .is_shown = measure.judgement != Judgement::equal,
+      .result = case_of(measure, measure.judgement, whole,
+                        shortest_text(measure.baseline) + " against " + shortest_text(measure.candidate))};
+  row.add("name", "measure", measure.name).add("units", "units", measure.units);
+  row.tell("direction", text_of(measure.better));
+  row.tell("absolute_tolerance", measure.tolerance.absolute);
+  row.tell("relative_tolerance", measure.tolerance.relative);
+  row.add("baseline", "baseline", measure.baseline, text("%.7g", measure.baseline, kNoValueText));
+  row.add("candidate", "candidate", measure.candidate, text("%.7g", measure.candidate, kNoValueText));
+  row.tell("judgement", name_of(measure.judgement));
+  row.show("difference", text("%+.3g", difference, "-"), difference).show("verdict", verdict_text(measure));
+  return row;
 }
 
 // Adds the measures of two traces that differ.
-void add_measures(const ResultComparison& comparison, DraftReport& report) {
-  const std::vector<ValueComparison>& measures = comparison.measures;
-  for (const ValueComparison& measure : measures) {
-    report.json["measures"].push_back(measure_json(measure));
-    report.cases.push_back(
-        case_of(measure, measure.judgement, comparison.outcome,
-                shortest_text(measure.baseline) + " against " + shortest_text(measure.candidate)));
-  }
-  report.json["no_measures"] = comparison.no_measures, report.json["not_judged"] = comparison.not_judged;
-  if (measures.empty()) return;
-  report.text += measures_text(measures);
-  if (!comparison.not_judged.empty()) report.text += "  " + comparison.not_judged + "\n";
+void add_measures(const ResultComparison& comparison, Report& report) {
+  ReportTable table{"measures"};
+  for (const ValueComparison& measure : comparison.measures)
+    table.rows.push_back(row_of(measure, comparison.outcome));
+  report.add(table);
+  report.tell("no_measures", comparison.no_measures), report.tell("not_judged", comparison.not_judged);
+  if (table.rows.empty()) return;
+  report.line(formatted("  %td of %zu measures are equal",
+                        std::ranges::count(table.rows, false, &ReportRow::is_shown), table.rows.size()));
+  if (!comparison.not_judged.empty()) report.line("  " + comparison.not_judged);
   std::vector<std::string> left_out;
-  for (const Measure& measure : remote_touch::measures())
+  for (const Measure& measure : measures())
     if (needs_true_contact(measure)) left_out.push_back(measure.name);
-  report.text +=
-      "  not compared, since traces do not store what they need (compare sweeps): " + joined(left_out, ", ") +
-      "\n";
+  report.line("  not compared, since traces do not store what they need (compare sweeps): " +
+              joined(left_out, ", "));
 }
 
 // --- sweeps ---
@@ -332,53 +264,36 @@ std::string verdict_text(const MeasureComparison& measure, Judgement judgement) 
   return others == 0 ? all : all + ", " + std::to_string(others) + " not judged (another outcome, or NaN)";
 }
 
-void add_measures(const ResultComparison& comparison, Json& json, DraftReport& report) {
-  const SweepComparison& sweep = *comparison.sweep;
-  const bool is_compared = sweep.problems.empty();
-  const int width = width_of(sweep.measures, "measure");
-  if (is_compared)
-    report.text += formatted("  %-*s %-5s %7s %10s %10s %7s  %-9s %s\n", width, "measure", "units", "runs",
-                             "max", "rms", "outside", "tolerance", "verdict");
-  for (std::size_t i = 0; i < sweep.measures.size(); ++i) {
-    const MeasureComparison& measure = sweep.measures[i];
-    const Judgement judgement = judgement_of(sweep, i, comparison.paired);
-    json["measures"].push_back(measure_json(measure, judgement));
-    if (!is_compared) continue;
-    const auto runs = static_cast<std::size_t>(measure.compared),
-               outside = static_cast<std::size_t>(measure.outside);
-    report.text +=
-        formatted("  %-*s %-5s %7zu %10.4g %10.4g %7zu  %-9s %s\n", width, measure.name.c_str(),
-                  measure.units.c_str(), runs, measure.max_deviation, measure.rms_deviation, outside,
-                  tolerance_text(measure.tolerance).c_str(), verdict_text(measure, judgement).c_str());
-    report.cases.push_back(case_of(measure, judgement, comparison.outcome,
-                                   outside_text(outside, runs, "runs", measure.max_deviation)));
-  }
+ReportRow row_of(const MeasureComparison& measure, Judgement judgement) {
+  ReportRow row;
+  row.add("name", "measure", measure.name).add("units", "units", measure.units);
+  row.tell("direction", text_of(measure.better)).tell("event", measure.event);
+  row.add("runs", "runs", measure.compared);
+  row.tell("outside", measure.outside);
+  row.tell("got_better", measure.got_better).tell("got_worse", measure.got_worse);
+  row.add("max", "max", measure.max_deviation, formatted("%.4g", measure.max_deviation));
+  row.add("rms", "rms", measure.rms_deviation, formatted("%.4g", measure.rms_deviation));
+  row.show("outside", std::to_string(measure.outside), measure.outside);
+  row.show("tolerance", tolerance_text(measure.tolerance)).show("verdict", verdict_text(measure, judgement));
+  row.tell("judgement", name_of(judgement));
+  return row;
 }
 
-Json region_json(const SweepComparison& sweep, const RegionComparison& region) {
-  return {{"region", sweep.regions[region.region].label},
-          {"measure", sweep.measures[region.measure].name},
-          {"runs", region.runs},
-          {"pairs", region.pairs},
-          {"clusters", region.tested},
-          {"outside", region.outside},
-          {"up", region.up},
-          {"down", region.down},
-          {"got_better", region.got_better},
-          {"got_worse", region.got_worse},
-          {"difference", interval(region.difference)},
-          {"baseline_events", region.baseline_events},
-          {"candidate_events", region.candidate_events},
-          {"baseline_fraction", interval(region.baseline_fraction)},
-          {"candidate_fraction", interval(region.candidate_fraction)},
-          {"unpaired", region.unpaired},
-          {"mean_difference", region.mean.value},
-          {"mean_interval", interval(region.mean)},
-          {"baseline_spread", region.baseline_spread},
-          {"mean_p", region.mean.p},
-          {"p", region.difference.p},
-          {"adjusted_p", region.adjusted_p},
-          {"judgement", name_of(region.judgement)}};
+// Only programs read the measures of sweeps that cannot be compared.
+ReportTable measures_of(const SweepComparison& sweep, const ResultComparison& whole) {
+  ReportTable table{"measures"};
+  for (std::size_t i = 0; i < sweep.measures.size(); ++i) {
+    const MeasureComparison& measure = sweep.measures[i];
+    const Judgement judgement = judgement_of(sweep, i, whole.paired);
+    ReportRow& row = table.rows.emplace_back(row_of(measure, judgement));
+    row.is_shown = sweep.problems.empty();
+    if (!row.is_shown) continue;
+    row.result =
+        case_of(measure, judgement, whole.outcome,
+                outside_text(static_cast<std::size_t>(measure.outside),
+                             static_cast<std::size_t>(measure.compared), "runs", measure.max_deviation));
+  }
+  return table;
 }
 
 // True if a measure is printed for a region. An event is printed for all regions. Other measures are printed
@@ -418,72 +333,107 @@ std::string runs_text(const RegionComparison& region) {
 }
 
 // Returns shares with their intervals, the flips both ways, and the result of the paired test.
-std::string line_of(const SweepComparison& sweep, const RegionComparison& region) {
-  const bool event = sweep.measures[region.measure].event;
-  const std::string values = event ? with_interval("%.3f", region.baseline_fraction) + "  " +
-                                         with_interval("%.3f", region.candidate_fraction)
-                                   : with_interval("%.4g", region.mean);
+ReportRow row_of(const SweepComparison& sweep, const RegionComparison& region) {
+  const MeasureComparison& measure = sweep.measures[region.measure];
+  const std::string& label = sweep.regions[region.region].label;
   const Estimate& d = region.difference;
-  const std::string interval =
-      std::isnan(d.low + d.high) ? "no interval" : formatted("%+.4f to %+.4f", d.low, d.high);
-  return "    " + runs_text(region) + "  " + values + "  " + std::to_string(region.up) + " / " +
-         std::to_string(region.down) + "  " + interval + "  " + p_text(region, event) + "  " +
-         word_for(region.judgement) + "  " + sweep.regions[region.region].label + "\n";
+  ReportRow row{.is_shown = sweep.first && sweep.problems.empty() && measure.outside > 0 &&
+                            is_reported(sweep, region.region, region.measure)};
+  row.show("runs", runs_text(region));
+  row.show("values", measure.event ? with_interval("%.3f", region.baseline_fraction) + "  " +
+                                         with_interval("%.3f", region.candidate_fraction)
+                                   : with_interval("%.4g", region.mean));
+  row.show("more / less", std::to_string(region.up) + " / " + std::to_string(region.down));
+  row.show("interval",
+           std::isnan(d.low + d.high) ? "no interval" : formatted("%+.4f to %+.4f", d.low, d.high));
+  row.show("p", p_text(region, measure.event)).show("verdict", word_for(region.judgement));
+  row.add("region", "region", label).tell("measure", measure.name);
+  row.tell("runs", region.runs).tell("pairs", region.pairs).tell("clusters", region.tested);
+  row.tell("outside", region.outside).tell("up", region.up).tell("down", region.down);
+  row.tell("got_better", region.got_better).tell("got_worse", region.got_worse);
+  row.tell("difference", interval(region.difference));
+  row.tell("baseline_events", region.baseline_events).tell("candidate_events", region.candidate_events);
+  row.tell("baseline_fraction", interval(region.baseline_fraction));
+  row.tell("candidate_fraction", interval(region.candidate_fraction));
+  row.tell("unpaired", region.unpaired).tell("mean_difference", region.mean.value);
+  row.tell("mean_interval", interval(region.mean)).tell("baseline_spread", region.baseline_spread);
+  row.tell("mean_p", region.mean.p).tell("p", region.difference.p).tell("adjusted_p", region.adjusted_p);
+  row.tell("judgement", name_of(region.judgement));
+  return row;
 }
 
-std::string regions_text(const SweepComparison& sweep) {
-  std::string all;
-  const std::string tests = std::to_string(sweep.tests);
+// Returns what the table of the regions of a measure shows.
+std::string heading_of(const SweepComparison& sweep, const MeasureComparison& measure) {
+  return "  " + measure.name +
+         " by region: " + (measure.event ? "share of runs before and now" : "mean difference") +
+         ", more / less in the candidate, interval of the difference of shares, p, and adjusted for all " +
+         std::to_string(sweep.tests) +
+         " tests (Holm), with the test; a cluster has the runs that share random numbers";
+}
+
+// For people a table for each measure that changed, for programs one of all regions.
+void add_regions(const SweepComparison& sweep, Report& report) {
+  ReportTable all{"regions"};
+  for (const RegionComparison& region : sweep.by_region) {
+    all.rows.push_back(row_of(sweep, region));
+    all.rows.back().is_shown = false;
+  }
+  report.add(all);
+  if (!sweep.first || !sweep.problems.empty()) return;
   for (std::size_t m = 0; m < sweep.measures.size(); ++m) {
     if (sweep.measures[m].outside == 0) continue;
-    all += "  " + sweep.measures[m].name +
-           " by region: " + (sweep.measures[m].event ? "share of runs before and now" : "mean difference") +
-           ", more / less in the candidate, interval of the difference of shares, p, and adjusted for all " +
-           tests + " tests (Holm), with the test; a cluster has the runs that share random numbers\n";
+    report.line(heading_of(sweep, sweep.measures[m]));
+    ReportTable table{.indent = "    ", .has_headings = false};
     for (std::size_t r = 0; r < sweep.regions.size(); ++r)
-      if (is_reported(sweep, r, m)) all += line_of(sweep, sweep.at(r, m));
+      if (is_reported(sweep, r, m)) table.rows.push_back(row_of(sweep, sweep.at(r, m)));
+    report.add(table);
   }
   if (sweep.needed_clusters > 0)
-    all += "  " + tests + " tests show no direction in a region of fewer than " +
-           std::to_string(sweep.needed_clusters) + " independent runs\n";
-  return all;
+    report.line("  " + std::to_string(sweep.tests) + " tests show no direction in a region of fewer than " +
+                std::to_string(sweep.needed_clusters) + " independent runs");
 }
 
-std::string headline_of(const FirstDifference& first) {
+// The cell of a run: "0,2".
+std::string cell_of(const FirstDifference& first) {
   std::string cell;
   for (const std::size_t index : first.axis_indices)
     cell.append(cell.empty() ? "" : ",").append(std::to_string(index));
-  const std::string replicate = std::to_string(first.replicate);
+  return cell;
+}
+
+void add_headline(const FirstDifference& first, Report& report) {
+  const std::string cell = cell_of(first), replicate = std::to_string(first.replicate);
   std::string text = "first run that differs: cell " + cell + ", replicate " + replicate;
   if (!first.measure.empty())
     text +=
         ", " + first.measure + " " + value_text(first.baseline) + " against " + value_text(first.candidate);
-  return text + "\nsee it: remote-touch replay FILE --cell " + cell + " --replicate " + replicate +
-         " -o trace.h5, of both, then compare\n";
+  report.line(text);
+  report.line("see it: remote-touch replay FILE --cell " + cell + " --replicate " + replicate +
+              " -o trace.h5, of both, then compare");
 }
 
-void add_sweep(const ResultComparison& comparison, DraftReport& report) {
+Report report_of(const FirstDifference& first) {
+  Report report;
+  report.tell("cell", list_of(first.axis_indices)), report.tell("replicate", first.replicate);
+  report.tell("measure", first.measure);
+  report.tell("baseline", first.baseline), report.tell("candidate", first.candidate);
+  return report;
+}
+
+void add_sweep(const ResultComparison& comparison, Report& report) {
   const SweepComparison& sweep = *comparison.sweep;
   for (const auto* const lines : {&sweep.problems, &sweep.notes})
-    for (const std::string& line : *lines) report.text += "  " + line + "\n";
-  Json json = {{"problems", sweep.problems},
-               {"notes", sweep.notes},
-               {"runs", sweep.done_in_both},
-               {"done_in_baseline_only", sweep.baseline_only.size()},
-               {"done_in_candidate_only", sweep.candidate_only.size()},
-               {"newly_failed", sweep.newly_failed},
-               {"tests", sweep.tests}};
-  add_measures(comparison, json, report);
-  if (sweep.first)
-    json["first_difference"] = {{"cell", sweep.first->axis_indices},
-                                {"replicate", sweep.first->replicate},
-                                {"measure", sweep.first->measure},
-                                {"baseline", sweep.first->baseline},
-                                {"candidate", sweep.first->candidate}};
-  for (const RegionComparison& region : sweep.by_region)
-    json["regions"].push_back(region_json(sweep, region));
-  report.json["sweep"] = json;
-  if (sweep.first && sweep.problems.empty()) report.text += regions_text(sweep);
+    for (const std::string& line : *lines) report.line("  " + line);
+  Report details;
+  details.tell("problems", list_of(sweep.problems)), details.tell("notes", list_of(sweep.notes));
+  details.tell("runs", sweep.done_in_both);
+  details.tell("done_in_baseline_only", sweep.baseline_only.size());
+  details.tell("done_in_candidate_only", sweep.candidate_only.size());
+  details.tell("newly_failed", sweep.newly_failed), details.tell("tests", sweep.tests);
+  details.add(measures_of(sweep, comparison));
+  if (sweep.first) details.add("first_difference", report_of(*sweep.first));
+  add_regions(sweep, details);
+  report.add("sweep", details);
 }
 
 // --- the headline ---
@@ -515,7 +465,7 @@ std::string story_of(const ResultComparison& comparison) {
       if (measure.name != (passes ? "first_pop_through_time" : "first_contact_time")) continue;
       const std::string act = passes ? act_of(measure, "passes through the surface", is_known)
                                      : act_of(measure, "first touches", true);
-      if (!act.empty()) return act + "\n";
+      if (!act.empty()) return act;
     }
   // Proxies of one tick are compared, which is of interest only if its time is the same in both runs.
   const ColumnComparison *time = nullptr, *proxy = nullptr;
@@ -525,54 +475,62 @@ std::string story_of(const ResultComparison& comparison) {
     else if (column.name == "proxy_position" && column.problem.empty() && column.not_numbers == 0)
       proxy = &column;
   if (!time || !time->is_same() || !proxy || proxy->is_same()) return {};
-  return formatted("the proxies are at most %.4g mm apart\n", 1e3 * proxy->max);
+  return formatted("the proxies are at most %.4g mm apart", 1e3 * proxy->max);
 }
 
-// The verdict, the first difference, and what happens in only one of two runs.
-std::string headline_of(const ResultComparison& comparison) {
+// Adds the verdict, the first difference, and what happens in only one of two runs.
+void add_headline(const ResultComparison& comparison, Report& report) {
   constexpr const char* kWords[] = {"same", "REGRESSED", "COULD NOT COMPARE", "", "CHANGED"};
-  std::string text =
-      kWords[static_cast<std::size_t>(comparison.outcome)] + std::string(": ") + comparison.verdict + "\n";
-  if (comparison.columns && comparison.columns->divergence)
-    text += headline_of(*comparison.columns->divergence) + story_of(comparison);
+  report.line(kWords[static_cast<std::size_t>(comparison.outcome)] + std::string(": ") + comparison.verdict);
+  if (comparison.columns && comparison.columns->divergence) {
+    report.line(headline_of(*comparison.columns->divergence));
+    report.line(story_of(comparison));
+  }
   if (comparison.sweep && comparison.sweep->first && comparison.sweep->problems.empty())
-    text += headline_of(*comparison.sweep->first);
-  return text;
+    add_headline(*comparison.sweep->first, report);
+}
+
+// Adds the two files; the baseline is first in the lines below, too: "seed 1 against 7".
+void add_files(const ResultComparison& comparison, Report& report) {
+  report.line(comparison.kind + ": baseline " + printable(comparison.baseline) + " against candidate " +
+              printable(comparison.candidate));
+  report.tell("baseline", comparison.baseline), report.tell("candidate", comparison.candidate);
+  report.tell("kind", comparison.kind), report.tell("outcome", name_of(comparison.outcome));
+  report.tell("verdict", comparison.verdict);
+  report.tell("configuration", list_of(comparison.configuration));
+  report.tell("provenance", list_of(comparison.provenance));
+  for (const std::string& line : comparison.configuration) report.line("  configuration: " + line);
+  for (const std::string& line : comparison.provenance) report.line("  provenance: " + line);
+}
+
+Report report_of(const HashComparison& hashes) {
+  Report report;
+  report.tell("compared", hashes.compared), report.tell("same_up_to_tick", hashes.same);
+  report.tell("different_at_tick", hashes.different);
+  return report;
 }
 
 }  // namespace
 
-ComparisonReport report_of(const ResultComparison& comparison) {
+Report report_of(const ResultComparison& comparison) {
   constexpr CaseState kStates[] = {
       CaseState::passed, CaseState::failed, CaseState::error, {}, CaseState::skipped};
-  const auto outcome = static_cast<std::size_t>(comparison.outcome);
-  // The lines below state the baseline first, too: "seed 1 against 7".
-  DraftReport report{comparison.kind + ": baseline " + comparison.baseline + " against candidate " +
-                         comparison.candidate + "\n",
-                     {{"baseline", comparison.baseline},
-                      {"candidate", comparison.candidate},
-                      {"kind", comparison.kind},
-                      {"outcome", name_of(comparison.outcome)},
-                      {"verdict", comparison.verdict},
-                      {"configuration", comparison.configuration},
-                      {"provenance", comparison.provenance}}};
-  for (const std::string& line : comparison.configuration) report.text += "  configuration: " + line + "\n";
-  for (const std::string& line : comparison.provenance) report.text += "  provenance: " + line + "\n";
+  Report report;
+  add_headline(comparison, report);
+  add_files(comparison, report);
   if (comparison.columns) {
     add_columns(*comparison.columns, report);
-    const auto& divergence = comparison.columns->divergence;
-    report.json["divergence"] = divergence ? divergence_json(*divergence) : Json();
-    if (divergence) report.text += divergence_text(*divergence);
+    if (const auto& divergence = comparison.columns->divergence)
+      report.add("divergence", report_of(*divergence));
+    else
+      report.tell("divergence", {});
   }
   add_measures(comparison, report);
   if (comparison.sweep) add_sweep(comparison, report);
-  if (comparison.hashes)
-    report.json["hashes"] = {{"compared", comparison.hashes->compared},
-                             {"same_up_to_tick", optional_json(comparison.hashes->same)},
-                             {"different_at_tick", optional_json(comparison.hashes->different)}};
-  report.cases.push_back({comparison.kind, kStates[outcome], comparison.verdict});
-  return {headline_of(comparison) + report.text,
-          report.json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", report.cases};
+  if (comparison.hashes) report.add("hashes", report_of(*comparison.hashes));
+  report.add(
+      ReportCase{comparison.kind, kStates[static_cast<std::size_t>(comparison.outcome)], comparison.verdict});
+  return report;
 }
 
 }  // namespace remote_touch

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/report/report.h"
 #include "analysis/storage/hdf5_reader.h"
 #include "analysis/storage/trace_comparison.h"
 #include "analysis/sweeps/sweep_comparison.h"
@@ -70,35 +71,12 @@ ResultComparison compare_sweep(const SweepResult& baseline, const TextAttributes
                                const SweepResult& candidate, const TextAttributes& candidate_attributes,
                                const ComparisonRules& rules);
 
-// Comparisons and checks for build servers: JUnit's XML.
-
-// One test case and its result.
-struct ReportCase {
-  enum class State { passed, failed, error, skipped };
-  std::string name;
-  State state = State::passed;
-  std::string text = {};  // why it did not pass
-};
-struct ReportSuite {
-  std::string name;
-  std::vector<ReportCase> cases = {};
-};
-
-std::string junit(const std::vector<ReportSuite>& suites);
-
-// The report of a comparison: as text for people, as JSON, and as test cases for build servers.
-
-struct ComparisonReport {
-  std::string text;  // tables
-  // The text of a JSON file: {"outcome", "verdict", "kind", "columns": [...], "divergence": {...}, ...}.
-  // Numbers that are not finite are null.
-  std::string json;
-  // A case for each column or measure, and one for the whole. A measure that got worse is a failure. Any
-  // other difference is "skipped", so that nobody mistakes it for a failure or for a pass, and its text
-  // describes it. A comparison that was not possible or not decided is an error.
-  std::vector<ReportCase> cases = {};
-};
-ComparisonReport report_of(const ResultComparison& comparison);
+// Returns the report of a comparison. As text: the verdict, the first difference, what happens in only one of
+// two runs, then tables. As JSON: {"outcome", "verdict", "kind", "columns": [...], "divergence": {...}, ...}.
+// Its test cases: one for each column or measure, and one for the whole. A measure that got worse is a
+// failure. Any other difference is "skipped", so that nobody mistakes it for a failure or for a pass, and its
+// text describes it. A comparison that was not possible or not decided is an error.
+Report report_of(const ResultComparison& comparison);
 
 // The fewest digits that state the number exactly: "0.033", not "0.033000000000000002".
 std::string shortest_text(double number);

@@ -99,10 +99,11 @@ int command_compare(const CommandLine& line, const CompareRequest& request) {
   if (!request.plot.empty()) lock.emplace(lock_output(line, request.plot, inputs));
   const ResultComparison comparison = compare_results(request.baseline, request.candidate, rules);
   require_traces_to_draw(request, comparison);
-  const ComparisonReport report = report_of(comparison);
-  std::fputs(report.text.c_str(), stdout);
-  if (!request.json.empty()) write_file_atomically(request.json, report.json);
-  if (!request.junit.empty()) write_file_atomically(request.junit, junit({{request.baseline, report.cases}}));
+  const Report report = report_of(comparison);
+  std::fputs(report.text().c_str(), stdout);
+  if (!request.json.empty()) write_file_atomically(request.json, report.json());
+  if (!request.junit.empty())
+    write_file_atomically(request.junit, junit({{request.baseline, report.cases()}}));
   if (!request.plot.empty()) write_plot(line, request, comparison);
   if (!request.view.empty()) write_view(line, view);
   return static_cast<int>(comparison.outcome);

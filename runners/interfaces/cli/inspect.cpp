@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "analysis/report/report.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/hdf5_file.h"
@@ -62,8 +63,8 @@ class Extents {
   int dimensions_ = 0;
 };
 
-// Prints the least, the greatest and the mean of the finite values, and how many values are not finite.
-void print_numbers(const std::vector<double>& values) {
+// Returns the least, the greatest and the mean of the finite values, and how many values are not finite.
+std::string numbers_text(const std::vector<double>& values) {
   double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0;
   std::size_t finite = 0;
   for (const double v : values) {
@@ -71,81 +72,77 @@ void print_numbers(const std::vector<double>& values) {
     low = std::min(low, v), high = std::max(high, v), sum += v;
     ++finite;
   }
-  if (finite > 0) std::printf("  %.6g .. %.6g, mean %.6g", low, high, sum / static_cast<double>(finite));
-  if (finite < values.size()) std::printf("  (%zu not finite)", values.size() - finite);
-  std::puts("");
+  std::string text;
+  if (finite > 0) text = formatted("%.6g .. %.6g, mean %.6g", low, high, sum / static_cast<double>(finite));
+  if (finite < values.size()) text += formatted("  (%zu not finite)", values.size() - finite);
+  return text;
 }
 
-// Prints how many of the values each name has, unless it is none. has(value, i): true if it has the i-th
+// Returns how many of the values each name has, unless it is none. has(value, i): true if it has the i-th
 // name.
 template <class Value, class Has>
-void print_counts(const std::vector<std::string>& names, const std::vector<Value>& values, const Has& has) {
+std::string counts_text(const std::vector<std::string>& names, const std::vector<Value>& values,
+                        const Has& has) {
+  std::vector<std::string> counts;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (const auto count =
             std::count_if(values.begin(), values.end(), [&](const Value& value) { return has(value, i); });
         count > 0)
-      std::printf("  %s %td", names[i].c_str(), count);
-  std::puts("");
+      counts.push_back(names[i] + " " + std::to_string(count));
+  return joined(counts, "  ");
 }
 
-// Prints the number of texts that are not empty, and the first of them.
-void print_texts(const std::vector<std::string>& texts) {
-  const auto is_empty = [](const std::string& text) { return text.empty(); };
-  const auto first = std::find_if_not(texts.begin(), texts.end(), is_empty);
-  std::printf("  %td not empty%s%s\n",
-              static_cast<std::ptrdiff_t>(texts.size()) - std::count_if(texts.begin(), texts.end(), is_empty),
-              first == texts.end() ? "" : ": ", first == texts.end() ? "" : first->c_str());
+// Returns the number of texts that are not empty, and the first of them.
+std::string texts_text(const std::vector<std::string>& texts) {
+  std::size_t count = 0;
+  const std::string* first = nullptr;
+  for (const std::string& text : texts)
+    if (!text.empty() && ++count == 1) first = &text;
+  return std::to_string(count) + " not empty" + (first ? ": " + *first : "");
 }
 
-void print_hashes(const std::vector<std::uint64_t>& values) {
-  if (!values.empty()) std::printf("  last %016" PRIx64, values.back());
-  std::puts("");
-}
-
-// Prints the values of a column and ends the line: the range and the mean of numbers, the counts of names,
-// the number of texts that are not empty and the first of them, or the last of hashes.
-void print_values(const Column& column) {
-  if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) return print_numbers(*numbers);
-  if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) return print_texts(*texts);
+// Returns what a column holds: the range and the mean of numbers, the counts of names, the number of texts
+// that are not empty and the first of them, or the last of hashes.
+std::string values_text(const Column& column) {
+  if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) return numbers_text(*numbers);
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&column.values)) return texts_text(*texts);
   if (const auto* hashes = std::get_if<std::vector<std::uint64_t>>(&column.values))
-    return print_hashes(*hashes);
+    return hashes->empty() ? "" : formatted("last %016" PRIx64, hashes->back());
   const auto& integers = std::get<std::vector<std::int32_t>>(column.values);
-  if (column.value_names.empty())
-    print_numbers({integers.begin(), integers.end()});
-  else
-    print_counts(column.value_names, integers,
-                 [](std::int32_t value, std::size_t i) { return static_cast<std::size_t>(value) == i; });
+  if (column.value_names.empty()) return numbers_text({integers.begin(), integers.end()});
+  return counts_text(column.value_names, integers,
+                     [](std::int32_t value, std::size_t i) { return static_cast<std::size_t>(value) == i; });
 }
 
-// The unit is printed only for columns whose values are printed as numbers.
-void print_datasets(const Hdf5Content& content) {
+// The unit is told only of columns whose values are told as numbers.
+ReportTable table_of_datasets(const Hdf5Content& content) {
   const Extents extents(content);
   const std::vector<std::string> note_kinds = split_names(attribute(content.attributes, "note_kinds"));
-  std::size_t longest = 0, widest = 0;
-  for (const auto& [path, column] : content.datasets)
-    longest = std::max(longest, path.size()), widest = std::max(widest, extents.of(path, column).size());
+  ReportTable table{.has_headings = false};
   for (const auto& [path, column] : content.datasets) {
     const bool has_unit =
         std::holds_alternative<std::vector<double>>(column.values) ||
         (std::holds_alternative<std::vector<std::int32_t>>(column.values) && column.value_names.empty());
-    std::printf("  %-*s %*s  %-5s", static_cast<int>(longest), path.c_str(), static_cast<int>(widest),
-                extents.of(path, column).c_str(), has_unit ? column.units.c_str() : "");
     const auto* const bits = std::get_if<std::vector<std::uint64_t>>(&column.values);
-    if (bits && path == "/sweep/notes")
-      print_counts(note_kinds, *bits,
-                   [](std::uint64_t notes, std::size_t bit) { return bit < 64 && (notes >> bit & 1) != 0; });
-    else
-      print_values(column);
+    const auto has_bit = [](std::uint64_t notes, std::size_t bit) {
+      return bit < 64 && (notes >> bit & 1) != 0;
+    };
+    const bool has_notes = bits && path == "/sweep/notes";
+    ReportRow& row = table.rows.emplace_back();
+    row.show("path", path).show("extent", extents.of(path, column), 0);
+    row.show("unit", has_unit ? column.units : "");
+    row.show("values", has_notes ? counts_text(note_kinds, *bits, has_bit) : values_text(column));
   }
+  return table;
 }
 
 // Indents the lines of a text, such as the hashes of several inputs, to the column of values.
-void print_attribute(const std::string& name, const std::string& value) {
+void add_attribute(Report& report, const std::string& name, const std::string& value) {
   std::istringstream lines(value);
   std::string line;
   std::getline(lines, line);
-  std::printf("  %-12s %s\n", printable(name).c_str(), printable(line).c_str());
-  while (std::getline(lines, line)) std::printf("%15s%s\n", "", printable(line).c_str());
+  report.line(formatted("  %-12s ", printable(name).c_str()) + printable(line));
+  while (std::getline(lines, line)) report.line(std::string(15, ' ') + printable(line));
 }
 
 // Attributes that only --all prints: programs read them, other lines state them, or they are long.
@@ -169,27 +166,27 @@ TextAttributes summary_of(const std::string& file, const TextAttributes& attribu
           {"digest", attribute(attributes, "digest")}};
 }
 
-void print_main_attributes(const std::string& file, const TextAttributes& attributes) {
+void add_main_attributes(Report& report, const std::string& file, const TextAttributes& attributes) {
   for (const auto& [name, value] : summary_of(file, attributes))
-    if (!value.empty()) print_attribute(name, value);
+    if (!value.empty()) add_attribute(report, name, value);
   std::size_t more = 0;
   for (const auto& [name, value] : attributes)
     if (std::find(kSeldomRead.begin(), kSeldomRead.end(), name) != kSeldomRead.end())
       ++more;
     else if (std::find(kInSummary.begin(), kInSummary.end(), name) == kInSummary.end())
-      print_attribute(name, value);
+      add_attribute(report, name, value);
   if (more > 0)
-    std::printf("  (%zu more with --all%s)\n", more,
-                attribute(attributes, "config").empty() ? "" : ", among them the configuration");
+    report.line(formatted("  (%zu more with --all%s)", more,
+                          attribute(attributes, "config").empty() ? "" : ", among them the configuration"));
 }
 
-void print_attributes(const std::string& file, const TextAttributes& attributes, bool all) {
-  if (!all) return print_main_attributes(file, attributes);
+void add_attributes(Report& report, const std::string& file, const TextAttributes& attributes, bool all) {
+  if (!all) return add_main_attributes(report, file, attributes);
   for (const auto& [name, value] : attributes) {
     if (name == "config" && !value.empty())
-      std::printf("  config\n%s\n", parse_json(value, file + " config").dump(2).c_str());
+      report.line("  config\n" + parse_json(value, file + " config").dump(2));
     else
-      print_attribute(name, value);
+      add_attribute(report, name, value);
   }
 }
 
@@ -216,18 +213,22 @@ std::vector<std::string> notes_on(const std::string& file, const Hdf5Content& co
   return notes;
 }
 
-void print_unfinished(const std::string& file, bool all) {
+Report report_of_unfinished(const std::string& file, bool all) {
   const UnfinishedSession session = read_unfinished(file);
-  std::printf("%s\n  unfinished, %" PRIu64 " ticks and %" PRIu64 " frames%s\n", printable(file).c_str(),
-              session.ticks, session.frames, session.is_growing ? "; it is being recorded" : "");
-  if (session.has_end) print_attribute("note", "the recording has ended, but its file was not made");
+  Report report;
+  report.line(printable(file));
+  report.line(formatted("  unfinished, %" PRIu64 " ticks and %" PRIu64 " frames%s", session.ticks,
+                        session.frames, session.is_growing ? "; it is being recorded" : ""));
+  if (session.has_end) add_attribute(report, "note", "the recording has ended, but its file was not made");
   if (session.left_out_bytes > 0)
-    print_attribute("note", "the last " + std::to_string(session.left_out_bytes) +
-                                " bytes are left out, from the first damaged or incomplete block on");
-  print_attribute("next", "remote-touch recover " + printable(file) + " -o FILE");
+    add_attribute(report, "note",
+                  "the last " + std::to_string(session.left_out_bytes) +
+                      " bytes are left out, from the first damaged or incomplete block on");
+  add_attribute(report, "next", "remote-touch recover " + printable(file) + " -o FILE");
   TextAttributes attributes = session.attributes;
   attributes.insert(attributes.end(), session.ending.begin(), session.ending.end());
-  print_attributes(file, attributes, all);
+  add_attributes(report, file, attributes, all);
+  return report;
 }
 
 // --- a folder with the shards of a sweep ---
@@ -294,66 +295,71 @@ std::string extent_of(const std::string& name, const Column& column, const Sweep
   return size == tally.cells.size() ? cells : std::to_string(size / tally.cells.size()) + " x " + cells;
 }
 
-void print_arrays(const SweepTally& tally, const Hdf5Content& content) {
+void add_arrays(Report& report, const SweepTally& tally, const Hdf5Content& content) {
   const bool is_whole = tally.cells.size() == tally.cell_count();
   const std::string cells = is_whole ? extent_text(tally) : std::to_string(tally.cells.size()) + " cells";
-  std::printf(
-      "  arrays below /tally: extent (%s: a value of each cell%s), unit, meaning, and range of the values\n",
-      cells.c_str(), is_whole ? "" : " with runs");
-  std::size_t width = 0;
-  for (const auto& dataset : content.datasets) width = std::max(width, dataset.first.size());
+  report.line(formatted(
+      "  arrays below /tally: extent (%s: a value of each cell%s), unit, meaning, and range of the values",
+      cells.c_str(), is_whole ? "" : " with runs"));
+  ReportTable table{.indent = "    ", .has_headings = false};
   for (const auto& [path, column] : content.datasets) {
     const std::string name = path.substr(path.find('/', 1));
-    std::printf("    %-*s  %-14s  %-6s %s", static_cast<int>(width - 7), name.c_str() + 1,
-                extent_of(name, column, tally, cells).c_str(),
-                column.units == "1" ? "" : column.units.c_str(), printable(column.long_name).c_str());
-    if (is_code(name))
-      std::puts("");
-    else
-      std::putchar(':'), print_values(column);
+    ReportRow& row = table.rows.emplace_back();
+    row.show("array", name.substr(1)).show("extent", extent_of(name, column, tally, cells));
+    row.show("unit", column.units == "1" ? "" : column.units);
+    row.show("meaning", column.long_name + (is_code(name) ? "" : ": " + values_text(column)));
   }
+  report.add(table);
 }
 
-// Prints the runs and the measures of a tally. all_arrays: also the extent, unit, meaning and values of each
+// Adds the runs and the measures of a tally. all_arrays: also the extent, unit, meaning and values of each
 // of its arrays.
-void print_tally(const std::string& file, const Hdf5Content& content, bool all_arrays) {
+void add_tally(Report& report, const std::string& file, const Hdf5Content& content, bool all_arrays) {
   const StoredTally stored = read_tally(Hdf5Reader(file));
   const SweepTally& tally = stored.tally;
   const CellTally all = tally.over_all_cells();
-  std::printf("  tally        %s cells, %d replicates each: %lld of %llu runs done, %lld failed\n",
-              extent_text(tally).c_str(), tally.replicates, static_cast<long long>(all.done),
-              static_cast<unsigned long long>(tally.run_count()), static_cast<long long>(all.failed));
-  std::puts("  measures over all of these runs: mean, least .. greatest, unit, median, meaning");
+  report.line(formatted("  tally        %s cells, %d replicates each: %lld of %llu runs done, %lld failed",
+                        extent_text(tally).c_str(), tally.replicates, static_cast<long long>(all.done),
+                        static_cast<unsigned long long>(tally.run_count()),
+                        static_cast<long long>(all.failed)));
+  report.line("  measures over all of these runs: mean, least .. greatest, unit, median, meaning");
+  ReportTable table{.indent = "    ", .has_headings = false};
   for (std::size_t i = 0; i < all.measures.size(); ++i)
-    std::printf("    %-22s %s; %s\n", tally.measures[i].name.c_str(),
-                measure_text(all.measures[i], tally.measures[i].units).c_str(),
-                tally.measures[i].long_name.c_str());
-  print_equal_runs(tally, attribute(stored.attributes, "config"));
-  if (all_arrays) print_arrays(tally, content);
+    table.rows.emplace_back()
+        .show("measure", tally.measures[i].name)
+        .show("values",
+              measure_text(all.measures[i], tally.measures[i].units) + "; " + tally.measures[i].long_name);
+  report.add(table);
+  report.line(note_on_equal_runs(tally, attribute(stored.attributes, "config")));
+  if (all_arrays) add_arrays(report, tally, content);
+}
+
+Report report_of_file(const std::string& file, bool all) {
+  const Hdf5Content content = read_hdf5(file);
+  Report report;
+  report.line(printable(file) + printable(kind_text(content)));
+  for (const std::string& note : notes_on(file, content)) add_attribute(report, "note", note);
+  if (is_tally(content.attributes)) {
+    TextAttributes others = content.attributes;  // all but those that add_tally() adds
+    std::erase_if(others, [](const auto& each) { return each.first.starts_with("measure_"); });
+    add_attributes(report, file, others, all);
+    add_tally(report, file, content, all);
+    return report;
+  }
+  add_attributes(report, file, content.attributes, all);
+  report.add(table_of_datasets(content));
+  if (attribute(content.attributes, "schema") == schema_name("sweep"))
+    report.line(note_on_equal_runs(read_sweep_outline(Hdf5Reader(file)).result,
+                                   attribute(content.attributes, "config")));
+  return report;
 }
 
 int command_inspect(const CommandLine&, const InspectRequest& request) {
-  const std::string& file = request.file;
   std::error_code unreachable;
-  if (std::filesystem::is_directory(file, unreachable)) return inspect_folder(file);
-  if (is_journal(file)) {
-    print_unfinished(file, request.all);
-    return kDone;
-  }
-  const Hdf5Content content = read_hdf5(file);
-  std::printf("%s%s\n", printable(file).c_str(), printable(kind_text(content)).c_str());
-  for (const std::string& note : notes_on(file, content)) print_attribute("note", printable(note));
-  if (is_tally(content.attributes)) {
-    TextAttributes others = content.attributes;  // all but those that print_tally() prints
-    std::erase_if(others, [](const auto& each) { return each.first.starts_with("measure_"); });
-    print_attributes(file, others, request.all);
-    print_tally(file, content, request.all);
-    return kDone;
-  }
-  print_attributes(file, content.attributes, request.all);
-  print_datasets(content);
-  if (attribute(content.attributes, "schema") == schema_name("sweep"))
-    print_equal_runs(read_sweep_outline(Hdf5Reader(file)).result, attribute(content.attributes, "config"));
+  if (std::filesystem::is_directory(request.file, unreachable)) return inspect_folder(request.file);
+  const Report report = is_journal(request.file) ? report_of_unfinished(request.file, request.all)
+                                                 : report_of_file(request.file, request.all);
+  std::fputs(report.text().c_str(), stdout);
   return kDone;
 }
 

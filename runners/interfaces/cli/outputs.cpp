@@ -254,18 +254,18 @@ int SweepSummary::print(const std::string& file, const std::string& digest) cons
   return failed_ == 0 ? kDone : kCheckFailed;
 }
 
-void print_equal_runs(const SweepGrid& grid, const std::string& config) {
+std::string note_on_equal_runs(const SweepGrid& grid, const std::string& config) {
   constexpr std::size_t kMostCells = 1'000'000;
-  if (grid.replicates == 1 || grid.cell_count() > kMostCells) return;
+  if (grid.replicates == 1 || grid.cell_count() > kMostCells) return {};
   const CellStreams streams = streams_of(grid, config);
   std::size_t fixed = 0, first = 0;
   for (std::size_t cell = grid.cell_count(); cell-- > 0;)
     if (streams.doubt.empty() && streams.is_fixed(cell)) ++fixed, first = cell;
-  if (fixed > 0)
-    std::printf(
-        "  note: %zu of %zu cells draw no random numbers: their %d replicates are equal, and analyse "
-        "counts them as one run (the first: --cell %s)\n",
-        fixed, grid.cell_count(), grid.replicates, cell_text(grid, first).c_str());
+  if (fixed == 0) return {};
+  return formatted(
+      "  note: %zu of %zu cells draw no random numbers: their %d replicates are equal, and analyse "
+      "counts them as one run (the first: --cell %s)",
+      fixed, grid.cell_count(), grid.replicates, cell_text(grid, first).c_str());
 }
 
 int print_summary(const std::string& file, const SweepResult& result) {

@@ -111,9 +111,9 @@ int print_summary(const std::string& file, const SweepResult& result);
 // kind of note, and the first failed run of each cell. Returns kDone, or kCheckFailed if a run failed.
 int print_summary(const std::string& file, const SweepTally& tally);
 
-// Prints a note on the cells whose replicates are equal, because they draw no random numbers. grid: of the
-// sweep with this configuration (JSON). Prints nothing if each cell has one run, and for more than 1e6 cells.
-void print_equal_runs(const SweepGrid& grid, const std::string& config);
+// Returns a line on the cells whose replicates are equal, because they draw no random numbers. grid: of the
+// sweep with this configuration (JSON). Empty if each cell has one run, and for more than 1e6 cells.
+std::string note_on_equal_runs(const SweepGrid& grid, const std::string& config);
 
 // Returns, for example, "mean 0.25 0 .. 1 1, median 0, of 4 of 5 runs": mean, range, unit, median, and how
 // many runs have a finite value.

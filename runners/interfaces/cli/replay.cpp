@@ -427,7 +427,7 @@ int command_repro(const CommandLine& line, const ReproRequest& request) {
   if (!request.run) return kDone;
   std::fflush(stdout);
   const ResultComparison comparison = repro.again();
-  std::fputs(report_of(comparison).text.c_str(), stdout);
+  std::fputs(report_of(comparison).text().c_str(), stdout);
   return comparison.outcome == Outcome::same             ? kDone
          : comparison.outcome == Outcome::not_comparable ? kBadInput
                                                          : kCheckFailed;

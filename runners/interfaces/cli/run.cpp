@@ -146,7 +146,7 @@ void print(const BaselineCheck& check) {
   std::printf("%-18s %-24s %s\n", kWords[static_cast<int>(check.state)], check.name.c_str(),
               check.text.c_str());
   if (check.comparison && check.state != State::same)
-    std::fputs(report_of(*check.comparison).text.c_str(), stdout);
+    std::fputs(report_of(*check.comparison).text().c_str(), stdout);
 }
 
 // "66 baselines: 63 same, 1 changed, 1 could not be compared, 1 not run; 0 missing"
@@ -173,15 +173,15 @@ ReportSuite suite_of(const std::vector<BaselineCheck>& checks) {
 // Returns the report of each check. A check without a comparison has one with its verdict and without
 // columns.
 std::string json_of(const std::vector<BaselineCheck>& checks) {
-  Json list = Json::array();
+  std::vector<Report> reports;
   for (const BaselineCheck& check : checks) {
     ResultComparison none{"", "this program", check.state == State::not_run ? "not run" : "none"};
     none.verdict = check.text;
     if (check.state == State::missing) none.outcome = Outcome::changed;
-    list.push_back(Json::parse(report_of(check.comparison.value_or(none)).json));
-    list.back()["baseline"] = check.name;
+    reports.push_back(report_of(check.comparison.value_or(none)));
+    reports.back().tell("baseline", check.name);
   }
-  return list.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return remote_touch::json_of(reports);
 }
 
 int exit_code(const std::vector<BaselineCheck>& checks) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/report/report.h"
 #include "analysis/storage/atomic_file.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/scorecard/benchmark.h"
@@ -135,32 +136,29 @@ void require_inputs_kept(const ScorecardRequest& request) {
         require_different_file(std::filesystem::path(request.folder) / written, name);
 }
 
-// Prints the noise of each column of a scene.
-void print_levels(const std::vector<double>& noise_m, int width) {
-  std::printf("  %-*s", width, "noise in mm");
-  for (const double sigma_m : noise_m)
-    if (std::isnan(sigma_m))
-      std::printf(" %7s", "own");
-    else
-      std::printf(" %7.3g", 1e3 * sigma_m);
-  std::printf("\n");
+// Returns the successes of each method in a scene; the headings are the noise.
+ReportTable success_table(const Scorecard& card, const SceneScore& scene) {
+  ReportTable table;
+  for (std::size_t c = 0; c < card.methods.size(); ++c) {
+    ReportRow& row = table.rows.emplace_back();
+    row.show("noise in mm", card.methods[c]);
+    for (std::size_t level = 0; level < scene.noise_m.size(); ++level) {
+      const Proportion& fraction = scene.success[c].at_level[level];
+      const double noise_m = scene.noise_m[level];
+      row.show(std::isnan(noise_m) ? "own" : formatted("%.3g", 1e3 * noise_m),
+               std::to_string(fraction.events) + "/" + std::to_string(fraction.runs), fraction.events);
+    }
+  }
+  return table;
 }
 
 void print(const ScorecardReport& report) {
   const Scorecard& card = report.card;
-  std::size_t width = 11;
-  for (const std::string& method : card.methods) width = std::max(width, method.size());
   if (!card.scenes.empty()) std::printf("successes/runs of each method, over the noise\n");
   for (const SceneScore& scene : card.scenes) {
     std::printf("%s\n", scene.name.c_str());
     if (!scene.truth.empty()) std::printf("  truth: %s\n", printable(scene.truth).c_str());
-    print_levels(scene.noise_m, static_cast<int>(width));
-    for (std::size_t c = 0; c < card.methods.size(); ++c) {
-      std::printf("  %-*s", static_cast<int>(width), card.methods[c].c_str());
-      for (const Proportion& fraction : scene.success[c].at_level)
-        std::printf(" %7s", (std::to_string(fraction.events) + "/" + std::to_string(fraction.runs)).c_str());
-      std::printf("\n");
-    }
+    std::fputs(success_table(card, scene).text().c_str(), stdout);
   }
   if (card.tests > 0)
     std::printf(

@@ -205,7 +205,8 @@ int command_sweep(const CommandLine& line, const SweepRequest& request) {
   if (!run_session(line, request, file, session)) return print_interrupted(file, session.done());
   const auto print = [&](const auto& made) {
     const int code = print_summary(file, made);
-    print_equal_runs(made, sweep.to_json());
+    if (const std::string note = note_on_equal_runs(made, sweep.to_json()); !note.empty())
+      std::puts(note.c_str());
     if (request.strict) refuse_notes(note_lines(made));
     return code;
   };

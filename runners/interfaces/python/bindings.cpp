@@ -77,8 +77,8 @@ Tolerances tolerances_of(const py::dict& given) {
 
 // Returns the exit code of the outcome, the text that the command prints, and its report as JSON.
 py::tuple as_tuple(const ResultComparison& comparison) {
-  const ComparisonReport report = report_of(comparison);
-  return py::make_tuple(static_cast<int>(comparison.outcome), report.text, report.json);
+  const Report report = report_of(comparison);
+  return py::make_tuple(static_cast<int>(comparison.outcome), report.text(), report.json());
 }
 
 py::tuple compare_files(const std::string& baseline, const std::string& candidate, const py::dict& tolerances,

@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "analysis/report/report.h"
 #include "analysis/trace/interval_estimates.h"
 #include "core/parameters/parameter.h"
 #include "runners/live/devices/device_table.h"
@@ -88,9 +89,8 @@ double longest_pause_ms(const CameraCounts& camera) {
   return camera.received - camera.reversed > 1 ? 1e3 * camera.max_pause_s : kNoValue;
 }
 
-// Returns the number, or "none" for NaN, at the right of a column of this width.
-std::string cell(int width, const char* format, double value) {
-  return formatted("%*s", width, std::isnan(value) ? "none" : formatted(format, value).c_str());
+std::string text_or_none(const char* format, double value) {
+  return std::isnan(value) ? "none" : formatted(format, value);
 }
 
 // Returns at most kSamples + 1 points of a curve: the share of times that were as long or longer, over the
@@ -230,19 +230,21 @@ LiveReport live_report(const LiveLog& log, const LiveCounts& counts) {
 }
 
 std::string text(const LiveReport& report) {
-  std::string all =
-      "  times in us                            count     least       p50       p99     p99.9   largest\n";
-  for (const auto& times : report.times) {
-    all += formatted("  %-34s %9zu", times.name, times.count);
-    for (const double fraction : {0.0, 0.5, 0.99, 0.999, 1.0})
-      all.append(" ").append(cell(9, "%.1f", 1e6 * quantile_of(times, fraction)));
-    all += "\n";
+  ReportTable times, counts{.has_headings = false};
+  for (const LiveReport::Times& each : report.times) {
+    ReportRow& row = times.rows.emplace_back();
+    row.show("times in us", each.name).add("", "count", each.count);
+    for (const auto& [heading, fraction] :
+         {std::pair("least", 0.0), {"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}, {"largest", 1.0}}) {
+      const double time_us = 1e6 * quantile_of(each, fraction);
+      row.show(heading, text_or_none("%.1f", time_us), time_us);
+    }
   }
-  for (const auto& count : report.counts) {
-    const bool whole = count.value == std::floor(count.value);
-    all += formatted("  %-50s ", count.name) + cell(12, whole ? "%.0f" : "%.3g", count.value) + "\n";
-  }
-  return all;
+  for (const auto& [name, value] : report.counts)
+    counts.rows.emplace_back()
+        .show("what", name)
+        .show("value", text_or_none(value == std::floor(value) ? "%.0f" : "%.3g", value), value);
+  return times.text() + counts.text();
 }
 
 Figure live_figure(const LiveReport& report) {

@@ -26,10 +26,10 @@ inline bool any_has(const std::vector<std::string>& texts, const std::string& pa
 }
 
 inline json json_of(const ResultComparison& comparison) {
-  return json::parse(report_of(comparison).json);
+  return json::parse(report_of(comparison).json());
 }
 inline std::string junit_of(const ResultComparison& comparison) {
-  return junit({{"baseline.h5", report_of(comparison).cases}});
+  return junit({{"baseline.h5", report_of(comparison).cases()}});
 }
 inline std::string counts(int tests, int failures, int errors, int skipped = 0) {
   return "tests=\"" + std::to_string(tests) + "\" failures=\"" + std::to_string(failures) + "\" errors=\"" +

@@ -164,25 +164,6 @@ TEST_F(CompareTraceFiles, ABrokenConfigurationIsNamed) {
 
 // --- reports and figures ---
 
-TEST(Reports, AnyTextIsWellFormed) {
-  ReportSuite suite{"a<b>&\"c\"\n"};
-  suite.cases = {{"passes & \t", ReportCase::State::passed},
-                 {"fails", ReportCase::State::failed, "1 < 2 && \"x\" > 'y'"},
-                 {"errs", ReportCase::State::error, "\x01\x1f\xff"},
-                 {"skips", ReportCase::State::skipped, "no recording"}};
-  const std::string name = "a&lt;b>&amp;&quot;c&quot;?",
-                    of_suite = "    <testcase classname=\"" + name + "\" ";
-  EXPECT_EQ(junit({suite}),
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" + name +
-                "\" tests=\"4\" failures=\"1\" errors=\"1\" skipped=\"1\">\n" +  //
-                of_suite + "name=\"passes &amp; ?\"/>\n" +                       //
-                of_suite +
-                "name=\"fails\"><failure message=\"1 &lt; 2 &amp;&amp; &quot;x&quot; > 'y'\"/></testcase>\n" +
-                of_suite + "name=\"errs\"><error message=\"???\"/></testcase>\n" +  //
-                of_suite + "name=\"skips\"><skipped message=\"no recording\"/></testcase>\n" +
-                "  </testsuite>\n</testsuites>\n");
-}
-
 TEST(Reports, AreWrittenForANameThatIsNotUtf8) {
   ResultComparison comparison{"bad \xff name", "x", "trace"};
   EXPECT_HAS(json_of(comparison)["baseline"].get<std::string>(), "bad ");
