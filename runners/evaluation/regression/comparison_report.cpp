@@ -325,8 +325,8 @@ std::string with_interval(const char* format, const Estimate& e) {
 
 std::string runs_text(const RegionComparison& region) {
   const auto runs = static_cast<long long>(region.runs), clusters = static_cast<long long>(region.clusters);
-  std::string all = clusters == runs ? formatted("%6lld runs", runs)
-                                     : formatted("%6lld clusters of %lld runs", clusters, runs);
+  std::string all = clusters == runs ? formatted("%lld runs", runs)
+                                     : formatted("%lld clusters of %lld runs", clusters, runs);
   if (region.pairs < region.runs)
     all += formatted(", %lld unknown", static_cast<long long>(region.runs - region.pairs));
   return all;
@@ -339,7 +339,7 @@ ReportRow row_of(const SweepComparison& sweep, const RegionComparison& region) {
   const Estimate& d = region.difference;
   ReportRow row{.is_shown = sweep.first && sweep.problems.empty() && measure.outside > 0 &&
                             is_reported(sweep, region.region, region.measure)};
-  row.show("runs", runs_text(region));
+  row.show("runs", runs_text(region), region.runs);
   row.show("values", measure.event ? with_interval("%.3f", region.baseline_fraction) + "  " +
                                          with_interval("%.3f", region.candidate_fraction)
                                    : with_interval("%.4g", region.mean));
