@@ -13,9 +13,13 @@ def cell_size(values, limits):
 
 
 def distinct(values):
-    """In order, those that differ by more than rounding."""
+    """In order, those that differ by more than rounding. Positive values may span many decades."""
     known = np.unique(values[np.isfinite(values)])
-    return known[np.append(True, np.diff(known) > 1e-6 * np.ptp(known))] if known.size else known
+    if not known.size:
+        return known
+    span = np.ptp(known)
+    rounding = np.clip(1e-6 * known[1:], 1e-12 * span, 1e-6 * span) if known[0] > 0 else 1e-6 * span
+    return known[np.append(True, np.diff(known) > rounding)]
 
 
 def asks_for_log(columns):

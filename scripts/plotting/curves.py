@@ -10,10 +10,10 @@ import numpy as np
 
 from .cells import cell_ends, cell_size, colour_range, outlines
 from .scene import rgb
-from .style import DASHES, MARKERS, NOTHING_COLOUR, is_formula
+from .style import DASHES, LINES, MARKERS, NOTHING_COLOUR, is_formula
 from .typeset import typeset
 
-NOTHING = "no value"  # where a map or a bar chart has none
+NOTHING, NOT_FINITE = "no value", "no finite value"  # where a map or a bar chart has none
 CELLS = ("squares", "map")  # the styles that draw cells
 MANY = 3000  # plots with more samples are stored as pixels in vector formats
 FEW = 20  # samples of a line that have a marker each
@@ -72,23 +72,32 @@ def draw_line(axes, curve, panel, look, **options):
 
 
 def clipped(curve, panel):
-    """Which samples that have a marker are below the panel, and which are above it."""
-    (left, right), (first, last), y = sorted(panel.x_range), panel.y_range, curve.y.values
-    marked = is_finite(curve) & (is_sampled(curve) or curve.style == "dots" and np.count_nonzero(is_finite(curve)) <= 100)
-    marked &= ~((curve.x.values < left) | (curve.x.values > right))
-    return (marked & (y < first), marked & (y > last)) if not first > last else (marked & (y > first), marked & (y < last))
+    """Which samples have a mark because they are below the panel, and which because they are above it. An infinite value is
+    beyond every panel. Of samples without a marker only the first of a stretch of infinite values has a mark."""
+    (left, right), (first, last), x, y = sorted(panel.x_range), panel.y_range, curve.x.values, curve.y.values
+    dots = curve.style == "dots" and np.count_nonzero(is_finite(curve)) <= 100
+    none = np.zeros(x.size, dtype=bool)
+    if curve.style not in (*LINES, "dots", "bars") or curve.style in LINES and is_formula(curve.label):
+        return none, none
+    shown = np.isfinite(x) & ~((x < left) | (x > right))
+    if not (dots or is_sampled(curve) or curve.style == "bars"):
+        shown &= np.isinf(y) & (y != np.append(math.nan, y[:-1]))
+    low, high = (last, first) if first > last else (first, last)
+    ends = shown & ((y < low) | (y == -math.inf)), shown & ((y > high) | (y == math.inf))
+    return ends[::-1] if first > last else ends
 
 
-def mark_clipped(axes, curve, panel, look):
+def mark_clipped(axes, curve, panel, look, aside=0.0):
     """Marks samples beyond the panel at its edge, by a triangle that points out of it. Those of several curves at one
-    place stand above each other."""
+    place stand above each other. aside: of bars, in units of x."""
+    stacked = [other for other in panel.curves if other.style != "bars"]
     for end, (marker, inwards, words) in enumerate((("v", 1, "below the axis"), ("^", -1, "above the axis"))):
         own = {"marker": marker, "markersize": DOT_PT, "markerfacecolor": "white", "linestyle": "none"}
         at = curve.x.values[clipped(curve, panel)[end]]
         for x in at:
-            alike = [other for other in panel.curves if x in other.x.values[clipped(other, panel)[end]]]
-            aside_in = inwards * next(i for i, other in enumerate(alike) if other is curve) * APART_PT / 72
-            axes.plot(x, end, color=look.colour, clip_on=False, zorder=5, **own, transform=axes.get_xaxis_transform() +
+            alike = [other for other in stacked if x in other.x.values[clipped(other, panel)[end]]]
+            aside_in = inwards * next((i for i, other in enumerate(alike) if other is curve), 0) * APART_PT / 72
+            axes.plot(x + aside, end, color=look.colour, clip_on=False, zorder=5, **own, transform=axes.get_xaxis_transform() +
                       matplotlib.transforms.ScaledTranslation(0, aside_in, axes.figure.dpi_scale_trans))
         if at.size:
             axes.plot([], [], color="#555555", label=words, **own)
@@ -198,10 +207,12 @@ def draw_bars(axes, curve, panel, look):
     spacing = np.diff(places).min() if places.size > 2 else np.ptp(places) / 2 if places.size == 2 else 1.0
     width = 0.8 * spacing / len(charts)
     offset = (charts.index(curve) - (len(charts) - 1) / 2) * width
-    axes.bar(curve.x.values + offset, curve.y.values, width=0.94 * width, color=look.colour, label=typeset(curve.label))
-    none = ~np.isfinite(curve.y.values)
+    heights = np.where(np.isinf(curve.y.values), math.nan, curve.y.values)
+    axes.bar(curve.x.values + offset, heights, width=0.94 * width, color=look.colour, label=typeset(curve.label))
+    none = np.isnan(curve.y.values)
     if none.any():
         axes.plot(curve.x.values[none] + offset, np.zeros(none.sum()), "x", color="black", label=NOTHING)
+    mark_clipped(axes, curve, panel, look, offset)
 
 
 def draw_squares(axes, curve, panel, look):
@@ -215,7 +226,8 @@ def draw_map(axes, curve, panel, _):
     known = is_finite(curve)
     none = ~known & np.isfinite(curve.x.values) & np.isfinite(curve.y.values)
     if none.any():
-        axes.plot([], [], "s", color=NOTHING_COLOUR, markersize=6, markeredgewidth=0, label=NOTHING)
+        label = NOT_FINITE if np.isinf(curve.z.values).any() else NOTHING
+        axes.plot([], [], "s", color=NOTHING_COLOUR, markersize=6, markeredgewidth=0, label=label)
         add_cells(axes, curve, panel, none, facecolor=NOTHING_COLOUR)
     cells = add_cells(axes, curve, panel, known, array=curve.z.values[known], cmap="viridis")
     cells.set_clim(colour_range(curve.z))
@@ -285,7 +297,11 @@ def add_cells(axes, curve, panel, shown, **options):
     cells = matplotlib.collections.PolyCollection(drawn, linewidth=0, antialiased=False, rasterized=True, **options)
     if drawn.size:
         corners = drawn.reshape(-1, 2)
-        cells.sticky_edges.x[:], cells.sticky_edges.y[:] = np.transpose([corners.min(axis=0), corners.max(axis=0)])
+        for name, sticky, ends in zip("xy", (cells.sticky_edges.x, cells.sticky_edges.y), corners.T):
+            sticky[:] = [ends.min(), ends.max()]
+            if getattr(axes, f"get_{name}scale")() == "log":  # over many decades edges may be nearer than a margin's tolerance
+                sticky.clear()
+                axes.margins(**{name: 0})
         axes.update_datalim(corners)  # what a collection says of itself is wrong on a log axis
     axes.add_collection(cells, autolim=False)
     axes.autoscale_view()

@@ -210,9 +210,9 @@ def add_colour_bar(axes, coloured, column, width_in):
 
 def draw_panel(axes, panel, looks, width_in=3.0, bar=True, height_in=2.0):
     """Draws everything but the title, which add_words() writes. looks: of each curve, by curve_key. width_in,
-    height_in: about the size of the panel. bar: whether a colour bar explains the colours of a map."""
+    height_in: about the size of the panel. bar: whether a colour bar explains the colours of a map or a surface."""
     if is_surface(panel):
-        draw_surface(axes, panel, add_colour_bar)
+        draw_surface(axes, panel, add_colour_bar if bar else None)
         return
     set_scales(axes, panel)
     for curve, look in zip(panel.curves, looks_in_panel(panel, looks)):

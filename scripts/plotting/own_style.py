@@ -1,6 +1,7 @@
 """Reads a style file of the user, which replaces sizes, the font and colours of style.py."""
 import json
 import re
+import string
 
 from . import style
 from .plot_error import PlotError
@@ -11,9 +12,16 @@ HELP = ('file of JSON with any of "text_pt" (6 to 14), "column_in" (2 to 8) and 
         + ", ".join(style.COLOURS))
 
 
-def is_installed(font):
-    from matplotlib.font_manager import fontManager
-    return font.lower() in {each.name.lower() for each in fontManager.ttflist}
+def has_letters(font):
+    """Returns whether a font of this name is installed and has letters and digits. In a font of symbols their places may
+    be taken by glyphs with names such as `prime`."""
+    from matplotlib.font_manager import FontProperties, findfont, fontManager, get_font
+    if font.lower() not in {each.name.lower() for each in fontManager.ttflist}:
+        return False
+    found = get_font(findfont(FontProperties(family=font)))
+    known = found.get_charmap()
+    return (all(ord(letter) in known for letter in string.ascii_letters + string.digits) and
+            not any(re.fullmatch("[A-Za-z]{2,}", found.get_glyph_name(known[ord(letter)])) for letter in "az"))
 
 
 def fault(key, value):
@@ -23,7 +31,7 @@ def fault(key, value):
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         return "" if is_number and low <= value <= high else f"expected a number from {low} to {high}"
     if key == "font":
-        return "" if isinstance(value, str) and is_installed(value) else "expected a font that is installed"
+        return "" if isinstance(value, str) and has_letters(value) else "expected a font that is installed and has letters"
     if key != "colours":
         return f"unknown: expected {', '.join([*RANGES, 'font', 'colours'])}"
     if not isinstance(value, dict):

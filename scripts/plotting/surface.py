@@ -37,7 +37,8 @@ def thinned(heights, axis):
 
 
 def draw_surface(axes, panel, add_colour_bar):
-    """axes: of three dimensions, equally scaled. add_colour_bar: of plotting.drawing."""
+    """axes: of three dimensions, equally scaled. add_colour_bar: of plotting.drawing. None: the
+    picture is too small for a bar and for numbers."""
     curve = next(curve for curve in panel.curves if curve.style == "surface")
     across, along, heights = grid_of(curve)
     columns, rows = thinned(heights, 1), thinned(heights, 0)
@@ -58,7 +59,10 @@ def draw_surface(axes, panel, add_colour_bar):
         axis.set_label_text(typeset(label))
         axis.labelpad = pad
     axes.set_zticks([])  # the colour bar says the heights
-    add_colour_bar(axes, surface, curve.z, BAR_IN)
+    if add_colour_bar:
+        add_colour_bar(axes, surface, curve.z, BAR_IN)
+    else:
+        axes.set(xticks=[], yticks=[], xlabel="", ylabel="")
 
 
 def use_width(axes):
@@ -67,6 +71,6 @@ def use_width(axes):
     whole, middle = axes.get_position(original=True), axes.get_position()
     axes.set_title(axes.get_title(loc="left"), loc="left", x=(whole.x0 - middle.x0) / middle.width)
     width_in, height_in = axes.figure.get_size_inches()
-    bar, = axes.child_axes
-    bar.set_axes_locator(None)
-    bar.set_position([whole.x0, whole.y0 + 0.15 * whole.height, BAR_IN / width_in, 0.65 * whole.height])
+    for bar in axes.child_axes:
+        bar.set_axes_locator(None)
+        bar.set_position([whole.x0, whole.y0 + 0.15 * whole.height, BAR_IN / width_in, 0.65 * whole.height])

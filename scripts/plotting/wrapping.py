@@ -1,7 +1,6 @@
 """Breaks words into lines that are as wide as they are drawn."""
 import functools
 import re
-import textwrap
 
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.cbook import is_math_text
@@ -13,6 +12,7 @@ from .typeset import typeset
 NARROWEST_IN = 0.5  # the least width of a line
 TITLE, HEADING = ("bold", TEXT_PT), ("normal", HEADING_PT)  # weight and size
 TEXT = ("normal", TEXT_PT)
+PARTS = re.compile(r"\\.|\$(?:[^$\\]|\\.)*\$|.")  # of a word: a dollar sign, a formula, a letter
 
 
 @functools.cache
@@ -31,11 +31,15 @@ def text_width_in(words, font=TEXT):
 
 
 def pieces(word, width_in, font):
-    """A word that is wider than a line is broken, unless it is a formula."""
-    wide = text_width_in(word, font)
-    if wide <= width_in or "$" in word:
+    """A word that is wider than a line is broken, but none of its formulas."""
+    if text_width_in(word, font) <= width_in:
         return [word]
-    return textwrap.wrap(word, max(1, int(len(word) * width_in / wide)), break_on_hyphens=False)
+    lines = [""]
+    for part in PARTS.findall(word):
+        if lines[-1] and text_width_in(lines[-1] + part, font) > width_in:
+            lines.append("")
+        lines[-1] += part
+    return lines
 
 
 def folded(words, width_in, font=TEXT):
