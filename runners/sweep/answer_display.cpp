@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -14,7 +16,7 @@
 namespace remote_touch {
 namespace {
 
-constexpr std::size_t kMaxCurves = 8;
+constexpr std::size_t kMaxCurves = 8, kMaxPanels = 6;
 
 const std::vector<double>* numbers_in(const Column& column) {
   return std::get_if<std::vector<double>>(&column.values);
@@ -29,15 +31,6 @@ struct AnswerTable {
   const Column& low() const { return table.columns[axes + 1]; }
   const Column& high() const { return table.columns[axes + 2]; }
 };
-
-// Returns the number of the first axis of numbers that has more than one value.
-std::optional<std::size_t> axis_of_numbers(const AnswerTable& answer) {
-  for (std::size_t axis = 0; axis < answer.axes; ++axis)
-    if (const auto* values = numbers_in(answer.table.columns[axis]);
-        values && std::set<double>(values->begin(), values->end()).size() > 1)
-      return axis;
-  return {};
-}
 
 std::string with_unit(const std::string& text, const std::string& unit) {
   return unit == "1" ? text : text + " " + unit;
@@ -64,9 +57,11 @@ std::string in_words(const std::string& text) {
   return result;
 }
 
-struct AnswerCurve {
-  std::string label;
-  std::vector<double> values;  // of the other axes; a name by its number
+using Axes = std::vector<std::size_t>;
+
+// The rows in which some axes have the same values.
+struct RowGroup {
+  std::string label;  // "method = old, r c = 5 mm"
   std::vector<std::size_t> rows;
 };
 
@@ -75,51 +70,117 @@ double number_in(const Column& column, std::size_t row) {
   return std::get<std::vector<std::int32_t>>(column.values)[row];
 }
 
-// Returns the text for some axes of a row: "method = old, r c = 5 mm"; `except` is left out.
-std::string row_label(const AnswerTable& answer, std::size_t row, std::optional<std::size_t> except) {
+std::string row_label(const AnswerTable& answer, std::size_t row, const Axes& axes) {
   std::string label;
-  for (std::size_t axis = 0; axis < answer.axes; ++axis) {
+  for (const std::size_t axis : axes) {
     const Column& column = answer.table.columns[axis];
-    if (axis == except) continue;
     label += (label.empty() ? "" : ", ") + in_words(column.name) + " = " +
              with_unit(axis_text(column, row), column.value_names.empty() ? column.units : "1");
   }
   return label;
 }
 
-// Returns the rows of each combination of the axes other than x, in the order of the table; none if there are
-// too many.
-std::vector<AnswerCurve> curves_of(const AnswerTable& answer, std::size_t x) {
-  std::vector<AnswerCurve> curves;
-  for (std::size_t row = 0; row < answer.value().length(); ++row) {
-    std::vector<double> others;
-    for (std::size_t axis = 0; axis < answer.axes; ++axis)
-      if (axis != x) others.push_back(number_in(answer.table.columns[axis], row));
-    auto curve = std::find_if(curves.begin(), curves.end(),
-                              [&](const AnswerCurve& each) { return each.values == others; });
-    if (curve == curves.end()) curve = curves.insert(curve, {row_label(answer, row, x), others, {}});
-    curve->rows.push_back(row);
-    if (curves.size() > kMaxCurves) return {};
+// Returns the groups of some rows by these axes, in the order of the table.
+std::vector<RowGroup> grouped(const AnswerTable& answer, const std::vector<std::size_t>& rows,
+                              const Axes& axes) {
+  std::vector<RowGroup> groups;
+  std::map<std::vector<double>, std::size_t> numbers;  // of the groups, by the values of the axes
+  for (const std::size_t row : rows) {
+    std::vector<double> values;
+    for (const std::size_t axis : axes) values.push_back(number_in(answer.table.columns[axis], row));
+    const auto [group, is_new] = numbers.emplace(values, groups.size());
+    if (is_new) groups.push_back({row_label(answer, row, axes), {}});
+    groups[group->second].rows.push_back(row);
   }
-  return curves;
+  return groups;
+}
+
+std::vector<std::size_t> all_rows(const AnswerTable& answer) {
+  std::vector<std::size_t> rows(answer.value().length());
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
+
+std::vector<std::size_t> with_value(const AnswerTable& answer, std::vector<std::size_t> rows) {
+  std::erase_if(rows, [&](std::size_t row) { return !std::isfinite((*numbers_in(answer.value()))[row]); });
+  return rows;
+}
+
+// Returns how many values an axis has.
+std::size_t count_along(const AnswerTable& answer, std::size_t axis) {
+  std::set<double> values;
+  for (std::size_t row = 0; row < answer.value().length(); ++row)
+    values.insert(number_in(answer.table.columns[axis], row));
+  return values.size();
+}
+
+Axes without(Axes axes, std::size_t axis) {
+  std::erase(axes, axis);
+  return axes;
+}
+
+// How a table is drawn: over x, with a panel for each value of an axis or one for all, and with a curve for
+// each combination of the other axes.
+struct Plan {
+  std::size_t x = 0;
+  Axes panels, curves;
+};
+
+// Returns the plan with the first axis of numbers, else of names, as x. If that has too many curves, the
+// longest such axis is x; if there are still too many, the shortest axis that helps has a panel for each
+// value. Empty if no axis has two values.
+std::optional<Plan> plan_of(const AnswerTable& answer) {
+  Axes axes, numbers, names;
+  std::vector<std::size_t> count;
+  for (std::size_t axis = 0; axis < answer.axes; ++axis) {
+    axes.push_back(axis), count.push_back(count_along(answer, axis));
+    if (count[axis] > 1) (numbers_in(answer.table.columns[axis]) ? numbers : names).push_back(axis);
+  }
+  const Axes& across = numbers.empty() ? names : numbers;
+  if (across.empty()) return {};
+  const auto combinations = [&](const Axes& some) {
+    std::size_t product = 1;
+    for (const std::size_t axis : some) product *= count[axis];
+    return product;
+  };
+  const auto is_shorter = [&](std::size_t a, std::size_t b) { return count[a] < count[b]; };
+  const std::size_t longest = *std::max_element(across.begin(), across.end(), is_shorter);
+  for (const std::size_t x : {across.front(), longest})
+    if (combinations(without(axes, x)) <= kMaxCurves) return Plan{x, {}, without(axes, x)};
+  const Axes others = without(axes, longest);
+  Axes shortest_first = others;
+  std::stable_sort(shortest_first.begin(), shortest_first.end(), is_shorter);
+  for (const std::size_t axis : shortest_first)
+    if (count[axis] > 1 && count[axis] <= kMaxPanels && combinations(without(others, axis)) <= kMaxCurves)
+      return Plan{longest, {axis}, without(others, axis)};
+  return Plan{longest, {}, others};
+}
+
+Panel panel_of(const AnswerTable& answer, const RowGroup& part, const std::string& x_label,
+               const std::string& y_label) {
+  const std::string title = in_words(answer.table.title);
+  return {part.label.empty() ? title : title + ": " + part.label, x_label, y_label};
+}
+
+// Leaves out what is too much for a panel, and says so in its title and in the caption.
+void keep_first(std::vector<RowGroup>& curves, Panel& panel, Figure& figure, const std::string& table) {
+  if (curves.size() <= kMaxCurves) return;
+  const std::string shown =
+      "the first " + std::to_string(kMaxCurves) + " of " + std::to_string(curves.size()) + " curves";
+  panel.title += ", " + shown;
+  figure.caption += "The panel of " + table + " has " + shown + "; the table has all. ";
+  curves.resize(kMaxCurves);
 }
 
 // Returns the rows with x, value and interval as a table with increasing x.
 Table table_of_curve(const AnswerTable& answer, const Column& x, std::vector<std::size_t> rows,
                      const std::string& name, const std::string& label) {
-  const std::vector<double>& place = *numbers_in(x);
-  std::sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return place[a] < place[b]; });
+  std::sort(rows.begin(), rows.end(),
+            [&](std::size_t a, std::size_t b) { return number_in(x, a) < number_in(x, b); });
   Table table{name, label.empty() ? answer.table.title : label, {axis_at(x, rows)}};
   for (const Column* column : {&answer.value(), &answer.low(), &answer.high()})
     table.columns.push_back(axis_at(*column, rows));
   return table;
-}
-
-std::vector<std::size_t> with_value(const AnswerTable& answer, const std::vector<std::size_t>& rows) {
-  std::vector<std::size_t> some;
-  for (const std::size_t row : rows)
-    if (std::isfinite((*numbers_in(answer.value()))[row])) some.push_back(row);
-  return some;
 }
 
 // Adds a table and two curves: the intervals or the band, and the values.
@@ -153,20 +214,23 @@ std::string axis_text(const Column& axis, std::size_t row) {
 void add_answer_panel(Figure& figure, const Table& of_answer, std::size_t axes) {
   const Table table = of_answer;  // it may be one of the figure, whose list grows
   const AnswerTable answer{table, axes};
-  const std::optional<std::size_t> x = axis_of_numbers(answer);
-  if (!x) return;
-  const Column& axis = table.columns[*x];
-  Panel panel{in_words(table.title), in_words(axis.name), in_words(table.title)};
-  for (const AnswerCurve& curve : curves_of(answer, *x)) {
-    const std::vector<std::size_t> rows = with_value(answer, curve.rows);
-    if (rows.empty()) continue;
-    const std::string name = table.name + "_" + std::to_string(panel.curves.size() / 2 + 1);
-    const bool is_line = rows.size() > 1;
-    add_curves(figure, panel, table_of_curve(answer, axis, rows, name, curve.label),
-               is_line ? CurveStyle::band : CurveStyle::intervals,
-               is_line ? CurveStyle::line : CurveStyle::dots, curve.label);
+  const std::optional<Plan> plan = plan_of(answer);
+  if (!plan) return;
+  const Column& x = table.columns[plan->x];
+  int number = 0;
+  for (const RowGroup& part : grouped(answer, with_value(answer, all_rows(answer)), plan->panels)) {
+    Panel panel = panel_of(answer, part, in_words(x.name), in_words(table.title));
+    std::vector<RowGroup> curves = grouped(answer, part.rows, plan->curves);
+    keep_first(curves, panel, figure, table.name);
+    for (const RowGroup& curve : curves) {
+      const std::string name = table.name + "_" + std::to_string(++number);
+      const bool is_line = curve.rows.size() > 1 && numbers_in(x);
+      add_curves(figure, panel, table_of_curve(answer, x, curve.rows, name, curve.label),
+                 is_line ? CurveStyle::band : CurveStyle::intervals,
+                 is_line ? CurveStyle::line : CurveStyle::dots, curve.label);
+    }
+    figure.panels.push_back(panel);
   }
-  if (!panel.curves.empty()) figure.panels.push_back(panel);
 }
 
 namespace {
@@ -206,45 +270,42 @@ void put_at_end(Table& table, const Column& along, const End& end) {
   }
 }
 
+// Adds the limits of a curve, and marks for those that are not inside.
+void add_limits_of(Figure& figure, Panel& panel, const AnswerTable& answer, const RowGroup& curve,
+                   const Column& x, const Column& along, const std::string& name) {
+  const std::vector<std::size_t> known = with_value(answer, curve.rows);
+  if (!known.empty())
+    add_curves(figure, panel, table_of_curve(answer, x, known, name, curve.label), CurveStyle::intervals,
+               known.size() > 1 && numbers_in(x) ? CurveStyle::line : CurveStyle::dots, curve.label);
+  for (const End& end : kEnds) {
+    const std::vector<std::size_t> rows = rows_at(answer.table, curve.rows, end);
+    if (rows.empty()) continue;
+    const std::string label = (curve.label.empty() ? "" : curve.label + ": ") + end.place;
+    Table marks = table_of_curve(answer, x, rows, name + end.table, label);
+    put_at_end(marks, along, end);
+    add_curves(figure, panel, std::move(marks), CurveStyle::intervals, CurveStyle::dots, label);
+  }
+}
+
 }  // namespace
 
 void add_answer_limits(Figure& figure, const Table& of_answer, std::size_t axes, const Column& along) {
   const Table table = of_answer;  // it may be one of the figure, whose list grows
   const AnswerTable answer{table, axes};
-  const std::optional<std::size_t> axis = axis_of_numbers(answer);
-  Column x;
-  std::string x_label;
-  std::vector<AnswerCurve> curves;
-  if (axis) {
-    x = table.columns[*axis], x_label = in_words(x.name), curves = curves_of(answer, *axis);
-  } else if (answer.value().length() <= kMaxCurves) {
-    std::vector<double> places;
-    curves.emplace_back();
-    for (std::size_t row = 0; row < answer.value().length(); ++row) {
-      places.push_back(static_cast<double>(row + 1)), curves.front().rows.push_back(row);
-      const std::string label = row_label(answer, row, std::nullopt);
-      if (!label.empty()) x_label += (row > 0 ? "; " : "row ") + std::to_string(row + 1) + ": " + label;
-    }
-    x = {"row", "1", "number of the row", places};
-  }
-  Panel panel{in_words(table.title), x_label, in_words(along.name)};
+  const std::optional<Plan> plan = plan_of(answer);
+  // No axis has two values: a single limit.
+  const Column x =
+      plan ? table.columns[plan->x]
+           : Column{"row", "1", "number of the row", std::vector<double>(answer.value().length(), 1)};
   int number = 0;
-  for (const AnswerCurve& curve : curves) {
-    const std::string name = table.name + "_" + std::to_string(++number);
-    const auto known = with_value(answer, curve.rows);
-    if (!known.empty())
-      add_curves(figure, panel, table_of_curve(answer, x, known, name, curve.label), CurveStyle::intervals,
-                 known.size() > 1 && axis ? CurveStyle::line : CurveStyle::dots, curve.label);
-    for (const End& end : kEnds) {
-      const auto rows = rows_at(table, curve.rows, end);
-      if (rows.empty()) continue;
-      const std::string label = (curve.label.empty() ? "" : curve.label + ": ") + end.place;
-      Table marks = table_of_curve(answer, x, rows, name + end.table, label);
-      put_at_end(marks, along, end);
-      add_curves(figure, panel, std::move(marks), CurveStyle::intervals, CurveStyle::dots, label);
-    }
+  for (const RowGroup& part : grouped(answer, all_rows(answer), plan ? plan->panels : Axes{})) {
+    Panel panel = panel_of(answer, part, plan ? in_words(x.name) : "", in_words(along.name));
+    std::vector<RowGroup> curves = grouped(answer, part.rows, plan ? plan->curves : Axes{});
+    keep_first(curves, panel, figure, table.name);
+    for (const RowGroup& curve : curves)
+      add_limits_of(figure, panel, answer, curve, x, along, table.name + "_" + std::to_string(++number));
+    if (!panel.curves.empty()) figure.panels.push_back(panel);
   }
-  if (!panel.curves.empty()) figure.panels.push_back(panel);
 }
 
 namespace {

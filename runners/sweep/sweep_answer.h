@@ -14,14 +14,15 @@ namespace remote_touch {
 
 // Adds a panel to the figure for a table of an answer: first `axes` columns of axes, then those of
 // add_estimates(). It has the value over the first axis of numbers, its interval as a band, and a curve for
-// each combination of the other axes. Each curve has a table of its own, with the rows that have a value.
-// Adds nothing if there is no axis of numbers with two values, or if there are more than 8 curves.
+// each combination of the other axes; without an axis of numbers, dots over an axis of names. Each curve has a
+// table of its own, with the rows that have a value. A panel has at most 8 curves: if there are more, the
+// longest axis is across, or another axis has a panel for each value; if that does not help, only the first 8
+// are drawn, and the title and the caption say so. Adds nothing if no axis has two values.
 void add_answer_panel(Figure& figure, const Table& table, std::size_t axes);
 
-// Adds a panel for a table of limits along an axis, with their intervals as bars; an open end is an arrow. A
-// limit that is not between the values of the axis is a mark at the end of the axis, with a legend entry.
-// Without an axis of numbers, the rows stand beside each other and the label names them. Adds nothing if
-// there are more than 8 curves, or nothing to draw.
+// Adds panels in the same way for a table of limits along an axis, with their intervals as bars; an open end
+// is an arrow. A limit that is not between the values of the axis is a mark at the end of the axis, with a
+// legend entry. A single limit is drawn too. Adds nothing if there is nothing to draw.
 void add_answer_limits(Figure& figure, const Table& table, std::size_t axes, const Column& along);
 
 // True if the table is that of one curve, whose rows are also in the table of the answer.
@@ -72,11 +73,10 @@ std::string default_event(const SweepResult& result);
 inline constexpr const char* kAnswerName = "analysis";
 
 // Returns a figure with the tables `limits`, `limit_difference`, `limit_ratio`, `mean_MEASURE` and
-// `difference_MEASURE`, and with a panel for each of them whose rows fit into at most 8 curves over one axis
-// of numbers. All p values are adjusted together. The caption states the questions. config: the configuration
-// of the sweep as JSON; its title is that of the figure, and it states which runs share random numbers
-// (streams_of()). Throws InputError for a name that the sweep does not have, an axis that does not fit,
-// and a sweep without a finished run.
+// `difference_MEASURE`, and with panels of them, as add_answer_panel() draws them. All p values are adjusted
+// together. The caption states the questions. config: the configuration of the sweep as JSON; its title is
+// that of the figure, and it states which runs share random numbers (streams_of()). Throws InputError for a
+// name that the sweep does not have, an axis that does not fit, and a sweep without a finished run.
 Figure sweep_answer(const SweepResult& result, const std::string& config, const SweepQuestion& question);
 
 // The same for a tally, which keeps neither single runs nor counts for other thresholds. Throws InputError

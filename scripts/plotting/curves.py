@@ -245,21 +245,25 @@ def draw_band(axes, curve, panel, look):
 
 def draw_intervals(axes, curve, panel, look):
     """Draws a vertical line from y to z at each x, with a cap at an end that is not the value of the next curve. If an
-    end is infinite or NaN, an arrow points away from the other end."""
+    end is infinite or NaN, the line ends at that value, and an arrow points on from there."""
     x, low, high = curve.x.values, curve.y.values, curve.z.values
     own = {"color": look.colour, "linewidth": 0.9, "markeredgewidth": 0.9, "markerfacecolor": "none"}
-    closed = np.isfinite(low) & np.isfinite(high)
-    ends = np.column_stack([low, high, np.full(x.size, math.nan)])[closed].ravel()
-    lines = axes.plot(np.repeat(x[closed], 3), ends, **own)
-    values = next_values(curve, panel)
-    for y in (low, high):
-        capped = closed & (y != values)
+    values, lines = next_values(curve, panel), []
+    is_open = np.isfinite(low) != np.isfinite(high)
+    known = np.where(np.isfinite(low), low, high)
+    inner = np.where(np.isfinite(values), values, known)  # where an open interval has its arrow
+    ends = [np.where(is_open, places, both) for places, both in ((known, low), (inner, high))]
+    drawn = np.isfinite(ends).all(axis=0) & ~(is_open & (known == inner))
+    bars = np.column_stack([*ends, np.full(x.size, math.nan)])[drawn].ravel()
+    lines += axes.plot(np.repeat(x[drawn], 3), bars, **own)
+    for y in ends:
+        capped = drawn & (y != values)
         lines += axes.plot(x[capped], y[capped], "_", markersize=CAP_PT, **own)
-    for y, other, path in ((low, high, ARROW), (high, low, matplotlib.path.Path(-ARROW.vertices, ARROW.codes))):
-        open_ended = np.isfinite(y) & ~np.isfinite(other)
-        if open_ended.any():
-            lines += axes.plot(x[open_ended], y[open_ended], linestyle="none", marker=path,
-                               markersize=2 * ARROW_PT, clip_on=False, **own)
+    for end, path in ((low, ARROW), (high, matplotlib.path.Path(-ARROW.vertices, ARROW.codes))):
+        arrows = is_open & np.isfinite(end)
+        if arrows.any():
+            lines += axes.plot(x[arrows], inner[arrows], linestyle="none", marker=path, markersize=2 * ARROW_PT,
+                               clip_on=False, **own)
             axes.margins(y=0.12)  # room for arrows
     for line in lines:
         put_aside(axes, line, curve, panel)

@@ -11,7 +11,7 @@ from true_contacts import FARTHEST_M, PIXEL_STEP, Toucher, TruthFrame, contact_e
     rotated, touched_points, upper_quantile, windows_around
 
 import remote_touch as rt
-from remote_touch.studies import band, dots, line, main, study
+from remote_touch.studies import band, dashed, dots, line, main, study
 
 PROXY_REST_M, BALL_M = 0.005, 0.01  # r_c of Table 4.2; radius of the tool `ball`
 SIGMA_F_M = 0.025  # the default
@@ -214,34 +214,28 @@ def angles_deg(a, b):
 
 # --- the figure ---
 
-def add_object(s, of, row):
-    """Tables and a row of panels: the errors over the frames for each renderer, and over the window of the filter."""
+def add_object(s, of, last_frame):
+    """Tables of an object, and a panel of the errors of the proxy over the frames."""
     frames, windows, averages = (f"{of.table}_{what}" for what in ("frames", "windows", "averages"))
     uncertainty_m = of.uncertainty_m
     count = len(of.captured_s)
     columns = {"frame": (np.arange(count), "1", "frame of the recording"), "time": (of.captured_s, "s", "time of capture"),
                "truth_low": (np.full(count, -uncertainty_m), "m", "uncertainty of the truth, towards the object"),
                "truth_high": (np.full(count, uncertainty_m), "m", "uncertainty of the truth, outwards")}
-    largest_m = max(uncertainty_m, *(np.nanmax(np.abs([errors.renderer, errors.camera]), initial=0) for errors in of.renderers))
-    for column, (renderer, errors) in enumerate(zip(RENDERERS, of.renderers)):
+    for renderer, errors in zip(RENDERERS, of.renderers):
         name = renderer.name.replace(" ", "_")
         columns[f"{name}_renderer"] = (errors.renderer, "m",
                                        f"{renderer.name}: height of the contact point over the measured surface")
         columns[f"{name}_camera"] = (errors.camera, "m",
                                      f"{renderer.name}: height of the measured surface over the true one, at the contact point")
-        s.panel(f"{of.title}: {renderer.name}", "frame", "error (m)", [
-            band(frames, "frame", "truth_low", "true surface, uncertainty", "truth_high"),
-            line(frames, "frame", f"{name}_camera", "camera: measured over true surface"),
-            line(frames, "frame", f"{name}_renderer", "contact point over measured surface")],
-            at=(row, column), y_range=(-1.1 * largest_m, 1.1 * largest_m))
     s.table(frames, f"{of.title}: errors in each frame", columns)
     add_windows(s, of, windows, averages)
-    s.panel(f"{of.title}: filters", "filter window (px)", "rms error of proxy (m)", [
-        band(windows, "window", "to_true_low", "true surface, uncertainty", "to_true_high"),
-        line(windows, "window", "to_true", "to the true surface"),
-        line(windows, "window", "to_measured", "to the measured surface"),
-        dots(averages, "window", "to_true", "filters over time, to the true surface"),
-        dots(averages, "window", "to_measured", "filters over time, to the measured surface")], at=(row, len(RENDERERS)))
+    largest_m = max(uncertainty_m, np.nanmax(np.abs([of.renderers[0].renderer, of.renderers[0].camera]), initial=0))
+    s.panel(f"{of.title}, touched by the proxy", "frame", "error (m)", [
+        band(frames, "frame", "truth_low", "true surface, uncertainty", "truth_high"),
+        line(frames, "frame", "proxy_camera", "camera: measured over true surface"),
+        line(frames, "frame", "proxy_renderer", "contact point over measured surface")],
+        x_range=(0, last_frame), y_range=(-1.1 * largest_m, 1.1 * largest_m))
 
 
 def rms_range_m(errors, uncertainty_m):
@@ -266,9 +260,9 @@ def add_windows(s, of, windows, averages):
     s.table(averages, f"{of.title}: the proxy behind filters over time", heights(OVER_TIME, "spatial "))
 
 
-def add_comparisons(s, objects, row):
-    """Tables over all objects: the renderers, the settings, and the best of them; and a row of panels with the errors of all
-    points."""
+def add_comparisons(s, objects):
+    """Tables over all objects: the renderers, the settings, and the best of them; a panel of the renderers, and one of the
+    errors of all points."""
     of_renderers = [(of, name.name, errors) for of in objects for name, errors in zip(RENDERERS, of.renderers)]
     all_errors = [errors for _, _, errors in of_renderers]
     s.table("renderers", "errors over the frames, by renderer",
@@ -285,6 +279,7 @@ def add_comparisons(s, objects, row):
             camera_noise=([frame_noise_m(e.camera) for e in all_errors], "m",
                           "rms change of the camera's error in a frame / sqrt(2)"),
             uncertainty=([of.uncertainty_m for of, _, _ in of_renderers], "m", "uncertainty of the truth"))
+    add_renderers_panel(s, objects)
     add_settings(s, objects)
     add_best(s, objects)
     quantities = {"to_measured": ("m", "rms distance to the measured surface"),
@@ -294,11 +289,22 @@ def add_comparisons(s, objects, row):
         "window": ([SETTINGS[i].window_px for i in BY_WINDOW], "1", "width of the filter, pixels; 1: no filter"),
         **{f"{of.table}_{name}": (of.points_m(name)[BY_WINDOW], unit, f"{of.title}: {text}")
            for of in objects for name, (unit, text) in quantities.items()}})
-    for column, (title, y_label, name) in enumerate((("All points: to the measured surface", "rms distance (m)", "to_measured"),
-                                                     ("All points: to the true surface", "rms distance (m)", "to_true"),
-                                                     ("Normals: to the true ones", "median angle (deg)", "normal"))):
-        s.panel(title, "filter window (px)", y_label,
-                [line("points", "window", f"{of.table}_{name}", of.title) for of in objects], at=(row, column))
+    s.panel("All points of an object, behind filters", "filter window (px)", "rms distance (m)",
+            [make("points", "window", f"{of.table}_{surface}", f"{of.title}, to the {words} surface") for of in objects
+             for make, surface, words in ((line, "to_measured", "measured"), (dashed, "to_true", "true"))])
+
+
+def add_renderers_panel(s, objects):
+    """The rms errors of the three renderers and of the camera, whose error differs little between their contact points."""
+    s.table("rms", "rms errors over the frames",
+            object=(np.arange(len(objects), dtype=np.int32), "1", "object", [of.title for of in objects]),
+            camera=([rms(of.renderers[0].camera) for of in objects], "m", "rms height of the measured surface over the true one"),
+            **{f"renderer_{i}": ([rms(of.renderers[i].renderer) for of in objects], "m",
+                                 f"{renderer.name}: rms height of the contact point over the measured surface")
+               for i, renderer in enumerate(RENDERERS)})
+    s.panel("Camera and renderers", "", "rms error (m)", [
+        dots("rms", "object", "camera", "camera"),
+        *(dots("rms", "object", f"renderer_{i}", renderer.name) for i, renderer in enumerate(RENDERERS))])
 
 
 def add_settings(s, objects):
@@ -379,9 +385,9 @@ CAPTION = """with true objects: meshes, and their pose in each frame. A hand hol
     measured surface (a plane through the pixels within 6 mm); the error of the camera is the height of the measured surface over
     the true one at the same point. Their sum is the height over the true surface. Each frame is shown by its last tick; gaps are
     approaches, and frames in which one of the surfaces is unknown there. Band: the uncertainty of the truth, 3 mm if nothing else
-    is stated. Right: the proxy behind the spatial filter (7.1) of the depth pipeline, over the width of its window with sigma_f =
-    25 mm, over the frames that all settings know; dots at 1: filters over time without it. Bottom: the same filters, for every
-    point of the objects in every tenth frame."""
+    is stated. Dots: the rms of both errors, that of the renderer for three renderers. Bottom: every point of the objects in every tenth
+    frame behind the spatial filter (7.1) of the depth pipeline, over the width of its window with sigma_f = 25 mm. The tables also
+    have the frames of the other renderers, the proxy behind these filters and behind filters over time, and the normals."""
 
 
 def settings_of(assignments):
@@ -406,9 +412,9 @@ def camera_error(s):
     if "scenario.path" in settings:
         recordings = [Recording(str(settings["scenario.path"]), "", ASSUMED_UNCERTAINTY_M, MOST_OBJECTS)]
     objects = [of for number, recording in enumerate(recordings, 1) for of in judged_objects(s, recording, number, settings)]
-    for row, of in enumerate(objects):
-        add_object(s, of, row)
-    add_comparisons(s, objects, len(objects))
+    for of in objects:
+        add_object(s, of, max(len(each.captured_s) for each in objects) - 1)
+    add_comparisons(s, objects)
     if settings:
         s.caption = " ".join(f"A recording {CAPTION}".split())
     else:

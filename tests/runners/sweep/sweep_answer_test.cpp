@@ -247,6 +247,56 @@ TEST(SweepAnswers, DrawLimitsThatAreBeyondTheAxis) {
   }
 }
 
+// The means of sweep() over axes with so many values of r_c, method and x.
+Figure means_over(int radii, int methods, int values, const std::vector<std::string>& by = {}) {
+  SweepResult result = sweep();
+  std::vector<double> r_c, x;
+  for (int i = 0; i < radii; ++i) r_c.push_back(0.001 * (i + 1));
+  for (int i = 0; i < values; ++i) x.push_back(i);
+  result.axes[0].values = r_c, result.axes[2].values = x;
+  std::vector<std::int32_t> method(methods);
+  for (int i = 0; i < methods; ++i) method[i] = i;
+  result.axes[1].values = method, result.axes[1].value_names.clear();
+  for (int i = 0; i < methods; ++i) result.axes[1].value_names.push_back("m" + std::to_string(i));
+  result.start(false);
+  for (std::size_t run = 0; run < result.run_count(); ++run) {
+    result.state[run] = RunState::done;
+    for (Column& measure : result.measures) std::get<std::vector<double>>(measure.values)[run] = run % 2;
+  }
+  SweepQuestion question;
+  question.means = {"max_force"}, question.by = by;
+  return sweep_answer(result, kConfig, question);
+}
+
+// More than eight curves: another axis is across, or has a panel for each value, or the first eight are
+// drawn.
+TEST(SweepAnswers, DrawManyCurves) {
+  const Figure longest = means_over(2, 2, 9);
+  ASSERT_EQ(longest.panels.size(), 1u);
+  EXPECT_EQ(longest.panels[0].x_label, "x");
+  EXPECT_EQ(longest.panels[0].curves.size(), 2 * 4u);
+  const Figure multiples = means_over(3, 5, 4);
+  ASSERT_EQ(multiples.panels.size(), 3u);
+  EXPECT_HAS(multiples.panels[1].title, ": r_c = 0.002 m");
+  EXPECT_EQ(multiples.panels[1].curves.size(), 2 * 5u);
+  EXPECT_EQ(multiples.panels[1].curves[1].label, "method = m0");
+  const Figure first = means_over(2, 9, 1, {"r_c", "method"});
+  ASSERT_EQ(first.panels.size(), 1u);
+  EXPECT_EQ(first.panels[0].curves.size(), 2 * 8u);
+  EXPECT_HAS(first.panels[0].title, ", the first 8 of 9 curves");
+  EXPECT_HAS(first.caption, "The panel of mean_max_force has the first 8 of 9 curves; the table has all. ");
+  std::set<std::string> tables;
+  for (const Table& table : multiples.tables) EXPECT_TRUE(tables.insert(table.name).second) << table.name;
+}
+
+TEST(SweepAnswers, DrawMeansOfMethodsAsDots) {
+  const Figure answer = means_over(2, 3, 2, {"method"});
+  ASSERT_EQ(answer.panels.size(), 1u);
+  ASSERT_EQ(answer.panels[0].curves.size(), 2u);
+  EXPECT_EQ(answer.panels[0].curves[1].style, CurveStyle::dots);
+  EXPECT_EQ(answer.tables.back().columns[0].value_names, (std::vector<std::string>{"m0", "m1", "m2"}));
+}
+
 TEST(SweepAnswers, CurvesOfLikeLookingValuesAreTwo) {
   SweepResult result = sweep();
   result.axes[1] = {"seed", "1", "", std::vector<double>{10000001, 10000002}};
