@@ -211,7 +211,9 @@ def draw_bars(axes, curve, panel, look):
     axes.bar(curve.x.values + offset, heights, width=0.94 * width, color=look.colour, label=typeset(curve.label))
     none = np.isnan(curve.y.values)
     if none.any():
-        axes.plot(curve.x.values[none] + offset, np.zeros(none.sum()), "x", color="black", label=NOTHING)
+        low, high = sorted(panel.y_range)
+        foot = min(max(0.0, low), high)  # no comparison with NaN holds
+        axes.plot(curve.x.values[none] + offset, np.full(none.sum(), foot), "x", color="black", clip_on=False, label=NOTHING)
     mark_clipped(axes, curve, panel, look, offset)
 
 
