@@ -289,8 +289,8 @@ def add_comparisons(s, objects):
         "window": ([SETTINGS[i].window_px for i in BY_WINDOW], "1", "width of the filter, pixels; 1: no filter"),
         **{f"{of.table}_{name}": (of.points_m(name)[BY_WINDOW], unit, f"{of.title}: {text}")
            for of in objects for name, (unit, text) in quantities.items()}})
-    s.panel("All points of an object, behind filters", "filter window (px)", "rms distance (m)",
-            [make("points", "window", f"{of.table}_{surface}", f"{of.title}, to the {words} surface") for of in objects
+    s.panel("Distance of all points to the measured and the true surface", "filter window (px)", "rms distance (m)",
+            [make("points", "window", f"{of.table}_{surface}", f"{of.title}, {words}") for of in objects
              for make, surface, words in ((line, "to_measured", "measured"), (dashed, "to_true", "true"))])
 
 

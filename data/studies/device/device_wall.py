@@ -43,7 +43,7 @@ def draw(s, title, delay_ticks, of):
         s.table(name, f"limits of {renderer}", damping=(DAMPING_NS_PER_M, "N s/m", "damping of the device"),
                 **limit_columns(of[renderer, delay_ticks]))
     s.panel(title, "damping of the device (N s/m)", "largest stable stiffness (N/m)",
-            [line(names["proxy"], "damping", "expected", "b / (T / 2 + delay)"),
+            [line(names["proxy"], "damping", "expected", "b / (T / 2 + delay), derived"),
              *(dots(name, "damping", "stiffness", renderer) for renderer, name in names.items())])
 
 

@@ -105,11 +105,12 @@ def draw_widths(s, curves, title, x_label, unit="N/m", law=LAW):
         axis, axis_unit, values = curve.axis
         s.table(curve.name, f"limits over {curve.title}",
                 {axis: (values, axis_unit, curve.title), **limit_columns(curve.limits, unit)})
-        drawn.append(line(curve.name, axis, "expected", law if curve is curves[0] else ""))
+        drawn.append(line(curve.name, axis, "expected", f"{law}, derived"))
         if curve.name == "wall_damper":
             drawn.append(dashed(curve.name, axis, "exact", "exact"))
         drawn.append(dots(curve.name, axis, "stiffness", curve.title if len(curves) > 1 else "measured"))
-    s.panel(title, x_label, f"largest stable stiffness ({unit})", drawn)
+    highest = max(max(curve.limits.stiffness.max(), curve.limits.expected.max()) for curve in curves)
+    s.panel(title, x_label, f"largest stable stiffness ({unit})", drawn, y_range=(0, 1.15 * highest))
 
 
 def draw_noise(s, walls):
@@ -119,7 +120,7 @@ def draw_noise(s, walls):
             stiffness=(walls.stiffness, "N/m", "largest stiffness of a calm hand"),
             expected=(walls.expected, "N/m", "theory for this height"))
     s.panel("Noise of the points: a calm hand", "noise (m)", "largest stiffness (N/m)",
-            [line("noise", "noise", "expected", "noise through a linear wall"), dots("noise", "noise", "stiffness", "measured")])
+            [line("noise", "noise", "expected", "noise through a linear wall, derived"), dots("noise", "noise", "stiffness", "measured")])
 
 
 # --- energy at frame updates ---
@@ -143,7 +144,8 @@ def draw_energies(s, over, title, x_label, axis, cases):
     for sign in SIGNS:
         s.table(f"energy_{over}_{sign}", f"energy that the hand gets at a frame update, velocity_force = {sign}",
                 {name: (values, units, long_name), "energy_mJ": (energy_mJ[sign], "mJ", "mean energy per update")})
-    s.panel(title, x_label, "energy per update (mJ)", [line(f"energy_{over}_{sign}", name, "energy_mJ", sign) for sign in SIGNS])
+    s.panel(title, x_label, "energy per update (mJ)", [
+        line(f"energy_{over}_{sign}", name, "energy_mJ", f"velocity force: {sign}") for sign in SIGNS])
     return energy_mJ
 
 
