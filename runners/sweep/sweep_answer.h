@@ -14,8 +14,8 @@ namespace remote_touch {
 
 // Adds a panel to the figure for a table of an answer: first `axes` columns of axes, then those of
 // add_estimates(). It has the value over the first axis of numbers, its interval as a band, and a curve for
-// each combination of the other axes; without an axis of numbers, dots over an axis of names. Each curve has a
-// table of its own, with the rows that have a value. A panel has at most 8 curves: if there are more, the
+// each combination of the other axes; without an axis of numbers, dots over an axis of names. Each curve has
+// a table of its own, with the rows that have a value. A panel has at most 8 curves: if there are more, the
 // longest axis is across, or another axis has a panel for each value; if that does not help, only the first 8
 // are drawn, and the title and the caption say so. Adds nothing if no axis has two values.
 void add_answer_panel(Figure& figure, const Table& table, std::size_t axes);
