@@ -267,14 +267,13 @@ class ShownRun {
 
 // A page of the viewer: one self-contained HTML file below a size limit, which reads nothing else.
 
-// The viewer's script and style, which the build made from runners/presentation/page and embedded in
-// the program. Both empty in a program that was built without Node.
+// The viewer's script and style, runners/presentation/page, which the build embedded in the program.
 std::string_view viewer_script();
 std::string_view viewer_style();
 
 // Returns an HTML page of the viewer: its script and style, what to show as JSON, and numbers, compressed.
 // json: names the arrays in bytes as PackedArrays::add() does. A stored page may not reach the network; the
-// server of a live page says what that may reach. Throws InputError without viewer_script().
+// server of a live page says what that may reach.
 std::string page_file(const std::string& title, const std::string& json, const std::string& bytes,
                       bool is_stored = true);
 
@@ -294,8 +293,7 @@ struct ViewPage {
 };
 
 // Shows the runs and the entries of `page`. numbers: arrays that `page` already names. Throws InputError,
-// about the first run, if the page would be too large without any points, and in a program that was built
-// without the viewer (see viewer_script()).
+// about the first run, if the page would be too large without any points.
 ViewPage view_page(const std::string& title, const std::vector<std::unique_ptr<ShownRun>>& runs,
                    const Json& page, const PackedArrays& numbers, const ViewOptions& options);
 

@@ -9,7 +9,6 @@
 #include "core/parameters/parameter.h"
 #include "runners/presentation/export_formats.h"
 
-#ifdef VIEWER_SCRIPT
 // The assembler reads the files; as texts in C++ they would take a minute to compile.
 // clang-format off
 asm(".section .rodata\n"
@@ -20,25 +19,15 @@ asm(".section .rodata\n"
 // clang-format on
 // NOLINTNEXTLINE(readability-identifier-naming): symbols of the assembler
 extern "C" const char viewer_script_begin[], viewer_script_end[], viewer_style_begin[], viewer_style_end[];
-#endif
 
 namespace remote_touch {
 
-#ifdef VIEWER_SCRIPT
 std::string_view viewer_script() {
   return {viewer_script_begin, viewer_script_end};
 }
 std::string_view viewer_style() {
   return {viewer_style_begin, viewer_style_end};
 }
-#else
-std::string_view viewer_script() {
-  return {};
-}
-std::string_view viewer_style() {
-  return {};
-}
-#endif
 
 namespace {
 
@@ -128,9 +117,6 @@ std::string gzip_base64(const std::string& bytes) {
 
 std::string page_file(const std::string& title, const std::string& json, const std::string& bytes,
                       bool is_stored) {
-  if (viewer_script().empty())
-    throw InputError("this program",
-                     "was built without the viewer: expected a build by scripts/build, with Node");
   std::string html =
       "<!DOCTYPE html>\n<!-- remote-touch view -->\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\">\n";

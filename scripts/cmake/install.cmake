@@ -72,10 +72,18 @@ install(FILES ${PROJECT_BINARY_DIR}/generated/remote_touch_core.pc DESTINATION $
   COMPONENT development)
 
 install(TARGETS remote-touch RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/remote-touch RENAME copyright
-  COMPONENT program)
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libremote-touch-dev RENAME copyright
-  COMPONENT development)
+# The viewer's script contains packages of others.
+set(licences_of_viewer ${PROJECT_SOURCE_DIR}/runners/presentation/page/bundle/LICENSES)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${licences_of_viewer})
+file(READ ${PROJECT_SOURCE_DIR}/LICENSE licence)
+file(READ ${licences_of_viewer} licences)
+file(WRITE ${PROJECT_BINARY_DIR}/generated/copyright "${licence}\n${licences}")
+set(components program development python)
+set(packages remote-touch libremote-touch-dev python3-remote-touch)
+foreach(component package IN ZIP_LISTS components packages)
+  install(FILES ${PROJECT_BINARY_DIR}/generated/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
+    COMPONENT ${component})
+endforeach()
 
 # Debian's packages of all that the libraries are linked to; of cameras what this build found.
 set(package_libraries "libeigen3-dev, nlohmann-json3-dev, libhdf5-dev, libpng-dev, zlib1g-dev, liblzf-dev, libssl-dev, libassimp-dev, libsqlite3-dev, liblz4-dev, libzstd-dev, libbz2-dev, pkgconf")

@@ -16,8 +16,8 @@ endif()
 # What the program was made from, committed or not: builds with equal SHA-256 are of equal sources. Of data/ all but
 # what is made by the program and drawn from it is compiled in.
 set(patterns ${SOURCE}/scripts/cmake/*.cmake ${SOURCE}/data/*.json)
-list(APPEND patterns ${SOURCE}/runners/presentation/page/src/*.ts ${SOURCE}/runners/presentation/page/style.css
-     ${SOURCE}/runners/presentation/page/package-lock.json ${SOURCE}/scripts/plotting/*.json)
+list(APPEND patterns ${SOURCE}/runners/presentation/page/style.css
+     ${SOURCE}/runners/presentation/page/bundle/viewer.js ${SOURCE}/scripts/plotting/*.json)
 foreach(folder core scenarios analysis runners)
   list(APPEND patterns ${SOURCE}/${folder}/*.h ${SOURCE}/${folder}/*.cpp ${SOURCE}/${folder}/CMakeLists.txt)
 endforeach()

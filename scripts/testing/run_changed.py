@@ -26,7 +26,7 @@ OF_THE_PROGRAM = [
      ["command_line_.*"]),
     (r"runners/live/", ["command_line_live", "runners/live/sensors"]),
     (r"runners/evaluation/(scorecard|figures)/|data/(methods|scenes|scorecard)", ["stored_scorecard", "figures_quick"]),
-    (r"runners/presentation/|tests/system/viewer/", ["command_line_view", "viewer_.*"]),
+    (r"runners/presentation/|tests/system/viewer/|scripts/(viewer_bundle|plotting/colours)", ["command_line_view", "viewer_.*"]),
     (r"runners/interfaces/python/|tests/runners/interfaces/python/", ["python_module", "studies_quick"]),
     (r"data/studies/", ["python_module", "studies_quick"]),
     (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "plot_style", "scorecard_page", "figures_quick", "pictures"]),

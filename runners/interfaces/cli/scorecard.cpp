@@ -76,8 +76,7 @@ void do_scorecard_runs(const CommandLine& line, const std::vector<BenchmarkSweep
   });
 }
 
-// Makes a page beside the trace of each failure, and notes it in the report. Throws Interrupted, and
-// InputError in a program without the viewer.
+// Makes a page beside the trace of each failure, and notes it in the report. Throws Interrupted.
 void make_failure_pages(const CommandLine& line, const std::string& folder, ScorecardReport& report) {
   std::vector<FailureTrace*> failures;
   for (auto& of_scene : report.failures)

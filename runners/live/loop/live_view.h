@@ -348,7 +348,7 @@ struct LivePageFile {
 class LiveView {
  public:
   // port: see serve_view(). Throws InputError if the experiment's tool cannot be made or the port is not
-  // available, and in a program without the viewer.
+  // available.
   LiveView(const Experiment& experiment, const LiveViewSource& source, const Kernels& kernels, int port);
 
   std::string address() const { return server_->address(); }

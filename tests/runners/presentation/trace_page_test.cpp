@@ -147,9 +147,6 @@ TEST_F(ShownClaimsTest, AnotherFileIsRefused) {
 
 class TracePageTest : public testing::Test {
  protected:
-  void SetUp() override {
-    if (viewer_script().empty()) GTEST_SKIP() << "built without the viewer";
-  }
   Trace store(const std::string& file, const std::string& experiment,
               std::vector<std::string> overrides = {}) {
     const Experiment one = Experiment::load(experiment, overrides);
