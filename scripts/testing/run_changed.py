@@ -34,6 +34,8 @@ OF_THE_PROGRAM = [
     (r"scripts/benchmark|data/benchmarks/|tests/benchmarks/README\.md$", ["benchmark_tables"]),
     (r".*\.md$", ["page_links", "reference"]),
     (r"scripts/testing/|tests/(system/(run|evidence)_\w+|allowed_skips)$", ["run_ctest", "run_changed", "evidence"]),
+    (r"scripts/release$|tests/system/release_test$", ["release"]),
+    (r"\.github/.*\.yml$", ["forms"]),
     (r"data/sweeps/", ["figures_quick", "page_commands"]),
     (r"tests/system/page_commands$|scripts/example_recording$", ["page_commands"]),
     (r"(core|scenarios|analysis|runners)/.*\.h$", ["reference", "page_links"]),  # any of them may have settings
