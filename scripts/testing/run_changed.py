@@ -22,6 +22,7 @@ OF_THE_PROGRAM = [
     (r"(core|scenarios|analysis)/", ["baselines"]),
     (r"runners/(experiment/(catalog|hand|simulation)|evaluation/(regression|verification))/|data/(baselines|experiments)/",
      ["baselines"]),
+    (r"data/(baselines|experiments)/(fig5.8|fig6.3|fig7.5|handshake)\.", ["pictures"]),  # those that README.md shows
     (r"runners/(interfaces/cli|presentation|sweep|experiment/(settings|sessions))/",
      ["command_line_.*"]),
     (r"runners/live/", ["command_line_live", "runners/live/sensors"]),
@@ -32,7 +33,8 @@ OF_THE_PROGRAM = [
     (r"scripts/(plot|plotting/)", ["plot", "plot_drawing", "plot_style", "scorecard_page", "figures_quick", "pictures"]),
     (r"scripts/pictures|data/pictures/|runners/presentation/page/|tests/system/viewer/live_picture", ["pictures", "plot_style"]),
     (r"scripts/benchmark|data/benchmarks/|tests/benchmarks/README\.md$", ["benchmark_tables"]),
-    (r".*\.md$", ["page_links", "reference"]),
+    (r".*\.md$", ["page_links", "reference", "site"]),
+    (r"scripts/(site$|website/)|data/experiments/|tests/system/site_test$", ["pictures", "site"]),
     (r"scripts/testing/|tests/(system/(run|evidence)_\w+|allowed_skips)$", ["run_ctest", "run_changed", "evidence"]),
     (r"scripts/release$|tests/system/release_test$", ["release"]),
     (r"\.github/.*\.yml$", ["forms"]),
