@@ -241,7 +241,11 @@ class KnifeField : public testing::Test {
   FieldSample at(const Vec3& cells) const {
     return sample_field(tool_, tool_.grid.origin_T + tool_.grid.size_m * cells);
   }
-  const VoxelTool tool_ = made(knife(), true);
+  static const VoxelTool& knife_tool() {
+    static const VoxelTool tool = made(knife(), true);
+    return tool;
+  }
+  const VoxelTool& tool_ = knife_tool();
   const Vec3 end_{double(tool_.grid.cells[0]), double(tool_.grid.cells[1]), double(tool_.grid.cells[2])};
 };
 

@@ -293,7 +293,7 @@ TEST(GeneratedTools, AreClosedBodiesOfTheSizesThatTheirSummariesState) {
 // Returns the angle at which the tool, free to move in x and z, is stopped by the box of Fig 6.3, 110 x 90
 // mm: its extent first reaches that of the box.
 double stops_at_deg(const TriangleMesh& mesh, double sense) {
-  for (double deg = 0; deg < 90; deg += 0.01) {
+  for (double deg = 0; deg < 90; deg += 0.05) {
     const Eigen::AngleAxisd about_y(sense * deg * kRadiansPerDegree, Vec3::UnitY());
     const Vec3 extent = sides(meshes::moved(mesh, about_y.toRotationMatrix(), Vec3::Zero()));
     if (extent.x() >= 0.110 || extent.z() >= 0.090) return deg;
