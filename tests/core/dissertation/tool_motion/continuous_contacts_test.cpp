@@ -16,9 +16,9 @@
 namespace remote_touch::continuous_contacts_test {
 namespace {
 
-VoxelTool made(const TriangleMesh& mesh) {
+VoxelTool made(const TriangleMesh& mesh, double voxel_m = 5e-4) {
   ToolReport report;
-  return make_voxel_tool(mesh, {.outer_field = true}, report);
+  return make_voxel_tool(mesh, {.voxel_m = voxel_m, .outer_field = true}, report);
 }
 
 double field(const VoxelTool& tool, const Vec3& p_T) {
@@ -36,7 +36,11 @@ class OfABox : public testing::Test {
   double fraction(const Vec3& p_T, const Vector6& a_g) const {
     return way_.fraction({ToolPose{}, a_g}, p_T, field(tool_, p_T));
   }
-  const VoxelTool tool_ = made(box_mesh({0.03, 0.02, 0.01}));
+  static const VoxelTool& box() {
+    static const VoxelTool tool = made(box_mesh({0.03, 0.02, 0.01}));
+    return tool;
+  }
+  const VoxelTool& tool_ = box();
   const ClearWay way_{tool_};
 };
 
@@ -123,8 +127,8 @@ TEST_F(OfABox, NoOtherPointIsInsideAfterASafeMotion) {
 // early.
 TEST(ClearWay, IsNoLaterThanDenseSamples) {
   const VoxelTool tools[] = {
-      made(find_generated_tool("bar")->make()), made(meshes::any_body("ball")),
-      made(meshes::moved(find_generated_tool("fork")->make(), meshes::rotated(), Vec3::Zero()))};
+      made(find_generated_tool("bar")->make()), made(meshes::any_body("ball"), 1e-3),
+      made(meshes::moved(find_generated_tool("fork")->make(), meshes::rotated(), Vec3::Zero()), 1e-3)};
   std::mt19937 random(17);
   std::uniform_real_distribution<double> any(-1, 1);
   const auto vector = [&] { return Vec3(any(random), any(random), any(random)); };

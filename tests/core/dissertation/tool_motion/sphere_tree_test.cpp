@@ -208,7 +208,7 @@ TEST(SurfaceSamples, HaveTheAreaOfABox) {
 
 VoxelTool tool_of(const std::string& name) {
   ToolReport report;
-  return make_voxel_tool(find_generated_tool(name)->make(), {}, report);
+  return make_voxel_tool(find_generated_tool(name)->make(), {.voxel_m = 1e-3}, report);
 }
 
 constexpr double kRounding_m = 1e-9;
@@ -295,7 +295,7 @@ TEST(ToolSpheres, CoverAToolClosely) {
 // to sample.
 TEST(ToolSpheres, ReportedErrorsOfABoxAreTrue) {
   const Vec3 half_m(0.02, 0.005, 0.01);
-  const ToolSpheres made = make_tool_spheres(*scenes::box_tool(half_m), 60);
+  const ToolSpheres made = make_tool_spheres(*scenes::box_tool(half_m, 1e-3), 60);
   const PointCloud directions = scenes::random_cloud(3000, 1, 8);
   double outside_m = 0, surface_outside_m = 0;
   for (std::size_t i = 0; i < directions.size(); ++i) {
