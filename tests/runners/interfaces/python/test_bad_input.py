@@ -146,9 +146,9 @@ def test_an_input_is_never_replaced(in_folder):
 
 def test_the_environment_is_that_of_the_command_line(in_python, monkeypatch, command_line, tmp_path):
     monkeypatch.setenv("REMOTE_TOUCH_ISA", "x86-64")
-    assert in_python('import remote_touch as rt; print(rt.run("fig4.12").attrs["isa"])') == "x86-64\n"
+    assert in_python('import remote_touch as rt; print(rt.run("fig4.12").attrs["isa"])', fresh=True) == "x86-64\n"
     monkeypatch.setenv("REMOTE_TOUCH_ISA", "x86-64-v9")
-    out = in_python('try:\n    import remote_touch\nexcept ValueError as error:\n    print(error)')
+    out = in_python('try:\n    import remote_touch\nexcept ValueError as error:\n    print(error)', fresh=True)
     assert out.startswith("REMOTE_TOUCH_ISA = x86-64-v9: expected x86-64 up to")
     monkeypatch.delenv("REMOTE_TOUCH_ISA")
     monkeypatch.setenv("REMOTE_TOUCH_DATA", os.fspath(tmp_path))
@@ -158,5 +158,5 @@ try:
     rt.run({"scenario": {"name": "recording", "path": "absent"}, "renderer": {"name": "proxy"},
             "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0, 0], [0, 0, 0.1, 0.1]]}})
 except rt.InputError as error:
-    print(error)''')
+    print(error)''', fresh=True)
     assert f"REMOTE_TOUCH_DATA = {tmp_path}" in out

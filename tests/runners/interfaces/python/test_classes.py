@@ -384,7 +384,7 @@ K = np.random.default_rng(1)
 assert sha() != unknown  # nobody knows whether it computes the same
 print(first)
 '''
-    assert len({in_python(script) for _ in range(2)}) == 1  # another process, another order of sets
+    assert len({in_python(script, fresh=True) for _ in range(2)}) == 1  # another process, another order of sets
 
 
 def test_a_sweep_does_not_go_on_with_an_edited_class(in_python, tmp_path):
