@@ -328,9 +328,9 @@ TEST(AnswerText, HasEachTableWithUnits) {
   question.limit = "popped_through", question.along = "x";
   const Figure answer = sweep_answer(sweep(), kConfig, question);
   const std::string text = text_of(answer, sweep());
-  EXPECT_HAS(text, "  r_c    method  value  low    high   runs  unknown  method_of_answer  note");
-  EXPECT_HAS(text, "  m              m/s^2  m/s^2  m/s^2\n");
-  EXPECT_HAS(text, "  0.005  old     2      ");
+  EXPECT_HAS(text, "    r_c  method  value    low   high  runs  unknown  method_of_answer  note");
+  EXPECT_HAS(text, "      m          m/s^2  m/s^2  m/s^2\n");
+  EXPECT_HAS(text, "  0.005  old         2  ");
   EXPECT_EQ(text.find("limits_1"), std::string::npos);
 }
 

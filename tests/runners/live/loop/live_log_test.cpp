@@ -106,8 +106,8 @@ TEST(LiveReport, HasNoValueForWhatWasNotMeasured) {
   EXPECT_EQ(count_of(report, "ticks"), 0);
   EXPECT_EQ(count_of(report, "missed deadlines"), 0);
   const std::string shown = text(report);
-  EXPECT_HAS(shown, std::string("  ") + kForce + std::string(35, ' ') + "none\n");
-  EXPECT_HAS(shown, "0      none      none      none      none      none\n");
+  EXPECT_HAS(shown, std::string("  ") + kForce + std::string(29, ' ') + "none\n");
+  EXPECT_HAS(shown, "0   none  none  none   none     none\n");
   EXPECT_EQ(shown.find("nan"), std::string::npos) << shown;
   const Figure figure = live_figure(report);
   EXPECT_TRUE(std::isnan(std::get<std::vector<double>>(figure.tables[1].columns[1].values).back()));
