@@ -38,15 +38,14 @@ struct ReportCase {
 // A row of a table.
 struct ReportRow {
   struct Cell {
-    std::string key;  // in JSON; empty: only people see the cell
-    std::string
-        heading;  // of its column in the text; two lines are divided by "\n"; empty: only programs see it
+    std::string key;      // its name in JSON; empty: only people see the cell
+    std::string heading;  // its column in the text, up to two lines; empty: only programs see the cell
     ReportValue value;
     std::string text;
   };
   std::vector<Cell> cells = {};
   bool is_shown = true;                   // false: only programs see the row
-  std::optional<ReportCase> result = {};  // of a row that is a test case
+  std::optional<ReportCase> result = {};  // a row may be a test case
 
   // Adds a cell for people and programs. The text of a number without one has six digits.
   ReportRow& add(std::string key, std::string heading, ReportValue value);
@@ -59,7 +58,7 @@ struct ReportRow {
 
 // A table: in JSON a list of objects, which is left out if it is empty.
 struct ReportTable {
-  std::string key = {};  // in JSON; empty: only people see the table
+  std::string key = {};  // its name in JSON; empty: only people see the table
   std::string indent = "  ";
   bool has_headings = true;
   std::vector<ReportRow> rows = {};
@@ -71,11 +70,11 @@ struct ReportTable {
 
 class Report {
  public:
-  void line(const std::string& text);             // for people; a line break is added
-  void tell(std::string key, ReportValue value);  // for programs; replaces the value of this key
-  void add(ReportCase one);                       // for build servers
-  void add(ReportTable table);                    // for all three
-  // For programs an object of this name; people read its lines and tables here.
+  void line(const std::string& text);             // people read it; a line break is added
+  void tell(std::string key, ReportValue value);  // programs read it; replaces the value of this key
+  void add(ReportCase one);                       // build servers read it
+  void add(ReportTable table);                    // all three read it
+  // Adds an object of this name for programs; people read its lines and tables here.
   void add(std::string key, Report section);
 
   std::string text() const;

@@ -7,7 +7,8 @@ import string
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PLACES = {"README.md": "index.md", ".github/CONTRIBUTING.md": "CONTRIBUTING.md"}  # a site has no hidden folder
+PLACES = {"README.md": "index.md",  # a site has no hidden folder
+          **{f".github/{name}.md": f"{name}.md" for name in ("CONTRIBUTING", "RELEASES", "SECURITY", "CODE_OF_CONDUCT")}}
 PICTURES = {".png", ".webp", ".svg"}
 LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".c": "c", ".py": "python", ".pyi": "python", ".json": "json", ".cff": "yaml", ".csv": "text"}
 CODE_OR_LINK = re.compile(r"^```.*?^```|`[^`\n]*`|\]\(([^)\s]+)\)", re.DOTALL | re.MULTILINE)

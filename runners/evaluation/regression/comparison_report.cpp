@@ -371,7 +371,7 @@ std::string heading_of(const SweepComparison& sweep, const MeasureComparison& me
          " tests (Holm), with the test; a cluster has the runs that share random numbers";
 }
 
-// For people a table for each measure that changed, for programs one of all regions.
+// People read a table for each measure that changed, programs one of all regions.
 void add_regions(const SweepComparison& sweep, Report& report) {
   ReportTable all{"regions"};
   for (const RegionComparison& region : sweep.by_region) {

@@ -264,7 +264,7 @@ double distance_to_nearest_m(const std::vector<CloudPoint>& points, const Vec3& 
 // No position on a disk is far from the cloud: a square of 1.5 spacings has a diagonal of 2.1 spacings.
 void expect_no_more_than_the_cloud(const std::vector<CloudPoint>& points) {
   const std::vector<PointOrDisk> merged = merged_points(points, kCube_m);
-  std::vector<CloudPoint> near_middle;  // of which one is the nearest to every position on these disks
+  std::vector<CloudPoint> near_middle;  // one of them is the nearest to every position on these disks
   for (const CloudPoint& point : points)
     if (point.p_W.norm() < 0.01) near_middle.push_back(point);
   int disks = 0;

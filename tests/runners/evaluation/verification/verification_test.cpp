@@ -321,7 +321,7 @@ TEST(Verification, ACorrectRendererInTheWrapperPasses) {
   EXPECT_EQ(caught_by(wrong_tool<Fault::none>("none"), telling_scene({})), Names{});
 }
 
-// Which checks there are does not depend on the length of the scene or on the tool's voxels.
+// The set of checks does not depend on the length of the scene or on the tool's voxels.
 TEST(ToolVerification, AToolThatIsNamedIsNotMirrored) {
   const RendererEntry& tool = find_entry(renderers(), "tool", "renderer");
   std::vector<MetamorphicScene> plane = telling_scene({});
