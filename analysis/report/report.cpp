@@ -177,7 +177,8 @@ void Report::add(ReportCase one) {
 }
 
 void Report::add(ReportTable table) {
-  parts_.push_back({.key = table.key, .table = std::move(table)});
+  std::string key = table.key;
+  parts_.push_back({.key = std::move(key), .table = std::move(table)});
 }
 
 void Report::add(std::string key, Report section) {
