@@ -217,9 +217,9 @@ def contact_points(experiment, window, rest_distance_m, captured_s):
     contacts_W, shown = np.full((len(captured_s), 3), np.nan), -1
     for tick, (time_s, hip_W, frame) in enumerate(zip(times_s, hips_W, newest)):
         if shown < 0 or frame // CYCLE != shown // CYCLE:
-            renderer = rt.renderer(experiment)
+            renderer = rt.stepper(experiment)
         for arrived in range(shown + 1, frame + 1):
-            renderer.on_frame(window.clouds[arrived], captured_s[arrived])
+            renderer.frame(window.clouds[arrived], captured_s[arrived])
         shown = frame
         output = renderer.step(hip_W, time_s)
         if tick + 1 == len(newest) or newest[tick + 1] != frame:

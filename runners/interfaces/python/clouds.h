@@ -73,10 +73,10 @@ class AloneInThread {
 };
 
 // Adds to these classes what computes with images: cameras, depths, true surfaces. Adds DepthSensor, and
-// BuiltRenderer, a renderer of the catalog that is stepped by hand.
+// Stepper, a renderer of the catalog that is stepped by hand.
 using CloudClass = pybind11::class_<PythonCloud, std::shared_ptr<PythonCloud>>;
 using SceneClass = pybind11::class_<PythonScene, std::shared_ptr<PythonScene>>;
 void bind_images(pybind11::module_& module, CloudClass& cloud, SceneClass& scene);
-void bind_built_renderer(pybind11::module_& module);
+void bind_stepper(pybind11::module_& module);
 
 }  // namespace remote_touch

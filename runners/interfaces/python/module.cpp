@@ -48,7 +48,7 @@ PYBIND11_MODULE(_core, module) {
   bind_errors(module);
   bind_clouds(module);
   bind_classes(module);
-  bind_built_renderer(module);
+  bind_stepper(module);
   bind_experiments(module);
   bind_sweeps(module);
   bind_chunks(module);
@@ -180,7 +180,11 @@ with degrees_of_freedom = 6.)";
 
 void bind_classes(py::module_& module) {
   const py::object none = py::none();
-  py::class_<PythonOutput>(module, "Output", kOutput)
+  py::class_<PythonOutput> output(module, "Output", kOutput);
+  const auto number = [&](auto part, const char* name) {
+    output.def_property_readonly(name, [part](const PythonOutput& o) { return o.output.*part; });
+  };
+  output
       .def(py::init(&make_output), py::kw_only(), py::arg("proxy_m") = none, py::arg("force_N") = none,
            py::arg("slave_m") = none, py::arg("state") = "free", py::arg("normal") = none,
            py::arg("surface_velocity_m_per_s") = 0.0,
@@ -208,6 +212,9 @@ void bind_classes(py::module_& module) {
       .def_property_readonly("state", [](const PythonOutput& o) {
         return std::array{"free", "contact", "entrenched"}[static_cast<std::size_t>(o.output.state)];
       });
+  number(&RenderOutput::surface_velocity_m_per_s, "surface_velocity_m_per_s");
+  number(&RenderOutput::nearest_distance_m, "nearest_distance_m");
+  number(&RenderOutput::contact_count, "contact_count");
   module.def("register_class", &register_class, py::arg("kind"), py::arg("name"), py::arg("summary"),
              py::arg("type"), py::arg("settings"), "Puts a class into the catalog.");
   module.def(

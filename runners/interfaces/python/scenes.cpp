@@ -331,19 +331,21 @@ void bind_images(py::module_& module, CloudClass& cloud, SceneClass& scene) {
 namespace {
 
 // A renderer of the catalog, and what processes its frames.
-class BuiltRenderer {
+class Stepper {
  public:
-  explicit BuiltRenderer(const Experiment& experiment)
+  explicit Stepper(const Experiment& experiment)
       : renderer_(experiment.build_renderer(chosen_python_kernels())),
         processing_(experiment.build_processing(chosen_python_kernels())) {}
 
-  void on_frame(const PythonCloud& cloud, double captured_s) {
-    require_finite(captured_s, "on_frame: captured_s");
+  void frame(const py::object& given, double captured_s) {
+    const auto cloud = (py::isinstance<PythonCloud>(given) ? given : py::type::of<PythonCloud>()(given))
+                           .cast<std::shared_ptr<PythonCloud>>();
+    require_finite(captured_s, "frame: captured_s");
     const py::gil_scoped_release without_lock;
     const AloneInThread one_thread;
     const auto alone = only_user();
     Frame frame{next_++, captured_s, captured_s, nullptr};
-    processing_.fill(frame, *cloud.shown, processing_.fixtures.off());
+    processing_.fill(frame, *cloud->shown, processing_.fixtures.off());
     processing_.needs.check(frame);
     renderer_->on_frame(frame);
   }
@@ -353,11 +355,15 @@ class BuiltRenderer {
             ? given.cast<DeviceState>()
             : DeviceState{.position_W = vector_of(given, [] { return "step: device"; })};
     require_finite(time_s, "step: time_s");
+    if (time_s < now_s_)
+      throw InputError("step: time_s = " + std::to_string(time_s),
+                       "expected no time before that of the last step, " + std::to_string(now_s_));
     const py::gil_scoped_release without_lock;
     const AloneInThread one_thread;
     const auto alone = only_user();
     PythonOutput made;
     made.output = renderer_->step(device, time_s), made.has_proxy = true;
+    now_s_ = time_s;
     if (made.output.tool) {
       made.torque_Nm = made.output.tool->torque_Nm;
       made.tool_orientation = made.output.tool->orientation_W;
@@ -381,20 +387,22 @@ class BuiltRenderer {
   std::unique_ptr<Renderer> renderer_;
   FrameProcessing processing_;
   int next_ = 0;
+  double now_s_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
 
-void bind_built_renderer(py::module_& module) {
-  py::class_<BuiltRenderer>(module, "BuiltRenderer", "A renderer of the catalog in steps, see renderer().")
+void bind_stepper(py::module_& module) {
+  py::class_<Stepper>(module, "Stepper", "A renderer of the catalog in steps, see stepper().")
       .def(py::init([](const std::string& subject, const std::optional<std::string>& text,
                        const std::vector<std::string>& overrides) {
-             return BuiltRenderer(experiment_of(subject, text, overrides));
+             return Stepper(experiment_of(subject, text, overrides));
            }),
            py::arg("subject"), py::arg("text"), py::arg("overrides"))
-      .def("on_frame", &BuiltRenderer::on_frame, py::arg("cloud"), py::arg("captured_s"),
-           "A new frame, which the depth pipeline and the fixtures of the experiment process before.")
-      .def("step", &BuiltRenderer::step, py::arg("device"), py::arg("time_s"),
+      .def(
+          "frame", &Stepper::frame, py::arg("cloud"), py::arg("captured_s"),
+          "A new frame, a Cloud or an array (n, 3), which the depth pipeline and the fixtures process before.")
+      .def("step", &Stepper::step, py::arg("device"), py::arg("time_s"),
            "One tick for a Device or a position: an Output.");
 }
 

@@ -12,12 +12,12 @@ import os as _os
 from remote_touch import _core
 from remote_touch._core import Cloud, DepthSensor, Device, Frame, InputError, MissingInput, NoiseKey, Output, Scene, tool_mesh
 from remote_touch.calls import Comparison, analyse, compare, describe, list, open, replay, run, scorecard, sweep
-from remote_touch.classes import Renderer, Scenario, Setting, Trajectory, register, renderer, scene
+from remote_touch.classes import Renderer, Scenario, Setting, Trajectory, register, scene, stepper
 
 __version__ = _core.version()
 __all__ = ["Cloud", "Comparison", "DepthSensor", "Device", "Frame", "InputError", "MissingInput", "NoiseKey", "Output", "Renderer",
-           "Scenario", "Scene", "Setting", "Trajectory", "analyse", "compare", "describe", "list", "open", "register", "renderer",
-           "replay", "run", "scene", "scorecard", "sweep", "tool_mesh"]
+           "Scenario", "Scene", "Setting", "Trajectory", "analyse", "compare", "describe", "list", "open", "register", "replay",
+           "run", "scene", "scorecard", "stepper", "sweep", "tool_mesh"]
 
 InputError.__module__ = __name__  # where users find it
 MissingInput.__module__ = __name__

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from remote_touch._core import BuiltRenderer, Cloud, Device, Frame, NoiseKey, Output, Scene
+    from remote_touch._core import Cloud, Device, Frame, NoiseKey, Output, Scene, Stepper
     _Class = TypeVar("_Class", bound=Union[type["Renderer"], type["Scenario"], type["Trajectory"]])
 
 
@@ -166,14 +166,22 @@ def scene(name: str, *, key: NoiseKey | None = None, **settings: Any) -> Scene:
     return _core.Scene(_native(name), _json(settings, "scene: "), key if key is not None else _core.NoiseKey())
 
 
-def renderer(experiment: str | os.PathLike[str] | dict[str, Any], *, set: Mapping[str, Any] | None = None) -> BuiltRenderer:
-    """The renderer of an experiment, which is named as for rt.run(), to be given clouds and stepped by hand.
+_NO_SCENE = {"scenario": {"name": "points"}, "trajectory": {"name": "waypoints", "waypoints": [[0, 0, 0, 0], [0, 0, 0, 1]]}}
 
-    on_frame(cloud, captured_s): a new frame, which the depth pipeline and the fixtures of the experiment process before.
-    step(device, time_s): an Output for a Device or a position. Scene and trajectory of the experiment are not used.
+
+def stepper(renderer: str | type[Renderer] | os.PathLike[str] | dict[str, Any], settings: Mapping[str, Any] | None = None, *,
+            set: Mapping[str, Any] | None = None) -> Stepper:
+    """A renderer to be given clouds and stepped by hand: rt.stepper("proxy", {"stiffness_N_per_m": 400}).
+
+    renderer: its name, or an experiment, which is named as for rt.run(); scene and trajectory of the experiment are not used.
+    set: other settings, such as {"depth_pipeline.filter_window": 5, "haptic_rate_hz": 500}.
+    frame(cloud, captured_s): a new frame, a Cloud or an array (n, 3), which the depth pipeline and the fixtures process before.
+    step(device, time_s): an Output for a Device or a position. The bits are those of rt.run().
     """
     from remote_touch.calls import _overrides, _subject
-    return _core.BuiltRenderer(*_subject(experiment), _overrides(set))
+    is_named = settings is not None or isinstance(renderer, type) or isinstance(renderer, str) and renderer in _core.list()["renderers"]
+    subject = {**_NO_SCENE, "renderer": {"name": renderer, **(settings or {})}} if is_named else renderer
+    return _core.Stepper(*_subject(subject), _overrides(set))
 
 
 def _kind_of(cls):

@@ -156,6 +156,17 @@ def test_an_installed_copy(tmp_path):
     assert digest == rt.run("fig4.12").attrs["digest"]
 
 
+def test_an_engine_and_a_teleoperator_are_felt(tmp_path):
+    """The ball of the engine is pushed by a force, and the recorded demonstration has one."""
+    pytest.importorskip("ode", reason="python3-pyode is not installed")
+    newtons, mm = map(float, re.search(r"up to ([\d.]+) N, and the ball rolled (\d+) mm", output_of(
+        [sys.executable, "-B", EXAMPLES / "touch_a_physics_engine.py"], tmp_path)).groups())
+    assert 1 < newtons < 20 and mm > 50
+    steps, newtons = map(float, re.search(r"recorded, (\d+) of them in contact, up to ([\d.]+) N", output_of(
+        [sys.executable, "-B", EXAMPLES / "force_for_robot_learning.py"], tmp_path)).groups())
+    assert 5 < steps < 25 and 1 < newtons < 20
+
+
 def test_examples_are_on_the_page():
     text = PAGE.read_text()
     for example in EXAMPLES.glob("*.py"):
