@@ -12,7 +12,8 @@ SYMBOL_WITH_POWER = re.compile(rf"{SYMBOL.pattern}(?:{POWER.pattern})?")
 VARIABLE_WITH_POWER = re.compile(rf"{VARIABLE.pattern}(?:{POWER.pattern})?")
 TIMES = re.compile(r"(?<=[\w)])(?<!\babout)(?<!\balong)(?<!\b[aioO]n)(?<!\bof)(?<!\b[aiA]t) x (?=[\w(])")
 SHOWN_UNITS = {"m": (1000, "mm")}  # factor, and the unit that is shown
-UNIT_WORDS = {"deg": "°", "us": "µs", "N m": "N·m", "N s/m": "N·s/m"}
+UNIT_WORDS = {"deg": "°", "us": "µs"}
+PRODUCT = re.compile(r"[A-Za-z]{1,3}( [A-Za-z]{1,3})+(/\w+)?")  # of units, such as N m s/rad
 LENGTH = re.compile(r"(?<![\w.])((?:\d+(?:\.\d+)?(?: to | or | x ))*\d+(?:\.\d+)?) (m|cm|micrometres|um)(?![\w/^·])")
 DEGREES = re.compile(r"(?<=\d) deg\b")
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
@@ -118,7 +119,7 @@ def capitalised(title):
 
 
 def unit_words(unit):
-    return UNIT_WORDS.get(unit, unit)
+    return unit.replace(" ", "·") if PRODUCT.fullmatch(unit) else UNIT_WORDS.get(unit, unit)
 
 
 def with_unit(label, unit):

@@ -163,7 +163,7 @@ def draw_energies(s, over, title, x_label, axis, cases):
 def device_width(s):
     tool_0, tool_5, turn_0, turn_5, mass, hand, rate, damper = curves = widths(s)
     draw_widths(s, [tool_0, tool_5], "A plate held flat", "damping of the device (N s/m)")
-    draw_widths(s, [turn_0, turn_5], "A plate held flat, in rotation", "rotational damping of the device (N m s/rad)", "N m/rad")
+    draw_widths(s, [turn_0, turn_5], "A plate held flat, in rotation", "rotational damping of the device (N·m·s/rad)", "N·m/rad")
     draw_widths(s, [mass], "Mass of the hand", "mass (kg)")
     draw_widths(s, [hand], "Damping of the hand", "damping of the hand (N s/m)")
     draw_widths(s, [rate], "Frame rate", "frame rate (Hz)")
