@@ -8,7 +8,7 @@ from mutation import sources
 from mutation.mutation import MutationError
 
 FOLDERS = ("core", "scenarios", "analysis", "runners", "data", "tests", "scripts")
-FILES = ("CMakeLists.txt", "README.md")
+FILES = ("CMakeLists.txt", "LICENSE", "README.md")
 OPTIONS = ("-GNinja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DCMAKE_UNITY_BUILD=ON",
            "-DCMAKE_UNITY_BUILD_BATCH_SIZE=10", "-DREMOTE_TOUCH_BENCHMARKS=OFF",
            "-DCMAKE_CXX_FLAGS=-w -D_GLIBCXX_ASSERTIONS")  # what reads behind the end of a container is found
