@@ -14,6 +14,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -98,4 +99,5 @@ def main():
 
 
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+os.environ.setdefault("TMPDIR", tempfile.gettempdir())  # on a disk: these tests fill it, and some ask what it does to a result
 main()
