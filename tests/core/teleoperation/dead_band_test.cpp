@@ -101,23 +101,6 @@ TEST(DeadBand, SendsWhatASearchFinds) {
         }
 }
 
-TEST(DeadBand, PredictsThroughTheLastTwoPackets) {
-  DeadBandSender sender({.least = 0.5, .predicts = true});
-  EXPECT_EQ(sender.shown(1), std::nullopt);
-  const auto first = sender.send({1, 1, 1}, 2.0);
-  ASSERT_TRUE(first);
-  EXPECT_EQ(first->slope_per_s, Vec3::Zero());
-  EXPECT_FALSE(sender.send({1, 1.4, 1}, 2.1));
-  const auto second = sender.send({1, 2, 1}, 2.25);
-  ASSERT_TRUE(second);
-  EXPECT_EQ(second->slope_per_s, Vec3(0, 4, 0));
-  EXPECT_EQ(second->sent_s, 2.25);
-  EXPECT_EQ(sender.shown(2.5), Vec3(1, 3, 1));
-  EXPECT_FALSE(sender.send({1, 3.4, 1}, 2.5));
-  EXPECT_TRUE(sender.send({1, 3.6, 1}, 2.5));
-  EXPECT_EQ(sender.shown(2.5), Vec3(1, 3.6, 1));
-}
-
 TEST(DeadBand, PredictsNothingFromTwoPacketsAtTheSameTime) {
   DeadBandSender sender({.predicts = true});
   sender.send({1, 0, 0}, 1);

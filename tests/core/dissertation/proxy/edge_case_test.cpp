@@ -29,17 +29,6 @@ TEST(EdgeCase, APointExactlyAtTheProxyDoesNoHarm) {
   EXPECT_GE(out.nearest_distance_m, kContactRadius - kShell);  // the proxy has moved out
 }
 
-TEST(EdgeCase, SymmetricPointsHaveNoNormal) {
-  PointCloud cloud;  // the sum of directions vanishes midway between two points
-  cloud.append({0.004, 0, 0}), cloud.append({-0.004, 0, 0});
-  ProxyRenderer renderer = scenes::renderer();
-  renderer.on_frame(scenes::frame(cloud));
-  for (int tick = 0; tick < 50; ++tick) {
-    const RenderOutput out = renderer.step({Vec3(0, 0.02 - 0.001 * tick, 0)}, 0.001 * tick);
-    ASSERT_TRUE(out.proxy_W.allFinite() && out.normal_W.allFinite());
-  }
-}
-
 // Frames without points, before a contact and in it.
 TEST(EdgeCase, ACloudWithoutPointsGivesNoForce) {
   PointCloud missing = scenes::flat_grid(30);

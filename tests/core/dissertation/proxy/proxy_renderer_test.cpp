@@ -83,21 +83,29 @@ TEST(VirtualCoupling, TheDamperKnowsTheDistanceOfATickWithoutForce) {
   EXPECT_NEAR(pull_N(0.007), expected_N(0.007, 0.004), 1e-12);
 }
 
-// The rate after n missed ticks is the difference divided by all of them. Otherwise it would be n times too
-// large.
-TEST(VirtualCoupling, TheDamperSpreadsADifferenceOverMissedTicks) {
-  const double damping = 5;
-  for (const double ticks : {1.0, 2.0, 40.0}) {
-    VirtualCoupling c = coupling(damping);
-    still(c, {0, -0.010, 0});
-    const Vec3 force = c.force({0, -0.011, 0}, 0, Vec3::Zero(), kStiffness, ticks);
-    EXPECT_NEAR(force.y(), kStiffness * (0.011 - kContactRadius) + damping * 0.001 * kRate / ticks, 1e-11);
-  }
-}
-
 // HIP distance 2 cm + 5 mm sin(2 pi t), sampled at the haptic rate.
 double distance(double time) {
   return 0.02 + 0.005 * std::sin(6.283185307179586 * time);
+}
+
+// A renderer that is asked in every fourth tick only feels the same even press. The damper adds 5 Ns/m times
+// 0.01 m/s.
+TEST(VirtualCoupling, TheRendererCountsTheTicksThatItMissed) {
+  ProxyParameters p;
+  ProxyRenderer spring = scenes::renderer(p);
+  p.damping_Ns_per_m = 5;
+  ProxyRenderer every = scenes::renderer(p), fourth = scenes::renderer(p);
+  for (ProxyRenderer* each : {&spring, &every, &fourth}) each->on_frame(scenes::frame(scenes::flat_grid(30)));
+  for (int tick = 0; tick <= 2000; ++tick) {
+    const DeviceState hand{{0, 0.01 - 1e-5 * tick, 0}};
+    const auto force_N = [&](ProxyRenderer& r) { return r.step(hand, 0.001 * tick).force_N.norm(); };
+    const double without_N = force_N(spring), with_N = force_N(every);
+    if (tick % 4 != 0) continue;
+    const double seldom_N = force_N(fourth);
+    if (tick < 1500) continue;
+    ASSERT_NEAR(with_N - without_N, 0.05, 1e-6) << tick;
+    ASSERT_NEAR(seldom_N, with_N, p.stiffness_N_per_m * (p.r2_m - p.r1_m)) << tick;  // the shell
+  }
 }
 
 // Work on the hand over whole cycles: a damper removes energy, and the printed sign adds energy.
@@ -177,6 +185,29 @@ TEST(SlaveCommand, IsHeldWhileTheProxyIsInsideARegion) {
 // A proxy that ends a tick inside a region may have been outside during the tick. The command is its latest
 // position outside. A second renderer with one step a tick computes the positions within a tick of many
 // steps.
+// A plane that rises evenly, seen 20 ms late. The surface has moved on since it was captured.
+TEST(SlaveCommand, MovesOnWithTheSurfaceIfItIsPredicted) {
+  ProxyParameters predicted;
+  predicted.slave_prediction = true;
+  ProxyRenderer renderer = scenes::renderer(predicted), held = scenes::renderer();
+  const double speed = 0.06;
+  for (int tick = 0; tick < 500; ++tick) {
+    const double time_s = 0.001 * tick, captured_s = time_s - 0.02;
+    if (tick % 25 == 0) {
+      PointCloud cloud = scenes::flat_grid(30);
+      for (double& y : cloud.y) y = speed * captured_s;
+      for (ProxyRenderer* each : {&renderer, &held})
+        each->on_frame({tick / 25, captured_s, time_s, make_search(cloud)});
+    }
+    const DeviceState hand{{0, std::max(0.02 - 0.0002 * tick, -0.003) + speed * time_s, 0}};
+    const RenderOutput ahead = renderer.step(hand, time_s), out = held.step(hand, time_s);
+    if (tick < 200) continue;
+    ASSERT_EQ(out.state, ContactState::contact) << tick;
+    const double age_s = 0.02 + 0.001 * (tick % 25);
+    ASSERT_LT((ahead.slave_W - out.slave_W - Vec3(0, age_s * speed, 0)).norm(), 1e-5) << tick;
+  }
+}
+
 TEST(SlaveCommand, IsTheLatestPositionOutsideWithinATick) {
   ProxyParameters many, one;
   many.velocity_estimate = one.velocity_estimate = false;

@@ -280,6 +280,21 @@ TEST(TouchingRegions, TheMotionIsTheNearestThatEntersNone) {
   EXPECT_GT(held, 500);
 }
 
+// A step that a region ended leaves the proxy on its margin, up to rounding. It may go on along the region.
+TEST(TouchingRegions, TheProxyGoesOnFromTheMarginOfARegion) {
+  spheres::Draw draw(5);
+  const double margin_m = 0.5 * (kDefault.r1_m + kDefault.contact_radius_m());
+  for (int round = 0; round < 1000; ++round) {
+    PointCloud ball = scenes::cloud_of({draw.in_cube(0.5)});
+    ball.fixture_radius_m = {draw.between(0.001, 0.05)};
+    const Vec3 n = draw.direction(), goal = 5e-4 * n.cross(draw.direction()).normalized();
+    const Vec3 p_W = ball.point(0) + (margin_m + ball.fixture_radius_m[0]) * n;
+    Neighbourhood near = neighbourhood(ball);
+    const Vec3 step = region_step(near, p_W, goal, goal - 0.01 * n, kDefault);
+    ASSERT_LT((step - kDefault.gamma * goal).norm(), 1e-12) << round;
+  }
+}
+
 // Numbers so small that rounding is as large as they are: the rounds go in a circle.
 TEST(TouchingRegions, AMotionThatIsNotFoundIsNotZero) {
   const PointCloud cloud =
