@@ -17,6 +17,7 @@ from .style import COLOURS, page_colour
 SCHEMA = "remote-touch-scorecard/5"
 # /4 has no thresholds; the weaknesses of /3 also have the key "shown" in place of "significant".
 EARLIER_SCHEMAS = ("remote-touch-scorecard/4", "remote-touch-scorecard/3")
+STORED_SCHEMA = "remote-touch-stored-scorecard/1"  # of `remote-touch scorecard json`
 OWN_CSS = f"""
 body {{ font-size: 15px; max-width: 78rem; }}
 h2#reading ~ p {{ max-width: 60rem; }}
@@ -122,6 +123,9 @@ would send (IEEE 1918.1.1).</p>{thresholds_text(card)}"""
 
 def scene_section(card, scene, link):
     name = esc(scene["name"])
+    if card.get("stored"):
+        return (f'<h2 id="{name}">{name}</h2><p>Scene and success: <code>remote-touch describe {name}</code></p>'
+                f"{success_table(card, scene, link)}{level_tables(card, scene)}")
     plot = noise_plot([one["levels"] for one in scene["success"]], level_heads(card, scene))
     # Only recorded scenes state their truth, and only since cards of this version.
     truth = f"<br>Truth: {esc(scene['truth'])}." if scene.get("truth") else ""
@@ -172,6 +176,8 @@ def scorecard_page(card, link=lambda file: file):
     """link: from a file of the card's folder to where that lies, as the page names it."""
     scenes = "\n".join(scene_section(card, scene, link) for scene in card["scenes"])
     names = [method["name"] for method in card["methods"]]
+    where = ("Without runs there are no marks, failures, costs and passivity in the scenes." if card.get("stored")
+             else "Numbers: scorecard.h5; every run: runs/.")
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>Scorecard</title><style>{CSS}{OWN_CSS}{PLOT_CSS}{looks_css(names)}</style></head><body>
@@ -186,7 +192,7 @@ def scorecard_page(card, link=lambda file: file):
 {scenes}
 {audit_section(card)}
 {costs_section(card)}
-<footer>{esc(card["origin"])}; everything simulated. Numbers: scorecard.h5; every run: runs/.</footer>
+<footer>{esc(card["origin"])}; everything simulated. {where}</footer>
 </body></html>
 """
 
@@ -209,6 +215,51 @@ def with_present_names(card):
         return card
 
 
+def mean_over(row, key, low=None, high=None):
+    return {"runs": row["scenes"], "mean": row[key], "low": low, "high": high}
+
+
+def stored_scene(name, methods, counts, means):
+    """A scene of a stored card. Only runs give marks, intervals over all levels, and typical failures."""
+    levels = {method: [row for row in counts if row["method"] == method] for method in methods}
+
+    def success(rows):
+        noisy = [row for row in rows if row["noise_sigma"] != 0]
+        runs = sum(row["runs"] for row in noisy)
+        fraction = sum(row["successes"] for row in noisy) / runs if runs else None
+        return {"levels": rows, "overall": {"fraction": fraction}, "mark": "none", "old": None, "failure": None}
+
+    def measure(what):
+        rows = [row for row in means if row["measure"] == what]
+        return {"name": what, "units": rows[0]["units"],
+                "methods": [{"levels": [row for row in rows if row["method"] == method]} for method in methods]}
+
+    return {"name": name, "noise_sigma_m": [row["noise_sigma"] for row in levels[methods[0]]],
+            "success": [success(levels[method]) for method in methods],
+            "measures": [measure(what) for what in dict.fromkeys(row["measure"] for row in means)]}
+
+
+def card_of_stored(stored):
+    """The card that `remote-touch scorecard json` printed, with the keys of scorecard.json."""
+    methods = [row["method"] for row in stored["overview"]]
+    thresholds = {}
+    for row in stored["thresholds"]:
+        thresholds.setdefault(row["measure"], row | {"methods": []})["methods"].append(row)
+    by_scene = {name: ([], []) for name in dict.fromkeys(row["scene"] for row in stored["success"])}
+    for part, rows in enumerate((stored["success"], stored["measures"])):
+        for row in rows:
+            by_scene[row["scene"]][part].append(row)
+    return stored | {
+        "stored": True, "audit": None, "costs": None, "skipped": [], "origin": "the stored scorecard",
+        "methods": [{"name": row["method"], "title": row["method"], "scenes_held": row["held"], "scenes_best": row["best"],
+                     "scenes_worst": row["worst"], "success": mean_over(row, "success", row["low"], row["high"]),
+                     "noise_free": mean_over(row, "noise_free"), "old_success": mean_over(row, "old_success")}
+                    for row in stored["overview"]],
+        "thresholds": list(thresholds.values()),
+        "behind": {"method": stored["own_method"], "list": stored["behind"]} if stored["own_method"] in methods else None,
+        "scenes": [stored_scene(name, methods, *rows) for name, rows in by_scene.items()]}
+
+
 def read_scorecard(path):
     try:
         card = json.loads(path.read_text(encoding="utf-8"))
@@ -217,6 +268,11 @@ def read_scorecard(path):
     except (ValueError, RecursionError) as error:
         raise PlotError(f"{path}: damaged: {error}") from None
     schema = card.get("schema") if isinstance(card, dict) else None
+    if schema == STORED_SCHEMA:
+        try:
+            return card_of_stored(card)
+        except (KeyError, IndexError, TypeError, AttributeError) as error:
+            raise PlotError(f"{path}: damaged: {type(error).__name__} {error}") from None
     if schema not in (SCHEMA, *EARLIER_SCHEMAS):
         raise PlotError(f"{path}: schema {schema!r}: expected {SCHEMA!r}")
     return card if schema == SCHEMA else with_present_names(card)

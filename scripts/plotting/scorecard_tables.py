@@ -37,6 +37,8 @@ def with_interval(mean, factor):
 
 
 def share_text(share):
+    if "low" not in share:  # of a stored card
+        return number(share["fraction"])
     return f"{share['fraction']:.2f} <small>{share['low']:.2f} .. {share['high']:.2f}</small>"
 
 
@@ -145,10 +147,11 @@ def success_table(card, scene, link):
         yield cell(share_text(one["overall"]), MARKS[one["mark"]])
         for _ in before:
             yield cell("-" if one["old"] is None else f"{one['old']['overall']['fraction']:.2f}")
-        yield cell(failure_text(one["failure"], levels, link), "left")
+        if not card.get("stored"):
+            yield cell(failure_text(one["failure"], levels, link), "left")
 
-    heads = ["noise / r_c", *levels, "with noise, 95 % interval", *before,
-             "a typical failure, at the lowest noise that has one"]
+    last = ["with noise"] if card.get("stored") else ["with noise, 95 % interval", *before, "a typical failure, at the lowest noise that has one"]
+    heads = ["noise / r_c", *levels, *last]
     return table(heads, named_rows(card, scene["success"], cells))
 
 

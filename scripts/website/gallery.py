@@ -65,7 +65,8 @@ def page(shown):
     known = experiments()
     text = ["---\nhide-toc: true\n---\n# Gallery\n", "Every stored experiment" + (
         " as a page that you can turn and play. Each page is one file: send it, or show it in a talk. Its address ends in the tick that it "
-        "shows. The figures of the dissertation, with their claims, are on [one page](site:figures/index.html).\n" if shown else ".\n")]
+        "shows. The figures of the dissertation, with their claims, are on [one page](site:figures/index.html); so is the "
+        "[stored scorecard](site:scorecard/index.html).\n" if shown else ".\n")]
     for group in GROUPS:
         text.append(f"## {group['title']}\n\n{group['text']}\n")
         text += [card(known[name], name in shown) for name in group["experiments"] if not shown or name in shown]

@@ -375,6 +375,17 @@ Json skipped_json(const ScorecardReport& report) {
   return skipped;
 }
 
+// Returns the rows of a table as objects, whose keys are the columns.
+Json rows_json(const Table& table) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < table.columns.front().length(); ++i) {
+    Json& row = rows.emplace_back();
+    for (const Column& column : table.columns)
+      std::visit([&](const auto& values) { row[column.name] = values.at(i); }, column.values);
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::string configuration_of(const BenchmarkPlan& plan) {
@@ -426,6 +437,26 @@ std::string stored_summary(const std::filesystem::path& file) {
   } catch (const std::out_of_range& missing) {
     hdf5.damaged(missing.what());
   }
+}
+
+std::string stored_json(const std::filesystem::path& file) {
+  const StoredCard stored = read_stored_card(file);
+  const Hdf5Reader hdf5 = stored_card_file(file);
+  Json all = {{"schema", kStoredCardSchema},
+              {"replicates", stored.replicates},
+              {"seed", kScorecardSeed},
+              {"last_tuned_seed", kLastTunedSeed},
+              {"min_pairs", kMinPairs},
+              {"held_fraction", kHeldFraction},
+              {"contact_radius_m", kScorecardRadius_m},
+              {"significance", kSignificance},
+              {"own_method", own_method(stored.methods)}};
+  for (const char* name : {"overview", "behind", "success", "measures"})
+    all[name] = rows_json(table_in(hdf5, name));
+  // Cards that earlier versions stored have no thresholds.
+  const bool has_thresholds = hdf5.has("/tables/thresholds/measure");
+  all["thresholds"] = has_thresholds ? rows_json(table_in(hdf5, "thresholds")) : Json::array();
+  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::vector<std::string> differences(const StoredCard& stored, const BenchmarkPlan& plan,

@@ -288,4 +288,10 @@ inline constexpr const char* kScorecardSchema = "remote-touch-scorecard/5";
 // SI units, null for a number that is missing. The lists "methods" and "laws" have the same order everywhere.
 std::string to_json(const ScorecardReport& report);
 
+// Returns the tables of a stored card as JSON, for its page: a list of rows for each table, and what the
+// numbers depend on. SI units, null for a number that is missing. Throws InputError if the file is not a
+// stored card.
+inline constexpr const char* kStoredCardSchema = "remote-touch-stored-scorecard/1";
+std::string stored_json(const std::filesystem::path& file);
+
 }  // namespace remote_touch

@@ -1,9 +1,11 @@
 // The commands about this machine and live runs: `live`, `devices` and `jitter`.
 #include <spawn.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -12,8 +14,10 @@
 #include <filesystem>
 #include <functional>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "analysis/storage/atomic_file.h"
 #include "analysis/storage/block_journal.h"
 #include "analysis/storage/digest.h"
 #include "analysis/storage/result_file.h"
@@ -44,7 +48,10 @@ struct LiveRequest {
   int view_port = 0;
 };
 
-struct DevicesRequest {};
+struct DevicesRequest {
+  std::string report, device = "sim:";  // report: the file to write; empty: none
+  double duration_s = 10;               // of each measurement of the report
+};
 
 struct JitterRequest {
   double duration_s = 10, rate_hz = 1000;
@@ -285,7 +292,79 @@ void print_depth_devices(const Kernels& kernels) {
   if (!why_none.empty()) std::printf("  none: %s\n", why_none.c_str());
 }
 
-int command_devices(const CommandLine& line, const DevicesRequest&) {
+// The report of `devices --report` has numbers and fixed words only: no text of a device, of a library or of
+// an error, which may have a serial number, a path or a name.
+constexpr const char* kDeviceReport = "{\n \"schema\": \"remote-touch-device-report/1\"";
+constexpr double kHoldLimit_N = 1;
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json jitter_json(const CommandLine& line, double duration_s) {
+  const double rate_hz = 1000;
+  Jitter jitter = measure_jitter(duration_s, rate_hz, line.stop, steady_clock());
+  std::sort(jitter.late_s.begin(), jitter.late_s.end());
+  Json json = {{"rate_hz", rate_hz}, {"ticks", jitter.late_s.size()}, {"missed", jitter.missed}};
+  for (const auto& [name, fraction] :
+       {std::pair("late_p50_us", 0.5), {"late_p99_us", 0.99}, {"late_max_us", 1}})
+    json[name] = number_or_null(1e6 * quantile(jitter.late_s, fraction));
+  return json;
+}
+
+// Holds the device on the simulated table with the safety gate at 1 N.
+Json hold_json(const CommandLine& line, const DevicesRequest& request) {
+  const Experiment experiment =
+      Experiment::load("fig4.16", {"safety.max_force_N=" + formatted("%g", kHoldLimit_N)});
+  LiveOptions options;
+  options.device = request.device, options.duration_s = request.duration_s;
+  options.kernels = line.kernels, options.stop = line.stop, options.rearm = line.rearm;
+  if (!line.quiet) options.report_line = report_line;
+  set_live_signals();
+  const LiveResult result = run_live(experiment, options);
+  std::printf("ended: %s\n", result.ended.c_str());
+  const LiveReport report = live_report(result.log, result.counts);
+  Json times, counts;
+  for (const LiveReport::Times& one : report.times)
+    times[one.name] = {{"count", one.count},
+                       {"p50_us", number_or_null(1e6 * quantile(one.sorted, 0.5))},
+                       {"p99_us", number_or_null(1e6 * quantile(one.sorted, 0.99))},
+                       {"max_us", number_or_null(1e6 * one.greatest)}};
+  for (const LiveReport::Count& one : report.counts) counts[one.name] = number_or_null(one.value);
+  return {{"gate_N", kHoldLimit_N},
+          {"failed", result.failed || !result.refused.empty() || !result.lost.empty()},
+          {"force_scale", result.force_scale},
+          {"times", times},
+          {"counts", counts}};
+}
+
+int write_device_report(const CommandLine& line, const DevicesRequest& request) {
+  const DeviceEntry& entry = find_scheme(devices(), "--device", parse_uri("--device", request.device));
+  require_report(line, request.report, {}, kDeviceReport);
+  utsname system{};
+  uname(&system);
+  Json available;
+  for (const DeviceEntry& one : devices()) available[one.scheme] = one.availability().found;
+  std::printf("timing of the loop, %g s; then hold the handle for %g s: at most %g N\n", request.duration_s,
+              request.duration_s, kHoldLimit_N);
+  std::fflush(stdout);
+  Json report = {{"schema", "remote-touch-device-report/1"},
+                 {"version", version()},
+                 {"instruction_set", line.kernels->isa},
+                 {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
+                 {"device", entry.scheme},
+                 {"simulated", entry.scheme == std::string("sim")},
+                 {"found", available},
+                 {"duration_s", request.duration_s}};
+  report["jitter"] = jitter_json(line, request.duration_s);
+  report["hold"] = hold_json(line, request);
+  write_file_atomically(request.report, report.dump(1) + "\n");
+  std::printf("%s: read it, and send it if you like\n", printable(request.report).c_str());
+  return report["hold"]["failed"] ? kCheckFailed : kDone;
+}
+
+int command_devices(const CommandLine& line, const DevicesRequest& request) {
+  if (!request.report.empty()) return write_device_report(line, request);
   std::puts("--device: haptic devices");
   for (const DeviceEntry& entry : devices()) print_entry(entry);
   std::puts("--depth: depth sensors");
@@ -340,8 +419,19 @@ void add_live(Subcommands& commands) {
 }
 
 void add_devices(Subcommands& commands) {
-  commands.add("devices", "list sensors, haptic devices and OpenCL devices: what was found, or why not",
-               command_devices, kNoThreads);
+  auto [command, request] =
+      commands.add("devices", "list sensors, haptic devices and OpenCL devices: what was found, or why not",
+                   command_devices, kNoThreads);
+  CLI::Option* const report = command->add_option(
+      "--report", request->report,
+      "measure timing and a hold with at most 1 N, and write this JSON file, which has nothing private");
+  command->add_option("--device", request->device, "the haptic device of the report")
+      ->needs(report)
+      ->capture_default_str();
+  command->add_option("--duration", request->duration_s, "seconds of each of both measurements")
+      ->check(between(0.1, 600))
+      ->needs(report)
+      ->capture_default_str();
 }
 
 void add_jitter(Subcommands& commands) {

@@ -48,6 +48,8 @@ struct ScorecardSummaryRequest {
   std::string file = kStoredCard;
 };
 
+struct ScorecardJsonRequest : ScorecardSummaryRequest {};
+
 // Steps that the commands of a scorecard share: doing its runs, and reporting on them.
 
 constexpr std::size_t kPageOfFailure = 3'000'000;  // bytes of one page; there may be hundreds of pages
@@ -268,6 +270,11 @@ int command_scorecard_summary(const CommandLine&, const ScorecardSummaryRequest&
   return kDone;
 }
 
+int command_scorecard_json(const CommandLine&, const ScorecardJsonRequest& request) {
+  std::fputs(stored_json(request.file).c_str(), stdout);
+  return kDone;
+}
+
 // Options of every command that runs a scorecard.
 template <class Request>
 void add_scorecard_options(CLI::App* command, Request& request, const char* all) {
@@ -312,6 +319,10 @@ void add_scorecard(Subcommands& commands) {
   auto [summary_command, summary] = below.add("summary", "print what the stored scorecard says, as Markdown",
                                               command_scorecard_summary, kNoThreads);
   summary_command->add_option("--stored", summary->file, "the stored scorecard")->capture_default_str();
+  auto [json_command, json] = below.add(
+      "json", "print the stored scorecard as JSON, from which scripts/plot makes a page without runs",
+      command_scorecard_json, kNoThreads);
+  json_command->add_option("--stored", json->file, "the stored scorecard")->capture_default_str();
 }
 
 }  // namespace remote_touch
