@@ -1,8 +1,8 @@
 """A teleoperator with force feedback for robot learning: demonstrations that were felt.
 
-TouchTeleoperator has the methods of LeRobot's class Teleoperator, without importing it: derive it from that class, and a script
-that records demonstrations can use it. send_feedback() gets what the robot's depth camera saw; between two calls the device
-is served at 1 kHz. Device and robot are simulated here: a hand that pokes at a beating heart, and a robot that follows at once.
+TouchTeleoperator has the methods of LeRobot's class Teleoperator, without importing it. send_feedback() gets the observation of
+the robot, with what its depth camera saw; between two calls the device is served at 1 kHz. Device and robot are simulated here: a
+hand that pokes at a beating heart, and a robot that follows at once.
 
 Run it: PYTHONPATH=build/release/python python3 runners/interfaces/python/examples/force_for_robot_learning.py
 """
@@ -48,7 +48,7 @@ class TouchTeleoperator:
         pass
 
     def get_action(self):
-        """Serves the device until the next frame is due. A real one is served by a thread of its own."""
+        """Serves the device until the next frame is due; before the first frame without a force. A real one has its own thread."""
         for _ in range(HAPTIC_RATE_HZ // RATE_HZ):
             self.hand_m = self.device.position_m()
             self.device.set_force(self.touch.step(self.hand_m, self.ticks / HAPTIC_RATE_HZ).force_N)
@@ -84,8 +84,8 @@ def demonstration(robot, teleoperator, frames):
     teleoperator.connect()
     for _ in range(frames):
         observation = robot.get_observation()
-        teleoperator.send_feedback({name: observation[name] for name in teleoperator.feedback_features})
         action = teleoperator.get_action()
+        teleoperator.send_feedback(observation)
         robot.send_action(action)
         recorded.append([*robot.tool_m, *(action[f"force.{axis}"] for axis in AXES)])
     teleoperator.disconnect()
