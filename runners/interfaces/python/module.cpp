@@ -3,8 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
+#include <string>
+#include <type_traits>
 #include <vector>
 
+#include "analysis/trace/trace.h"
 #include "core/parameters/parameter.h"
 #include "runners/evaluation/verification/metamorphic_checks.h"
 #include "runners/experiment/settings/provenance.h"
@@ -166,6 +171,45 @@ PythonOutput make_output(const py::object& proxy_m, const py::object& force_N, c
   return made;
 }
 
+// The columns of a trace that the renderer computes: those whose value in trace_columns.h needs the output
+// only.
+struct OutputTick {
+  const RenderOutput& out;
+};
+using OutputColumns = std::map<std::string, std::function<py::object(const RenderOutput&)>>;
+
+template <class Row, class Value>
+void add_column(OutputColumns& columns, const char* name, TracePart part, Value value) {
+  if constexpr (std::is_invocable_v<Value, OutputTick>)
+    columns[name] = [=](const RenderOutput& out) -> py::object {
+      if (part == TracePart::tool && !out.tool) return py::none();
+      if (part == TracePart::guidance && !out.guidance) return py::none();
+      if constexpr (std::is_arithmetic_v<Row>)
+        return py::cast(static_cast<Row>(value(OutputTick{out})));
+      else
+        return array_of(Row(value(OutputTick{out})));
+    };
+}
+
+OutputColumns output_columns() {
+  OutputColumns columns;
+#define TRACE_COLUMN(member, Row, name, unit, part, value, ...) \
+  add_column<Row>(                                              \
+      columns, name, TracePart::part, [](const auto& t) requires requires { value; } { return value; });
+#include "analysis/trace/trace_columns.h"
+#undef TRACE_COLUMN
+  return columns;
+}
+
+py::object column_of_output(const PythonOutput& made, const std::string& name) {
+  static const OutputColumns columns = output_columns();
+  const auto found = columns.find(name);
+  if (found != columns.end()) return found->second(made.output);
+  std::string known;
+  for (const auto& [column, value] : columns) known += (known.empty() ? "" : ", ") + column;
+  throw InputError("Output: " + name, "expected a column that the renderer computes: " + known);
+}
+
 constexpr const char* kOutput =
     R"(The output of one tick; metres, newtons, world frame.
 
@@ -180,11 +224,7 @@ with degrees_of_freedom = 6.)";
 
 void bind_classes(py::module_& module) {
   const py::object none = py::none();
-  py::class_<PythonOutput> output(module, "Output", kOutput);
-  const auto number = [&](auto part, const char* name) {
-    output.def_property_readonly(name, [part](const PythonOutput& o) { return o.output.*part; });
-  };
-  output
+  py::class_<PythonOutput>(module, "Output", kOutput)
       .def(py::init(&make_output), py::kw_only(), py::arg("proxy_m") = none, py::arg("force_N") = none,
            py::arg("slave_m") = none, py::arg("state") = "free", py::arg("normal") = none,
            py::arg("surface_velocity_m_per_s") = 0.0,
@@ -209,12 +249,14 @@ void bind_classes(py::module_& module) {
                                return array_of(*o.tool_orientation);
                              })
       .def_property_readonly("normal", [](const PythonOutput& o) { return array_of(o.output.normal_W); })
-      .def_property_readonly("state", [](const PythonOutput& o) {
-        return std::array{"free", "contact", "entrenched"}[static_cast<std::size_t>(o.output.state)];
-      });
-  number(&RenderOutput::surface_velocity_m_per_s, "surface_velocity_m_per_s");
-  number(&RenderOutput::nearest_distance_m, "nearest_distance_m");
-  number(&RenderOutput::contact_count, "contact_count");
+      .def_property_readonly(
+          "state",
+          [](const PythonOutput& o) {
+            return std::array{"free", "contact", "entrenched"}[static_cast<std::size_t>(o.output.state)];
+          })
+      .def(
+          "__getitem__", &column_of_output, py::arg("column"),
+          "Of a step, a column of the trace of rt.run(), such as \"proxy_steps\"; None if this renderer has none.");
   module.def("register_class", &register_class, py::arg("kind"), py::arg("name"), py::arg("summary"),
              py::arg("type"), py::arg("settings"), "Puts a class into the catalog.");
   module.def(

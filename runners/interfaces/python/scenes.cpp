@@ -333,9 +333,10 @@ namespace {
 // A renderer of the catalog, and what processes its frames.
 class Stepper {
  public:
-  explicit Stepper(const Experiment& experiment)
-      : renderer_(experiment.build_renderer(chosen_python_kernels())),
-        processing_(experiment.build_processing(chosen_python_kernels())) {}
+  explicit Stepper(const Experiment& experiment,
+                   const std::shared_ptr<FixtureSwitches>& switches = std::make_shared<FixtureSwitches>())
+      : renderer_(experiment.build_renderer(chosen_python_kernels(), switches)),
+        processing_(experiment.build_processing(chosen_python_kernels(), switches)) {}
 
   void frame(const py::object& given, double captured_s) {
     const auto cloud = (py::isinstance<PythonCloud>(given) ? given : py::type::of<PythonCloud>()(given))

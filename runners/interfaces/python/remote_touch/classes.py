@@ -1,6 +1,7 @@
 """Base classes of own renderers, scenarios and trajectories, and their place in the catalog."""
 from __future__ import annotations
 
+import difflib
 import dis
 import hashlib
 import math
@@ -176,10 +177,13 @@ def stepper(renderer: str | type[Renderer] | os.PathLike[str] | dict[str, Any], 
     renderer: its name, or an experiment, which is named as for rt.run(); scene and trajectory of the experiment are not used.
     set: other settings, such as {"depth_pipeline.filter_window": 5, "haptic_rate_hz": 500}.
     frame(cloud, captured_s): a new frame, a Cloud or an array (n, 3), which the depth pipeline and the fixtures process before.
-    step(device, time_s): an Output for a Device or a position. The bits are those of rt.run().
+    step(device, time_s): an Output for a Device or a position. The bits are those of rt.run(), and output["status"] is a column of it.
     """
     from remote_touch.calls import _overrides, _subject
-    is_named = settings is not None or isinstance(renderer, type) or isinstance(renderer, str) and renderer in _core.list()["renderers"]
+    names = _core.list()
+    is_named = settings is not None or isinstance(renderer, type) or isinstance(renderer, str) and (
+        renderer in names["renderers"] or renderer not in names["experiments"] and not renderer.endswith(".json")
+        and bool(difflib.get_close_matches(renderer, names["renderers"])))  # so that the error names the one that was meant
     subject = {**_NO_SCENE, "renderer": {"name": renderer, **(settings or {})}} if is_named else renderer
     return _core.Stepper(*_subject(subject), _overrides(set))
 
